@@ -1,0 +1,61 @@
+// The geometry that a packing hands to the force: cells, faces between them, outer faces.
+#pragma once
+
+#include "core/types.h"
+
+#include <vector>
+
+namespace ligament::particles
+{
+/// Plane face between the cells of particles i and j (physics.md section 1 in docs/theory.md).
+template <int dim>
+struct Face
+{
+  int i, j;
+  Vector<dim> normal;    // unit, from i to j
+  double area;           // m^2 (2D: length times thickness)
+  double q_i, q_j;       // m, distances from the centres to the face plane; q_i + q_j = r
+  Vector<dim> lever_i;   // m, from centre i to the point of the face where traction acts
+  Vector<dim> lever_j;   // m, from centre j; unclipped faces: lever_i = q_i n, lever_j = -q_j n
+  /// Index of the lattice direction (see Packing::directions) when the face is a whole one of the
+  /// lattice and both its cells are whole; -1 when anything about it is irregular.
+  int direction;
+  /// An initial crack runs through this face: it touches but carries no tension.
+  bool cracked;
+};
+
+/// Part of a cell's surface on the surface of the specimen.
+template <int dim>
+struct BoundaryFace
+{
+  int i;
+  Vector<dim> normal; // unit, outward
+  double area;        // m^2
+  double q;           // m, distance from the centre to the face plane
+  Vector<dim> lever;  // m, from the centre to the centroid of the face
+  int boundary;       // side of the box, or inner_surface<dim>
+};
+
+/// A half of the neighbours of a lattice particle; the other half are the opposite directions.
+template <int dim>
+struct LatticeDirection
+{
+  Vector<dim> normal; // unit
+  double distance;    // m, between the centres
+  double area;        // m^2
+};
+
+template <int dim>
+struct Packing
+{
+  double spacing = 0;   // m, nearest-neighbour distance d
+  double thickness = 1; // m, 2D only
+  Components<dim> centre;
+  std::vector<double> volume; // m^3, of the cell clipped by the specimen
+  std::vector<Face<dim>> faces;
+  std::vector<BoundaryFace<dim>> boundary_faces;
+  std::vector<LatticeDirection<dim>> directions; // empty for random packings
+
+  int size() const { return int(volume.size()); }
+};
+} // namespace ligament::particles

@@ -1,0 +1,79 @@
+// What the loop and the coupler know of a force between particles: not the law, only its answers.
+#pragma once
+
+#include "particles/particles.h"
+
+#include <functional>
+
+namespace ligament::particles
+{
+/// One quadratic term of the energy linearised about the reference:
+///   1/2 sum_r stiffness[r] (row_r . q)^2,
+/// q the degrees of freedom of `members` in turn, each displacement first, then rotation vector.
+template <int dim>
+struct QuadraticTerm
+{
+  enum class Kind
+  {
+    bond,      // between members 0 and 1: extension, shear, bending, twist
+    wall,      // between member 0 and a prescribed boundary
+    volumetric // of member 0, which its neighbours (the other members) enter
+  };
+  Kind kind = Kind::bond;
+  Vector<dim> location; // m: centroid of the face, or centre of member 0
+  std::vector<int> members;
+  Eigen::MatrixXd rows;      // n_rows x (members.size() * n_particle_dofs<dim>)
+  Eigen::VectorXd stiffness; // n_rows
+};
+
+/// A face of a particle's cell as the closure test sees it: j is the neighbour, or -1 on the
+/// surface of the specimen.
+template <int dim>
+struct FaceView
+{
+  int i, j;
+  Vector<dim> normal; // unit, out of i
+  double area;        // m^2
+  Vector<dim> centroid; // m, in the reference
+  bool bonded;
+};
+
+/// Elastic constants that a continuum needs to be the same body.
+template <int dim>
+struct ElasticConstants
+{
+  double youngs_modulus; // Pa
+  double poissons_ratio; // -
+  double density;        // kg/m^3
+  Stiffness<dim> stiffness; // Pa, Voigt, for the plane mode of the packing in 2D
+  double wave_speed_p; // m/s, in the body (plane mode in 2D)
+  double wave_speed_s; // m/s
+};
+
+/// Adds forces to all particles: one virtual call per step.
+template <int dim>
+class ParticleForce
+{
+public:
+  virtual ~ParticleForce() = default;
+
+  /// Overwrites force and torque of all owned particles with those of the present state; time
+  /// in s sets the prescribed boundaries.
+  virtual void compute(Particles<dim> &particles, double time) = 0;
+
+  /// Elastic (and contact) energy of the present state, in J.
+  virtual double potential_energy(const Particles<dim> &particles) const = 0;
+
+  /// Largest stable leap-frog step of the intact body, in s.
+  virtual double stable_step(const Particles<dim> &particles) const = 0;
+
+  virtual ElasticConstants<dim> elastic_constants() const = 0;
+
+  /// Every quadratic term of the linearised energy of the present bonds, once.
+  virtual void
+  add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
+
+  /// Every face of every cell, once per side (i, j), then the faces on the surface (j = -1).
+  virtual void for_each_face(const std::function<void(const FaceView<dim> &)> &visit) const = 0;
+};
+} // namespace ligament::particles

@@ -1,0 +1,37 @@
+// The discrete half: particles, their force, and the verbs of the time loop.
+#pragma once
+
+#include "particles/particle_force.h"
+
+#include <memory>
+
+namespace ligament::particles
+{
+/// Leap-frog: velocities live at n + 1/2, displacements at n.
+template <int dim>
+class ParticleSolver
+{
+public:
+  ParticleSolver(Particles<dim> particles, std::unique_ptr<ParticleForce<dim>> force);
+
+  /// v += dt f/m, spin += dt T/J for particles [begin, end).
+  void kick(double dt, int begin, int end);
+  void kick(double dt) { kick(dt, 0, state.n_owned); }
+
+  /// u += dt v; orientations turn by dt spin (exactly, for a constant spin over the step).
+  void drift(double dt);
+
+  void update_ghosts() {} // one rank owns all
+
+  void compute_forces(double time) { force->compute(state, time); }
+
+  double potential_energy() const { return force->potential_energy(state); }
+
+  /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m: the kinetic part of the leap-frog's exact
+  /// invariant at the time of the present forces, in J; call before kick(dt).
+  double kinetic_energy(double dt) const;
+
+  Particles<dim> state;
+  std::unique_ptr<ParticleForce<dim>> force;
+};
+} // namespace ligament::particles

@@ -1,0 +1,80 @@
+// The state of all particles, whatever force moves them: public parallel arrays.
+#pragma once
+
+#include "core/types.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ligament::particles
+{
+/// Owned particles first, ghosts after. Total Lagrangian: reference centres, displacements and
+/// orientations against the reference. Orientation: 2D one angle (rad, unwrapped); 3D a unit
+/// quaternion (w, x, y, z). Held particles have inverse mass and inverse inertia 0.
+template <int dim>
+struct Particles
+{
+  static constexpr int n_rotations = dim == 2 ? 1 : 4;
+
+  int n_owned = 0;
+  int n_ghosts = 0;
+
+  Components<dim> reference;         // m, centre in the reference configuration
+  Components<dim> displacement;      // m
+  Components<n_rotations> rotation;  // rad (2D), unit quaternion (3D)
+  Components<dim> velocity;          // m/s
+  Components<n_spins<dim>> spin;     // rad/s, in space axes
+  Components<dim> force;             // N
+  Components<n_spins<dim>> torque;   // N m, in space axes
+  std::vector<double> volume;        // m^3 (2D: area times thickness)
+  std::vector<double> mass;          // kg
+  std::vector<double> inverse_mass;  // 1/kg, 0 for held particles
+  std::vector<double> inertia;       // kg m^2
+  std::vector<double> inverse_inertia;
+  std::vector<std::uint8_t> material;
+  std::vector<std::int64_t> global_id;
+
+  int size() const { return n_owned + n_ghosts; }
+
+  /// Calls visit(name, array) for every array; halo, output and checkpoint read this list.
+  template <typename Visit>
+  void for_each_array(Visit &&visit);
+
+  /// n owned particles at rest, in the reference orientation, with zero mass.
+  void resize(int n);
+};
+
+template <int dim>
+template <typename Visit>
+void Particles<dim>::for_each_array(Visit &&visit)
+{
+  const auto components = [&](const char *name, auto &arrays) {
+    for (auto &array : arrays)
+      visit(name, array);
+  };
+  components("reference", reference);
+  components("displacement", displacement);
+  components("rotation", rotation);
+  components("velocity", velocity);
+  components("spin", spin);
+  components("force", force);
+  components("torque", torque);
+  visit("volume", volume);
+  visit("mass", mass);
+  visit("inverse_mass", inverse_mass);
+  visit("inertia", inertia);
+  visit("inverse_inertia", inverse_inertia);
+  visit("material", material);
+  visit("global_id", global_id);
+}
+
+template <int dim>
+void Particles<dim>::resize(int n)
+{
+  n_owned = n;
+  n_ghosts = 0;
+  for_each_array([&](const char *, auto &array) { array.assign(n, 0); });
+  if (dim == 3)
+    rotation[0].assign(n, 1.);
+}
+} // namespace ligament::particles
