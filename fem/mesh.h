@@ -1,0 +1,96 @@
+// The far-field mesh as plain arrays: axis-parallel Q1 cells, hanging nodes, boundary faces.
+#pragma once
+
+#include "core/types.h"
+
+#include <vector>
+
+namespace ligament::fem
+{
+template <int dim>
+inline constexpr int n_cell_nodes = 1 << dim;
+
+/// A hanging node follows its masters: u = sum weight * u(master). Masters are never hanging.
+struct HangingNode
+{
+  int node;
+  std::vector<std::pair<int, double>> masters;
+};
+
+template <int dim>
+struct CellFace
+{
+  int cell;
+  int face;     // 2 * axis + (0 lower, 1 upper)
+  int boundary; // side of the specimen, or inner_surface<dim> for the edge towards the discrete zone
+};
+
+/// What to mesh: a box, minus an inner box that the discrete zone fills alone. The inner box may
+/// reach through the specimen (a band) or lie inside it (a ring).
+template <int dim>
+struct MeshParameters
+{
+  Vector<dim> lower, upper;             // m, specimen
+  Vector<dim> inner_lower, inner_upper; // m, left out; empty (lower >= upper): mesh everything
+  double cell_size;                     // m, h beside the zone; adapted per direction to fit
+  int levels = 0;                       // largest cells have size h 2^levels
+  int fine_cells = 0;                   // cells of size h on every path out of the inner box
+  int cells_per_level = 4;              // then as many cells on each coarser level
+};
+
+template <int dim>
+struct Mesh
+{
+  std::vector<Vector<dim>> nodes;                       // m
+  std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes in lexicographic order, x fastest
+  std::vector<Vector<dim>> cell_lower;                  // m, lower corner
+  std::vector<Vector<dim>> cell_size;                   // m
+  std::vector<int> cell_level;                          // 0: finest
+  std::vector<HangingNode> hanging;
+  std::vector<CellFace<dim>> boundary_faces;
+
+  int n_nodes() const { return int(nodes.size()); }
+  int n_cells() const { return int(cells.size()); }
+};
+
+/// Builds the mesh with deal.II (local refinement, hanging nodes). Throws core::InputError with
+/// reason and remedy when a section of the far field is thinner than one of its largest cells.
+template <int dim>
+Mesh<dim> make_mesh(const MeshParameters<dim> &parameters);
+
+/// Finds the cell of a point in constant time; points on shared faces belong to one of their cells.
+template <int dim>
+class CellLocator
+{
+public:
+  explicit CellLocator(const Mesh<dim> &mesh);
+  /// Cell that contains p (within 1e-10 of its size), or -1.
+  int find(const Vector<dim> &p) const;
+
+private:
+  const Mesh<dim> &mesh_;
+  Vector<dim> lower_, bin_size_;
+  std::array<int, dim> n_bins_;
+  std::vector<int> bin_start_, bin_cells_;
+};
+
+/// Q1 shape functions at p in the cell (lower, size): N_a, a in lexicographic order.
+template <int dim>
+Vec<n_cell_nodes<dim>> shape_values(const Vector<dim> &lower, const Vector<dim> &size,
+                                    const Vector<dim> &p);
+
+/// Their gradients, one column per shape function, in 1/m.
+template <int dim>
+Eigen::Matrix<double, dim, n_cell_nodes<dim>>
+shape_gradients(const Vector<dim> &lower, const Vector<dim> &size, const Vector<dim> &p);
+
+/// B with strain = B u_cell (Voigt, engineering shears), u_cell node by node.
+template <int dim>
+Eigen::Matrix<double, n_strains<dim>, dim * n_cell_nodes<dim>>
+strain_matrix(const Eigen::Matrix<double, dim, n_cell_nodes<dim>> &gradients);
+
+/// int B^T C B over a cell of the given size, times the thickness; 2-point Gauss in each direction.
+template <int dim>
+Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>
+cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness);
+} // namespace ligament::fem

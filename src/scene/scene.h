@@ -1,0 +1,142 @@
+// A scene as the program works with it: plain values in SI units, already checked.
+#pragma once
+
+#include "core/types.h"
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligament::program
+{
+/// Scenes are read before the dimension is known to the compiler; z is 0 in 2D.
+using Point = std::array<double, 3>;
+
+/// A cut without width: 2D a segment (two points), 3D a convex plane polygon (three or more).
+struct Crack
+{
+  std::vector<Point> points; // m
+};
+
+/// 2D: a disc cut out of the specimen.
+struct Hole
+{
+  Point centre;  // m
+  double radius; // m
+};
+
+/// A box cut out of the specimen.
+struct Notch
+{
+  Point lower, upper; // m
+};
+
+struct Specimen
+{
+  Point size; // m, a box centred at the origin
+  double thickness = 1; // m, 2D only
+  std::vector<Crack> cracks;
+  std::vector<Hole> holes;
+  std::vector<Notch> notches;
+};
+
+struct FractureParameters
+{
+  std::string criterion = "none";       // none, maximum_tension
+  std::optional<double> strength;       // Pa
+  std::optional<double> toughness;      // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
+};
+
+struct MaterialParameters
+{
+  double youngs_modulus; // Pa
+  double poissons_ratio;
+  double density; // kg/m^3
+  double friction = 0;
+  FractureParameters fracture;
+};
+
+struct DiscreteZone
+{
+  enum class Extent
+  {
+    none, // pure finite elements
+    all,  // pure discrete elements
+    box
+  };
+  Extent extent = Extent::box;
+  Point lower, upper; // m; sides that reach beyond the specimen are not coupled
+  std::string packing = "hexagonal"; // square, hexagonal (2D); simple_cubic, fcc (3D)
+  double spacing; // m, d
+  /// 2D: {angle}; 3D: rotation vector; rad. Close-packed rows lie along x at 0.
+  Point orientation = {0, 0, 0};
+};
+
+struct FarField
+{
+  double cell_size;          // m, h beside the zone
+  int levels = 0;            // refinement levels: the largest cells have size h 2^levels
+  int cells_per_level = 4;   // cells between two steps of the mesh size
+};
+
+struct CouplingParameters
+{
+  std::string scheme = "fine_scale_split"; // or none
+  int overlap_cells = 3;
+  int transition_cells = 6; // over which the mass goes from consistent to lumped
+  int step_ratio = 1;       // m: far field steps once per m fine steps
+  double fine_damper = 8;   // c_f
+  double gap_filter = 4;    // c_g
+  bool patch_fit = true;
+  std::string solver = "eigen"; // eigen, amesos
+  std::string guard = "stop";   // stop, warn
+};
+
+struct Damping
+{
+  double local = 0;   // fraction of the force, against the motion
+  double mass = 0;    // 1/s, all bodies
+  bool kinetic = false;
+};
+
+struct LoadParameters
+{
+  std::string boundary; // left right bottom top back front
+  std::string kind;     // velocity displacement traction
+  std::array<std::optional<double>, 3> value;
+  double ramp = 0; // s
+};
+
+struct TimeParameters
+{
+  double duration; // s
+  double step_fraction = 0.9;
+  std::optional<double> step; // s; refused above the stable one
+  std::string stop_when = "end"; // end, specimen_broken
+};
+
+struct OutputParameters
+{
+  double field_interval = std::numeric_limits<double>::infinity(); // s
+  double history_interval = 0; // s; 0: duration/2000
+  double progress_interval = 2; // s of wall time
+};
+
+struct Scene
+{
+  std::string title;
+  int dimension = 2;
+  PlaneMode plane = PlaneMode::strain;
+  Specimen specimen;
+  MaterialParameters material;
+  DiscreteZone zone;
+  std::optional<FarField> far_field;
+  CouplingParameters coupling;
+  Damping damping;
+  std::vector<LoadParameters> loads;
+  TimeParameters time;
+  OutputParameters output;
+};
+} // namespace ligament::program
