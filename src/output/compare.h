@@ -1,0 +1,52 @@
+// A run beside its reference: peak load, stiffness, energy, crack path, fields, time.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligament::program {
+/// Errors are signed and relative, run/reference - 1. What cannot be computed stays empty, is null
+/// in the JSON, and `notes` says why.
+struct CompareResult
+{
+  std::optional<double> peak_load_error;
+  std::optional<double> stiffness_error;
+  /// Distance between the crack paths in particle diameters: from every broken face of one run to
+  /// the nearest one of the other; the mean of both directions, and the largest of all.
+  std::optional<double> crack_distance_mean;
+  std::optional<double> crack_distance_max;
+  /// The same over faces that broke up to the peak of their own run, and over the later ones.
+  std::optional<double> crack_distance_mean_to_peak, crack_distance_max_to_peak;
+  std::optional<double> crack_distance_mean_after_peak, crack_distance_max_after_peak;
+  std::optional<double> energy_error;   // external work at the peak
+  std::optional<double> time_ratio;     // wall time of the reference over that of the run
+  std::optional<double> particle_ratio; // particles of the reference over those of the run
+  /// Over particles at the same reference position, at the peak of each run, relative to the
+  /// reference: |difference|_2/|reference|_2 and largest difference over largest value.
+  std::optional<double> displacement_error, displacement_error_max;
+  std::optional<double> velocity_error, velocity_error_max;
+  std::int64_t matched_particles = 0;
+
+  struct Line
+  {
+    std::string name, run, reference, difference;
+  };
+  std::vector<Line> lines;
+  std::vector<std::string> notes;
+  std::string svg_file, html_file; // written into the folder of the run
+};
+
+/// `reference` is the folder of another run or a CSV curve with units. Writes
+/// compare_<reference>.svg and .html into the run's folder. InputError when one of them is neither.
+CompareResult compare(const std::string &run_folder, const std::string &reference);
+
+/// Text for the terminal.
+std::string table(const CompareResult &result);
+
+/// The object that `compare --json` prints.
+nlohmann::json to_json(const CompareResult &result);
+} // namespace ligament::program

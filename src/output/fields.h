@@ -1,0 +1,71 @@
+// What both models show at one time, as plain arrays: the common ground of VTK files and pictures.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ligament::program {
+/// A quantity on particles, nodes or cells. Both models use the same names and units:
+/// displacement (m), velocity (m/s), stress (Pa), global_id, material.
+struct Field
+{
+  enum class Kind
+  {
+    scalar, // 1 number per item
+    vector, // 3 numbers, z = 0 in 2D
+    tensor  // 6 numbers: xx, yy, zz, xy, yz, xz
+  };
+  enum class Storage
+  {
+    float32,
+    float64,
+    int64
+  };
+  std::string name;
+  std::string unit; // "1" for plain numbers
+  Kind kind = Kind::scalar;
+  std::vector<double> values; // item by item
+  Storage storage = Storage::float32;
+
+  int n_components() const { return kind == Kind::scalar ? 1 : kind == Kind::vector ? 3 : 6; }
+};
+
+/// Particles: reference centres and fields. x, y, z per particle also in 2D (z = 0).
+struct ParticleFields
+{
+  std::vector<double> reference; // m
+  std::vector<Field> fields;
+
+  std::size_t size() const { return reference.size() / 3; }
+};
+
+/// Cells of the far field: quadrilaterals or hexahedra with their nodes in the order of VTK
+/// (counter-clockwise; bottom face then top face).
+struct CellFields
+{
+  int dimension = 2;
+  std::vector<double> reference;          // m, x, y, z per node
+  std::vector<std::int64_t> connectivity; // 2^dimension nodes per cell
+  std::vector<Field> node_fields;
+  std::vector<Field> cell_fields;
+
+  int nodes_per_cell() const { return 1 << dimension; }
+  std::size_t n_nodes() const { return reference.size() / 3; }
+  std::size_t n_cells() const { return connectivity.size() / nodes_per_cell(); }
+};
+
+/// A face that broke. Positions of the reference configuration.
+struct BrokenBond
+{
+  std::int64_t i, j;  // global ids of the particles
+  double time;        // s
+  double centroid[3]; // m
+  double normal[3];   // unit, from i to j
+  double size;        // 2D: length of the face, m; 3D: its area, m^2
+  double energy;      // J, released by the face
+};
+
+/// The field of this name; null when there is none.
+const Field *find_field(const std::vector<Field> &fields, const std::string &name);
+} // namespace ligament::program

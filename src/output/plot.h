@@ -1,0 +1,38 @@
+// Curves as SVG: axes with round ticks, SI prefixes, a legend.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ligament::program {
+struct Series
+{
+  std::string label;
+  std::vector<double> x, y; // SI; points that are not finite break the line
+  bool dashed = false;
+  bool markers = false; // a dot at every point
+  bool line = true;
+};
+
+struct PlotAxis
+{
+  std::string label;
+  std::string unit; // "" or "1" for plain numbers; others get an SI prefix that fits
+  bool logarithmic = false;
+};
+
+struct Plot
+{
+  std::string title;
+  PlotAxis x, y;
+  std::vector<Series> series;
+  int width = 720, height = 400; // pixels
+};
+
+/// A complete <svg> element.
+std::string svg(const Plot &plot);
+
+/// Round values that divide [lower, upper] into about n parts: multiples of 1, 2 or 5 times a power
+/// of ten.
+std::vector<double> nice_ticks(double lower, double upper, int n);
+} // namespace ligament::program

@@ -1,0 +1,29 @@
+// Where things lie in the output folder of a run: writers and readers take the names from here.
+#pragma once
+
+#include <string>
+
+namespace ligament::program {
+struct RunFolder
+{
+  std::string path;
+
+  std::string record() const { return path + "/run.json"; }
+  std::string resolved_scene() const { return path + "/scene.resolved.json"; }
+  std::string log() const { return path + "/run.log"; }
+  std::string history() const { return path + "/history.csv"; }
+  std::string broken_bonds() const { return path + "/broken_bonds.csv"; }
+  /// Particles when the load was highest, and at the end.
+  std::string peak_snapshot() const { return path + "/snapshot_peak.bin"; }
+  std::string end_snapshot() const { return path + "/snapshot_end.bin"; }
+  std::string pvd() const { return path + "/fields.pvd"; }
+  std::string fields() const { return path + "/fields"; }
+  std::string pictures() const { return path + "/pictures"; }
+  std::string report() const { return path + "/report.html"; }
+
+  /// Makes the folder with its subfolders; EnvironmentError when the disk refuses.
+  void create() const;
+  /// True when a run wrote its record here.
+  bool holds_a_run() const;
+};
+} // namespace ligament::program

@@ -1,0 +1,90 @@
+// What a run says about itself: the content of run.json, read by report, compare and sweep.
+#pragma once
+
+#include "core/timers.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligament::program {
+/// A named figure of the scene or of the result, in SI units.
+struct Figure
+{
+  double value;
+  std::string unit; // "" for plain numbers
+};
+
+/// A part of the program that the scene did not need.
+struct SkippedPart
+{
+  std::string what;
+  std::string why;
+};
+
+struct PictureEntry
+{
+  std::string file; // relative to the output folder
+  std::string caption;
+};
+
+/// Figures that are not known stay empty and are null in the file.
+struct RunRecord
+{
+  std::string title;
+  std::string version;
+  std::string commit;
+  std::string started;            // date and time, UTC
+  std::string status = "running"; // running, done, guard, failed
+  std::string reason;             // why it ended
+  std::string kind;               // coupled, pure_dem, pure_fem
+  int dimension = 2;
+  std::string plane; // strain, stress; empty in 3D
+
+  double spacing = 0;       // m, d
+  std::vector<double> size; // m, of the specimen
+  double thickness = 1;     // m, 2D only
+
+  std::int64_t particles = 0;
+  std::int64_t cells = 0;
+  std::int64_t overlap_particles = 0;
+  /// Particles that the whole specimen would take at the same spacing.
+  std::int64_t equivalent_particles = 0;
+
+  double dt = 0;                     // s
+  std::optional<double> dt_critical; // s, discrete side
+  std::optional<double> dt_far;      // s, stable step of the far field
+  int step_ratio = 1;
+  std::int64_t steps = 0;
+  double simulated_time = 0; // s
+
+  double wall_seconds = 0; // time loop
+  double setup_seconds = 0;
+  /// Time of the loop that moving the particles alone takes: their forces and integration, without
+  /// far field, coupling and output. The verdict scales it to the pure discrete model.
+  std::optional<double> discrete_seconds;
+  std::vector<core::Timers::Row> timing;
+  std::string verdict;
+  std::vector<SkippedPart> skipped;
+
+  std::optional<double> peak_load;   // N, reaction, positive in tension
+  std::optional<double> peak_stress; // Pa
+  std::optional<double> peak_time;   // s
+  std::optional<double> stiffness;   // Pa, see fit_stiffness
+  std::int64_t broken_bonds = 0;
+  std::optional<double> crack_length;    // m (3D: m^2)
+  std::optional<double> energy_residual; // of the external work, see relative_residual
+
+  /// Toughness factor c, strength, crack half length, ... by name.
+  std::map<std::string, Figure> figures;
+  std::vector<PictureEntry> pictures;
+};
+
+/// Replaces the file at once; EnvironmentError when the disk refuses.
+void write_run_record(const std::string &path, const RunRecord &record);
+
+/// InputError when the file is missing, is not JSON or lacks a field.
+RunRecord read_run_record(const std::string &path);
+} // namespace ligament::program

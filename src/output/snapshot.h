@@ -1,0 +1,27 @@
+// Motion of all particles at one time, exact to the last bit: what compare takes field errors from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ligament::program {
+struct Snapshot
+{
+  int dimension = 2;
+  double time = 0;                     // s
+  double spacing = 0;                  // m
+  std::vector<std::int64_t> global_id; // one per particle
+  // dimension numbers per particle
+  std::vector<double> reference;    // m
+  std::vector<double> displacement; // m
+  std::vector<double> velocity;     // m/s
+
+  std::size_t size() const { return global_id.size(); }
+};
+
+/// Binary with a checksum; replaced at once.
+void write_snapshot(const std::string &path, const Snapshot &snapshot);
+/// InputError when the file is missing, cut short or damaged.
+Snapshot read_snapshot(const std::string &path);
+} // namespace ligament::program

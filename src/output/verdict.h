@@ -1,0 +1,20 @@
+// One sentence that says what the coupling was worth and whether the run can be trusted.
+#pragma once
+
+#include "src/output/run_record.h"
+
+#include <optional>
+#include <string>
+
+namespace ligament::program {
+/// Wall time of the pure discrete model of the same specimen over the wall time of this run, with
+/// the time per particle and step that this run measured. Empty when a figure is missing.
+std::optional<double> predicted_saving(const RunRecord &record);
+
+/// For example "8 700 particles and 2 350 cells stood for 121 000 particles: 11.4 x faster than
+/// pure discrete elements would be at this rate; energy residual 3e-05; nothing unstable".
+std::string verdict(const RunRecord &record);
+
+/// One sentence for the top of the report: what broke, at which load.
+std::string headline(const RunRecord &record);
+} // namespace ligament::program

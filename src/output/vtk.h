@@ -1,0 +1,47 @@
+// Fields for ParaView: particles (VTP), cells (VTU), broken bonds (VTP), one collection (PVD).
+#pragma once
+
+#include "src/output/fields.h"
+#include "src/output/run_folder.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ligament::program {
+/// XML with inline base64 blocks, compressed by zlib at its fastest level, 64-bit headers. Units
+/// are written where ParaView shows them. All writers throw EnvironmentError when the disk refuses
+/// and never leave half a file. Points are reference positions: warp by `displacement`.
+void write_particles_vtp(const std::string &path, const ParticleFields &particles);
+void write_cells_vtu(const std::string &path, const CellFields &cells);
+
+/// One segment (2D) or square (3D) per broken face, with time, normal, energy and size.
+void write_broken_bonds_vtp(const std::string &path, const std::vector<BrokenBond> &bonds,
+                            int dimension);
+
+/// Collection of all times and parts; rewritten after every time so that it can be opened while the
+/// run goes on. Part 0 particles, 1 cells, 2 broken bonds.
+class FieldSeries
+{
+public:
+  FieldSeries(RunFolder folder, int dimension);
+
+  /// Writes fields/{particles,cells,broken_bonds}_NNNN.vt? and the .pvd. Empty parts are left out.
+  void write(double time, const ParticleFields &particles, const CellFields &cells,
+             const std::vector<BrokenBond> &bonds);
+
+private:
+  struct Entry
+  {
+    double time;
+    int part;
+    std::string file; // relative to the .pvd
+  };
+  void write_collection() const;
+
+  RunFolder folder_;
+  int dimension_;
+  int n_written_ = 0;
+  std::vector<Entry> entries_;
+};
+} // namespace ligament::program
