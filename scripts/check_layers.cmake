@@ -72,7 +72,8 @@ set(n_files 0)
 set(n_includes 0)
 
 macro(complain text)
-  list(APPEND complaints "${file}: #include ${delimited}: ${text}")
+  string(REPLACE ";" ", " line "${file}: #include ${delimited}: ${text}")
+  list(APPEND complaints "${line}")
 endmacro()
 
 macro(check_include folder)
