@@ -1,0 +1,326 @@
+#include "coupling/blended_operators.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::coupling
+{
+namespace
+{
+using Triplets = std::vector<Eigen::Triplet<double>>;
+using core::require;
+
+// Gauss points and weights on [0, 1]; four points integrate the cubic weight times the quadratic
+// strain products exactly where s is linear.
+constexpr std::array<double, 4> gauss_point = {0.069431844202973712, 0.33000947820757187,
+                                               0.66999052179242813, 0.93056815579702629};
+constexpr std::array<double, 4> gauss_weight = {0.17392742256872693, 0.32607257743127307,
+                                                0.32607257743127307, 0.17392742256872693};
+
+template <int dim, typename Visit>
+void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &size, Visit &&visit)
+{
+  constexpr int n = dim == 2 ? 16 : 64;
+  for (int q = 0; q < n; ++q)
+  {
+    Vector<dim> x;
+    double weight = 1;
+    for (int c = 0, rest = q; c < dim; ++c, rest /= 4)
+    {
+      x[c] = lower[c] + size[c] * gauss_point[rest % 4];
+      weight *= size[c] * gauss_weight[rest % 4];
+    }
+    visit(x, weight);
+  }
+}
+
+template <int dim>
+class Assembly
+{
+public:
+  Assembly(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+           const fem::Body<dim> &body)
+      : overlap_(overlap), particles_(particles), body_(body), n_(overlap.n_nodes())
+  {
+    residual = Eigen::MatrixXd::Zero(dim * n_, n_strains<dim>);
+    mass_bound = Eigen::VectorXd::Zero(n_);
+    for (int k = 0; k < n_strains<dim>; ++k)
+      strain_[k] = unit_strain<dim>(k);
+  }
+
+  void add_cells();
+  void add_masses();
+  void add_term(const particles::QuadraticTerm<dim> &term);
+
+  Triplets stiffness, mass;
+  Eigen::MatrixXd residual;
+  Eigen::VectorXd mass_bound;
+
+private:
+  static constexpr double consistent_bound = dim == 2 ? 1. / 9 : 1. / 27;
+  double subtracted_share(const particles::QuadraticTerm<dim> &term) const;
+
+  const Overlap<dim> &overlap_;
+  const particles::Particles<dim> &particles_;
+  const fem::Body<dim> &body_;
+  const int n_;
+  std::array<Eigen::Matrix<double, dim, dim>, n_strains<dim>> strain_;
+  std::vector<int> nodes_; // of the present term
+};
+
+template <int dim>
+void Assembly<dim>::add_cells()
+{
+  constexpr int nc = fem::n_cell_nodes<dim>;
+  for (const auto &cell : overlap_.cells)
+  {
+    const Vector<dim> &lower = overlap_.mesh.cell_lower[cell.cell];
+    const Vector<dim> &size = overlap_.mesh.cell_size[cell.cell];
+    Eigen::Matrix<double, dim * nc, dim * nc> k;
+    Eigen::Matrix<double, nc, nc> consistent;
+    k.setZero();
+    consistent.setZero();
+    for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
+      const double share = cell.layer == 0 ? 1 - overlap_.weight(x) : 1;
+      w *= share * body_.thickness;
+      const auto b = fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, x));
+      const auto value = fem::shape_values<dim>(lower, size, x);
+      k += w * b.transpose() * body_.stiffness * b;
+      consistent += w * body_.density * value * value.transpose();
+    });
+    const double mu = cell.consistent_share;
+    for (int a = 0; a < nc; ++a)
+    {
+      const double row_sum = consistent.row(a).sum();
+      mass.emplace_back(cell.nodes[a], cell.nodes[a], (1 - mu) * row_sum);
+      mass_bound[cell.nodes[a]] += row_sum * (1 - mu + mu * consistent_bound);
+      for (int b = 0; b < nc; ++b)
+      {
+        mass.emplace_back(cell.nodes[a], cell.nodes[b], mu * consistent(a, b));
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j)
+            stiffness.emplace_back(i * n_ + cell.nodes[a], j * n_ + cell.nodes[b],
+                                   k(a * dim + i, b * dim + j));
+      }
+    }
+    Eigen::Matrix<double, dim * nc, 1> u;
+    for (int s = 0; s < n_strains<dim>; ++s)
+    {
+      for (int a = 0; a < nc; ++a)
+        u.template segment<dim>(a * dim) =
+            strain_[s] * overlap_.mesh.nodes[overlap_.near_nodes[cell.nodes[a]]];
+      const Eigen::Matrix<double, dim * nc, 1> f = k * u;
+      for (int a = 0; a < nc; ++a)
+        for (int i = 0; i < dim; ++i)
+          residual(i * n_ + cell.nodes[a], s) -= f[a * dim + i];
+    }
+  }
+}
+
+template <int dim>
+void Assembly<dim>::add_masses()
+{
+  for (const auto &m : overlap_.members)
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+    {
+      const double share = m.weight * particles_.mass[m.particle] * m.value[a];
+      mass_bound[m.nodes[a]] += share * consistent_bound;
+      for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
+        mass.emplace_back(m.nodes[a], m.nodes[b], share * m.value[b]);
+    }
+}
+
+// 1 - a of a term of the discrete energy: subtracted only where all its particles lie in the
+// overlap; wholly where one of them is pad.
+template <int dim>
+double Assembly<dim>::subtracted_share(const particles::QuadraticTerm<dim> &term) const
+{
+  bool pad = false;
+  for (const int i : term.members)
+  {
+    const int m = overlap_.member_of_particle[i];
+    if (m < 0)
+      return 0;
+    pad |= overlap_.members[m].pad;
+  }
+  return pad ? 1 : 1 - overlap_.weight(term.location);
+}
+
+template <int dim>
+void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
+{
+  constexpr int nd = n_particle_dofs<dim>;
+  constexpr int nc = fem::n_cell_nodes<dim>;
+  const bool touches = std::any_of(term.members.begin(), term.members.end(), [&](int i) {
+    return overlap_.member_of_particle[i] >= 0;
+  });
+  if (!touches)
+    return;
+  require(term.kind != particles::QuadraticTerm<dim>::Kind::wall,
+          "the overlap reaches a loaded or held side of the specimen, where it can't end yet; keep "
+          "the discrete zone away from that side");
+
+  // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads.
+  Eigen::MatrixXd gradient(term.rows.rows(), n_strains<dim>); // stiffness * row . q
+  for (int s = 0; s < n_strains<dim>; ++s)
+  {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(term.rows.cols());
+    for (std::size_t i = 0; i < term.members.size(); ++i)
+      q.segment<dim>(i * nd) = strain_[s] * get(particles_.reference, term.members[i]);
+    gradient.col(s) = term.stiffness.cwiseProduct(term.rows * q);
+  }
+  const double share = subtracted_share(term);
+  for (std::size_t i = 0; i < term.members.size(); ++i)
+  {
+    const int index = overlap_.member_of_particle[term.members[i]];
+    if (index < 0)
+      continue;
+    const auto &m = overlap_.members[index];
+    const Eigen::MatrixXd force =
+        term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
+    const Eigen::MatrixXd torque =
+        term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
+    for (int a = 0; a < nc; ++a)
+    {
+      const Eigen::MatrixXd spin = Overlap<dim>::spin_block(m, a).transpose() * torque;
+      for (int c = 0; c < dim; ++c)
+        residual.row(c * n_ + m.nodes[a]) -=
+            (1 - share) * m.value[a] * force.row(c) + ((m.pad ? 1. : 0.) - share) * spin.row(c);
+    }
+  }
+  if (share == 0)
+    return;
+
+  // The subtracted stiffness: rows on the interpolated motion.
+  nodes_.clear();
+  for (const int i : term.members)
+    for (const int node : overlap_.members[overlap_.member_of_particle[i]].nodes)
+      if (std::find(nodes_.begin(), nodes_.end(), node) == nodes_.end())
+        nodes_.push_back(node);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(term.rows.rows(), dim * nodes_.size());
+  for (std::size_t i = 0; i < term.members.size(); ++i)
+  {
+    const auto &m = overlap_.members[overlap_.member_of_particle[term.members[i]]];
+    for (int a = 0; a < nc; ++a)
+    {
+      const int column =
+          dim * int(std::find(nodes_.begin(), nodes_.end(), m.nodes[a]) - nodes_.begin());
+      rows.middleCols(column, dim) +=
+          m.value[a] * term.rows.middleCols(i * nd, dim) +
+          term.rows.middleCols(i * nd + dim, n_spins<dim>) * Overlap<dim>::spin_block(m, a);
+    }
+  }
+  const Eigen::MatrixXd k = share * rows.transpose() * term.stiffness.asDiagonal() * rows;
+  for (std::size_t a = 0; a < nodes_.size(); ++a)
+    for (std::size_t b = 0; b < nodes_.size(); ++b)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          stiffness.emplace_back(i * n_ + nodes_[a], j * n_ + nodes_[b],
+                                 -k(a * dim + i, b * dim + j));
+}
+
+template <int dim>
+void add_normal(std::vector<Vector<dim>> &normals, const Vector<dim> &normal)
+{
+  for (const auto &n : normals)
+    if ((n - normal).norm() < 1e-6)
+      return;
+  normals.push_back(normal);
+}
+
+// A node feels a free surface when a particle at that surface, or a neighbour of one, hands it
+// forces, or when it lies on the surface itself.
+template <int dim>
+std::vector<std::vector<Vector<dim>>>
+find_free_normals(const Overlap<dim> &overlap, const particles::ParticleForce<dim> &force)
+{
+  const int n_particles = int(overlap.member_of_particle.size());
+  std::vector<std::vector<Vector<dim>>> on_surface(n_particles), felt(n_particles);
+  force.for_each_face([&](const particles::FaceView<dim> &face) {
+    if (face.j < 0)
+      add_normal<dim>(on_surface[face.i], face.normal);
+  });
+  felt = on_surface;
+  force.for_each_face([&](const particles::FaceView<dim> &face) {
+    if (face.j >= 0)
+      for (const auto &normal : on_surface[face.j])
+        add_normal<dim>(felt[face.i], normal);
+  });
+  std::vector<std::vector<Vector<dim>>> normals(overlap.n_nodes());
+  for (const auto &m : overlap.members)
+    for (const auto &normal : felt[m.particle])
+    {
+      require((normal.cwiseAbs().array() > 1 - 1e-9).any(),
+              "the overlap ends at a curved or inclined free surface, which is not supported yet; "
+              "keep holes and notches away from it");
+      for (const int node : m.nodes)
+        add_normal<dim>(normals[node], normal);
+    }
+  std::vector<int> near(overlap.mesh.n_nodes(), -1);
+  for (int i = 0; i < overlap.n_nodes(); ++i)
+    near[overlap.near_nodes[i]] = i;
+  for (const auto &face : overlap.mesh.boundary_faces)
+    if (face.boundary < inner_surface<dim>)
+    {
+      const int axis = face.face / 2, side = face.face % 2;
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        if (((a >> axis) & 1) == side)
+          if (const int node = near[overlap.mesh.cells[face.cell][a]]; node >= 0)
+            add_normal<dim>(normals[node], (side ? 1. : -1.) * Vector<dim>::Unit(axis));
+    }
+  return normals;
+}
+} // namespace
+
+template <int dim>
+Eigen::Matrix<double, dim, dim> unit_strain(int k)
+{
+  Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
+  if (k < dim)
+    e(k, k) = 1;
+  else
+  {
+    // Voigt order of the shears: 2D xy; 3D yz, xz, xy.
+    const int i = dim == 2 ? 0 : (k == 3 ? 1 : 0);
+    const int j = dim == 2 ? 1 : (k == 5 ? 1 : 2);
+    e(i, j) = e(j, i) = 0.5;
+  }
+  return e;
+}
+
+template <int dim>
+BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
+                                             const particles::Particles<dim> &particles,
+                                             const particles::ParticleForce<dim> &force,
+                                             const fem::Body<dim> &body)
+{
+  Assembly<dim> assembly(overlap, particles, body);
+  assembly.add_cells();
+  assembly.add_masses();
+  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });
+
+  const int n = overlap.n_nodes();
+  BlendedOperators<dim> result;
+  result.stiffness.resize(dim * n, dim * n);
+  result.stiffness.setFromTriplets(assembly.stiffness.begin(), assembly.stiffness.end());
+  result.mass.resize(n, n);
+  result.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
+  result.mass_bound = assembly.mass_bound;
+  result.residual = assembly.residual;
+  result.free_normals = find_free_normals(overlap, force);
+  return result;
+}
+
+template BlendedOperators<2> make_blended_operators(const Overlap<2> &,
+                                                    const particles::Particles<2> &,
+                                                    const particles::ParticleForce<2> &,
+                                                    const fem::Body<2> &);
+template BlendedOperators<3> make_blended_operators(const Overlap<3> &,
+                                                    const particles::Particles<3> &,
+                                                    const particles::ParticleForce<3> &,
+                                                    const fem::Body<3> &);
+template Eigen::Matrix<double, 2, 2> unit_strain<2>(int);
+template Eigen::Matrix<double, 3, 3> unit_strain<3>(int);
+} // namespace ligament::coupling

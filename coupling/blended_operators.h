@@ -1,0 +1,42 @@
+// The coarse stiffness and mass of the overlap and its transition, and the residual that the patch
+// fit has to remove.
+#pragma once
+
+#include "coupling/overlap.h"
+#include "fem/fem_solver.h"
+
+#include <Eigen/SparseCore>
+
+namespace ligament::coupling
+{
+/// Matrices on near nodes. Vector unknowns are numbered component by component: c * n_nodes + node,
+/// so that a column-major n_nodes x dim matrix of nodal values is the vector.
+template <int dim>
+struct BlendedOperators
+{
+  /// Coarse stiffness without the patch fit, N/m (theory.md eq. (C3)): cells weighted by 1 - a minus
+  /// the discrete energy weighted by 1 - a, evaluated on the interpolated motion; transition cells
+  /// whole.
+  Eigen::SparseMatrix<double> stiffness;
+  /// Scalar coarse mass of the near cells and of the particles' share, kg; without the lumped mass of
+  /// cells that stay with the far-field solver.
+  Eigen::SparseMatrix<double> mass;
+  /// Per near node a lower bound of `mass` in the sense of quadratic forms, kg: consistent masses
+  /// count 1/3^dim of their row sum. Keeps the gap filter below the mass (theory.md, "Dampers").
+  Eigen::VectorXd mass_bound;
+  /// Force on the near nodes under each unit strain, spins at rest, N; one column per strain.
+  Eigen::MatrixXd residual;
+  /// Per near node the outward normals of the free surfaces that its residual feels.
+  std::vector<std::vector<Vector<dim>>> free_normals;
+};
+
+template <int dim>
+BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
+                                             const particles::Particles<dim> &particles,
+                                             const particles::ParticleForce<dim> &force,
+                                             const fem::Body<dim> &body);
+
+/// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
+template <int dim>
+Eigen::Matrix<double, dim, dim> unit_strain(int k);
+} // namespace ligament::coupling

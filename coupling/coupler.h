@@ -1,0 +1,73 @@
+// What the time loop asks of whatever joins the two halves.
+#pragma once
+
+#include "fem/fem_solver.h"
+#include "particles/particle_solver.h"
+
+#include <memory>
+#include <string>
+
+namespace ligament::coupling
+{
+/// The two halves of one body; either may be missing.
+template <int dim>
+struct Bodies
+{
+  particles::ParticleSolver<dim> *zone = nullptr;
+  fem::FemSolver<dim> *far = nullptr;
+};
+
+/// Where the step stands: positions are those of `time`, velocities those of half a step before.
+struct StepTime
+{
+  long step = 0;
+  double time = 0; // s
+  double dt = 0;   // s
+};
+
+/// Energy at the time of the present positions, in J; valid between the force computation and kick.
+struct CoupledEnergy
+{
+  double kinetic_discrete = 0;
+  double kinetic_far = 0;
+  double potential_discrete = 0;
+  double potential_far = 0;
+  double blended = 0;      // 1/2 U K_near U: what the coupler took over from the far field
+  double fine_damper = 0;  // taken so far by the fluctuation damper
+  double gap_filter = 0;   // taken so far by the gap-band filter
+};
+
+/// One time step is drift (positions), forces, kick (velocities); theory.md, "One step".
+template <int dim>
+class Coupler
+{
+public:
+  virtual ~Coupler() = default;
+
+  /// Positions of both halves to the end of the step.
+  virtual void drift(Bodies<dim> &bodies, const StepTime &step) = 0;
+  /// Forces of both halves at step.time; the far field only in the steps in which it acts.
+  virtual void compute_forces(Bodies<dim> &bodies, const StepTime &step) = 0;
+  /// Velocities of both halves from these forces.
+  virtual void kick(Bodies<dim> &bodies, const StepTime &step) = 0;
+  /// Multiplies all velocities (mass damping; 0 in kinetic damping).
+  virtual void scale_velocities(Bodies<dim> &bodies, double factor) = 0;
+  virtual CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const = 0;
+
+  /// Steps between two actions of the far field: positions agree everywhere, and observers look, at
+  /// multiples of it.
+  virtual int step_ratio() const { return 1; }
+};
+
+/// One half alone: the same loop without an overlap.
+template <int dim>
+class NullCoupler : public Coupler<dim>
+{
+public:
+  void drift(Bodies<dim> &bodies, const StepTime &step) override;
+  void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
+  void kick(Bodies<dim> &bodies, const StepTime &step) override;
+  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
+};
+} // namespace ligament::coupling

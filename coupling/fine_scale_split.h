@@ -1,0 +1,81 @@
+// The default coupler: the discrete model keeps its forces and masses, the mesh carries the coarse
+// part of its motion, and only the coarse energy and mass are blended.
+#pragma once
+
+#include "coupling/coupler.h"
+#include "coupling/fluctuation_projector.h"
+#include "coupling/patch_fit.h"
+
+namespace ligament::coupling
+{
+struct FineScaleSplitParameters
+{
+  int step_ratio = 1;       // m: the far field acts once per m steps
+  double fine_damper = 8;   // c_f
+  double gap_filter = 4;    // c_g
+  bool patch_fit = true;
+  std::string solver = "eigen";
+};
+
+/// Figures of the set-up, for the log and for verification.
+struct SplitReport
+{
+  int overlap_particles = 0;
+  int pad_particles = 0;
+  int near_nodes = 0;
+  double patch_residual_before = 0; // over C11 h^(dim-1)
+  double patch_residual = 0;
+  double patch_modulus = 0; // max |S|/(C11 V_b)
+};
+
+/// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
+template <int dim>
+class FineScaleSplit : public Coupler<dim>
+{
+public:
+  /// Takes the overlap's and the transition's cells over from the far field. dt in s.
+  FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters &overlap,
+                 const FineScaleSplitParameters &parameters, double dt);
+
+  void drift(Bodies<dim> &bodies, const StepTime &step) override;
+  void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
+  void kick(Bodies<dim> &bodies, const StepTime &step) override;
+  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
+  int step_ratio() const override { return parameters_.step_ratio; }
+
+  /// Splits the particles' present velocities (at half steps) into V and w; the nodes' velocities
+  /// beyond the particles' reach are taken as they are. For runs that start in motion.
+  void take_velocities(Bodies<dim> &bodies);
+
+  const SplitReport &report() const { return report_; }
+  const Overlap<dim> &overlap() const { return overlap_; }
+  /// Coarse stiffness K_near including the patch fit, N/m.
+  const Eigen::SparseMatrix<double> &near_stiffness() const { return stiffness_; }
+  /// Coarse mass M_c including the far field's share, kg.
+  const Eigen::SparseMatrix<double> &near_mass() const { return mass_; }
+
+private:
+  bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
+  void write_velocities(Bodies<dim> &bodies);
+  /// Force on the near nodes from the near cells and the particles, without the far field's.
+  Eigen::MatrixXd near_force(const Bodies<dim> &bodies) const;
+  Eigen::MatrixXd far_force(const Bodies<dim> &bodies) const;
+  double coarse_kinetic(const Eigen::MatrixXd &a, const Eigen::MatrixXd &b) const;
+
+  FineScaleSplitParameters parameters_;
+  Overlap<dim> overlap_;
+  FluctuationProjector<dim> projector_;
+  SplitReport report_;
+
+  Eigen::SparseMatrix<double> stiffness_; // rows are columns: symmetric
+  Eigen::SparseMatrix<double> mass_;
+  Eigen::SparseMatrix<double> filter_; // D
+  std::unique_ptr<LinearSolver> mass_solver_;
+  std::vector<double> damping_; // 1 - exp(-c_f dt) of the free members
+
+  Eigen::MatrixXd displacement_, velocity_; // U, V of the near nodes: n_nodes x dim
+  Components<dim> fluctuation_;             // w of the free members, m/s
+  double fine_damper_energy_ = 0, gap_filter_energy_ = 0;
+};
+} // namespace ligament::coupling

@@ -1,0 +1,86 @@
+#include "coupling/linear_solver.h"
+
+#include "core/check.h"
+
+#include <Amesos.h>
+#include <Amesos_BaseSolver.h>
+#include <Eigen/SparseCholesky>
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_LinearProblem.h>
+#include <Epetra_Map.h>
+#include <Epetra_MultiVector.h>
+#include <Epetra_SerialComm.h>
+
+namespace ligament::coupling
+{
+namespace
+{
+class EigenCholesky : public LinearSolver
+{
+public:
+  void factorise(const Eigen::SparseMatrix<double> &matrix) override
+  {
+    cholesky_.compute(matrix);
+    core::require(cholesky_.info() == Eigen::Success,
+                  "an overlap system is not positive definite: the overlap holds too few particles "
+                  "for its cells; raise /far_field/cell_size or /coupling/overlap_cells");
+  }
+
+  void solve(Eigen::MatrixXd &x) const override { x = cholesky_.solve(x); }
+
+private:
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
+};
+
+class AmesosDirect : public LinearSolver
+{
+public:
+  void factorise(const Eigen::SparseMatrix<double> &matrix) override
+  {
+    const int n = int(matrix.rows());
+    map_ = std::make_unique<Epetra_Map>(n, 0, comm_);
+    matrix_ = std::make_unique<Epetra_CrsMatrix>(Copy, *map_, 0);
+    // Symmetric: a column is a row.
+    for (int row = 0; row < n; ++row)
+    {
+      const int begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
+      matrix_->InsertGlobalValues(row, end - begin, matrix.valuePtr() + begin,
+                                  matrix.innerIndexPtr() + begin);
+    }
+    matrix_->FillComplete();
+    problem_ = std::make_unique<Epetra_LinearProblem>();
+    problem_->SetOperator(matrix_.get());
+    solver_.reset(Amesos().Create("Amesos_Klu", *problem_));
+    core::require<core::EnvironmentError>(solver_ != nullptr, "this Trilinos has no Amesos_Klu");
+    core::require(solver_->SymbolicFactorization() == 0 && solver_->NumericFactorization() == 0,
+                  "an overlap system is singular: the overlap holds too few particles for its cells; "
+                  "raise /far_field/cell_size or /coupling/overlap_cells");
+  }
+
+  void solve(Eigen::MatrixXd &x) const override
+  {
+    const int n = int(x.rows());
+    Epetra_MultiVector right(Copy, *map_, x.data(), n, int(x.cols()));
+    Epetra_MultiVector left(View, *map_, x.data(), n, int(x.cols()));
+    problem_->SetLHS(&left);
+    problem_->SetRHS(&right);
+    core::require<core::GuardStop>(solver_->Solve() == 0, "Amesos failed in the overlap");
+  }
+
+private:
+  Epetra_SerialComm comm_;
+  std::unique_ptr<Epetra_Map> map_;
+  std::unique_ptr<Epetra_CrsMatrix> matrix_;
+  std::unique_ptr<Epetra_LinearProblem> problem_;
+  std::unique_ptr<Amesos_BaseSolver> solver_;
+};
+} // namespace
+
+std::unique_ptr<LinearSolver> make_linear_solver(const std::string &name)
+{
+  if (name == "amesos")
+    return std::make_unique<AmesosDirect>();
+  core::require(name == "eigen", "unknown overlap solver \"" + name + "\": use eigen or amesos");
+  return std::make_unique<EigenCholesky>();
+}
+} // namespace ligament::coupling

@@ -1,0 +1,26 @@
+// Two verbs for the small symmetric positive definite systems of the overlap, and who can do them.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include <memory>
+#include <string>
+
+namespace ligament::coupling
+{
+/// Factorises once, solves for several right-hand sides each step.
+class LinearSolver
+{
+public:
+  virtual ~LinearSolver() = default;
+
+  /// Takes a symmetric positive definite matrix; throws core::InputError when it is not.
+  virtual void factorise(const Eigen::SparseMatrix<double> &matrix) = 0;
+
+  /// x <- A^-1 x, one right-hand side per column.
+  virtual void solve(Eigen::MatrixXd &x) const = 0;
+};
+
+/// name: "eigen" (sparse Cholesky) or "amesos" (Trilinos, KLU).
+std::unique_ptr<LinearSolver> make_linear_solver(const std::string &name);
+} // namespace ligament::coupling

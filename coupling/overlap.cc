@@ -1,0 +1,182 @@
+#include "coupling/overlap.h"
+
+#include "core/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::coupling
+{
+template <int dim>
+Overlap<dim>::Overlap(const particles::Particles<dim> &particles,
+                      const particles::ParticleForce<dim> &force, const fem::Mesh<dim> &mesh,
+                      const OverlapParameters &parameters)
+    : mesh(mesh), parameters(parameters)
+{
+  core::require(!parameters.sides.empty(), "the discrete zone has no coupled side");
+  find_members(particles, force);
+  find_cells();
+}
+
+template <int dim>
+double Overlap<dim>::distance_to_edge(const Vector<dim> &x) const
+{
+  double distance = std::numeric_limits<double>::max();
+  for (const auto &side : parameters.sides)
+    distance = std::min(distance, side.upper ? side.position - x[side.axis]
+                                             : x[side.axis] - side.position);
+  return distance;
+}
+
+template <int dim>
+double Overlap<dim>::position(const Vector<dim> &x) const
+{
+  const double s =
+      (distance_to_edge(x) - depth) / (parameters.length - depth - parameters.spacing);
+  return std::clamp(s, 0., 1.);
+}
+
+template <int dim>
+double Overlap<dim>::weight(const Vector<dim> &x) const
+{
+  const double s = position(x);
+  return s * s * (3 - 2 * s);
+}
+
+// Pad particles: those whose cell the faces do not close (a neighbour is missing at the edge of the
+// packing; faces on the specimen's surface do close), and all their neighbours.
+template <int dim>
+void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
+                                const particles::ParticleForce<dim> &force)
+{
+  const int n = particles.n_owned;
+  std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
+  std::vector<double> surface(n, 0.);
+  std::vector<std::vector<int>> neighbours(n);
+  force.for_each_face([&](const particles::FaceView<dim> &face) {
+    closure[face.i] += face.area * face.normal;
+    surface[face.i] += face.area;
+    if (face.j >= 0)
+      neighbours[face.i].push_back(face.j);
+  });
+  std::vector<char> pad(n, 0);
+  for (int i = 0; i < n; ++i)
+    if (closure[i].norm() > 1e-8 * surface[i])
+    {
+      pad[i] = 1;
+      for (const int j : neighbours[i])
+        pad[j] = 1;
+    }
+
+  const fem::CellLocator<dim> locator(mesh);
+  member_of_particle.assign(n, -1);
+  for (int i = 0; i < n; ++i)
+  {
+    const Vector<dim> x = get(particles.reference, i);
+    const int cell = locator.find(x);
+    core::require(cell >= 0 || !pad[i],
+                  fmt::format("particle {} at the coupled edge of the packing lies outside the "
+                              "mesh: the overlap is too thin or the zone is not closed by the "
+                              "specimen's surface; widen /coupling/overlap_cells",
+                              i));
+    if (cell < 0)
+      continue;
+    Member m;
+    m.particle = i;
+    m.pad = pad[i];
+    m.nodes = mesh.cells[cell]; // renumbered by find_cells
+    m.value = fem::shape_values<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], x);
+    m.gradient = fem::shape_gradients<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], x);
+    member_of_particle[i] = int(members.size());
+    members.push_back(m);
+    if (pad[i])
+      depth = std::max(depth, distance_to_edge(x));
+  }
+  core::require(!members.empty(), "no particle lies in the mesh: the zones do not overlap");
+  core::require(parameters.length > depth + 3 * parameters.spacing,
+                fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
+                            "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
+                            parameters.length, depth + 3 * parameters.spacing));
+  for (auto &m : members)
+  {
+    const Vector<dim> x = get(particles.reference, m.particle);
+    m.position = position(x);
+    m.weight = weight(x);
+  }
+}
+
+// Layer 0: cells that reach into the packing's side of the edge. Each further layer: the cells
+// that share a node with the layer before.
+template <int dim>
+void Overlap<dim>::find_cells()
+{
+  std::vector<int> layer(mesh.n_cells(), -1);
+  std::vector<int> node_layer(mesh.n_nodes(), -1);
+  const auto take = [&](int cell, int l) {
+    layer[cell] = l;
+    for (const int node : mesh.cells[cell])
+      if (node_layer[node] < 0)
+        node_layer[node] = l;
+  };
+  for (int c = 0; c < mesh.n_cells(); ++c)
+  {
+    bool inside = true;
+    for (const auto &side : parameters.sides)
+    {
+      const double lower = mesh.cell_lower[c][side.axis];
+      const double size = mesh.cell_size[c][side.axis];
+      const double reach = side.upper ? side.position - lower : lower + size - side.position;
+      inside &= reach > 1e-8 * size;
+    }
+    if (inside)
+      take(c, 0);
+  }
+  for (const auto &m : members)
+    for (const int node : m.nodes)
+      core::require(node_layer[node] == 0, "a particle lies in the mesh beyond the edge of the packing");
+  for (int l = 1; l <= parameters.transition_cells; ++l)
+  {
+    const std::vector<int> before = node_layer;
+    for (int c = 0; c < mesh.n_cells(); ++c)
+      if (layer[c] < 0 && std::any_of(mesh.cells[c].begin(), mesh.cells[c].end(),
+                                      [&](int node) { return before[node] == l - 1; }))
+        take(c, l);
+  }
+
+  std::vector<int> near(mesh.n_nodes(), -1);
+  for (int node = 0; node < mesh.n_nodes(); ++node)
+    if (node_layer[node] >= 0)
+    {
+      near[node] = int(near_nodes.size());
+      near_nodes.push_back(node);
+      is_overlap_node.push_back(node_layer[node] == 0);
+    }
+  for (const auto &hanging : mesh.hanging)
+    core::require(near[hanging.node] < 0,
+                  "the mesh changes its size inside the overlap or its transition: give the far "
+                  "field more fine cells or lower /coupling/transition_cells");
+  cell_size = std::numeric_limits<double>::max();
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (layer[c] >= 0)
+    {
+      Cell cell;
+      cell.cell = c;
+      cell.layer = layer[c];
+      cell.consistent_share =
+          layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells;
+      for (int a = 0; a < n_cell_nodes; ++a)
+        cell.nodes[a] = near[mesh.cells[c][a]];
+      cells.push_back(cell);
+      if (layer[c] == 0)
+        cell_size = std::min(cell_size, mesh.cell_size[c].minCoeff());
+    }
+  for (auto &m : members)
+    for (int &node : m.nodes)
+      node = near[node];
+}
+
+template class Overlap<2>;
+template class Overlap<3>;
+} // namespace ligament::coupling

@@ -1,0 +1,128 @@
+// Where the two models overlap: its particles, cells and nodes, the weight of the discrete model,
+// and the interpolation from nodes to particles.
+#pragma once
+
+#include "fem/mesh.h"
+#include "particles/particle_force.h"
+
+#include <limits>
+
+namespace ligament::coupling
+{
+/// A side of the discrete zone behind which the mesh goes on: an axis-parallel plane at the edge
+/// of the packing.
+struct CoupledSide
+{
+  int axis;
+  bool upper;      // the zone lies below (true) or above (false) the plane
+  double position; // m
+};
+
+struct OverlapParameters
+{
+  std::vector<CoupledSide> sides;
+  double length;        // m, L: from the edge of the packing to the inner edge of the mesh
+  double spacing;       // m, d
+  int transition_cells; // layers of cells over which the mass goes from consistent to lumped
+};
+
+/// The overlap of one discrete zone with the mesh (theory.md, "Overlap and weights").
+///
+/// A point is a distance away from the edge of the packing, the smallest over the coupled sides;
+/// s rises from 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the
+/// mesh ends. The share of the discrete model is a = 3 s^2 - 2 s^3.
+template <int dim>
+class Overlap
+{
+public:
+  static constexpr int n_cell_nodes = fem::n_cell_nodes<dim>;
+
+  /// Throws core::InputError when pad particles reach out of the mesh, when the overlap is too
+  /// thin for them, or when its cells touch hanging nodes.
+  Overlap(const particles::Particles<dim> &particles, const particles::ParticleForce<dim> &force,
+          const fem::Mesh<dim> &mesh, const OverlapParameters &parameters);
+
+  /// Distance of a point from the edge of the packing, in m; negative beyond it.
+  double distance_to_edge(const Vector<dim> &x) const;
+  /// Relative position s in [0, 1]: 0 at the side of the mesh, 1 at the discrete side.
+  double position(const Vector<dim> &x) const;
+  /// Share a of the discrete model.
+  double weight(const Vector<dim> &x) const;
+
+  /// Overlap particle: a particle inside the mesh.
+  struct Member
+  {
+    int particle;
+    bool pad;                            // moves with the mesh
+    double weight;                       // a at its centre
+    double position;                     // s at its centre
+    std::array<int, n_cell_nodes> nodes; // near nodes of its cell
+    Vec<n_cell_nodes> value;             // Phi: shape functions at its centre
+    Eigen::Matrix<double, dim, n_cell_nodes> gradient; // of the shape functions, 1/m
+  };
+
+  /// Cell that the coupler takes over: layer 0 holds particles, layers 1, 2, ... the transition.
+  struct Cell
+  {
+    int cell; // in the mesh
+    int layer;
+    double consistent_share;             // mu: share of the consistent mass
+    std::array<int, n_cell_nodes> nodes; // near nodes
+  };
+
+  std::vector<Member> members;
+  std::vector<Cell> cells;
+  std::vector<int> near_nodes;        // mesh node of every near node
+  std::vector<char> is_overlap_node;  // per near node: node of a cell of layer 0
+  std::vector<int> member_of_particle; // index into members, or -1
+  double depth = 0;                   // m
+  double cell_size = 0;               // m, smallest edge of the overlap's cells
+  const fem::Mesh<dim> &mesh;
+  const OverlapParameters parameters;
+
+  int n_nodes() const { return int(near_nodes.size()); }
+
+  /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
+  static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
+
+  /// Interpolates dim nodal columns to the members' translations.
+  Vector<dim> interpolate(const Member &m, const Eigen::MatrixXd &nodal) const;
+  Spin<dim> interpolate_spin(const Member &m, const Eigen::MatrixXd &nodal) const;
+
+private:
+  void find_members(const particles::Particles<dim> &particles,
+                    const particles::ParticleForce<dim> &force);
+  void find_cells();
+};
+
+template <int dim>
+Eigen::Matrix<double, n_spins<dim>, dim> Overlap<dim>::spin_block(const Member &m, int a)
+{
+  Eigen::Matrix<double, n_spins<dim>, dim> block;
+  const auto g = m.gradient.col(a);
+  if constexpr (dim == 2)
+    block << -g[1] / 2, g[0] / 2;
+  else
+    block << 0, -g[2] / 2, g[1] / 2, g[2] / 2, 0, -g[0] / 2, -g[1] / 2, g[0] / 2, 0;
+  return block;
+}
+
+template <int dim>
+Vector<dim> Overlap<dim>::interpolate(const Member &m, const Eigen::MatrixXd &nodal) const
+{
+  Vector<dim> v = Vector<dim>::Zero();
+  for (int a = 0; a < n_cell_nodes; ++a)
+    for (int c = 0; c < dim; ++c)
+      v[c] += m.value[a] * nodal(m.nodes[a], c);
+  return v;
+}
+
+template <int dim>
+Spin<dim> Overlap<dim>::interpolate_spin(const Member &m, const Eigen::MatrixXd &nodal) const
+{
+  Spin<dim> w = Spin<dim>::Zero();
+  for (int a = 0; a < n_cell_nodes; ++a)
+    w += spin_block(m, a) * nodal.row(m.nodes[a]).transpose();
+  return w;
+}
+} // namespace ligament::coupling
