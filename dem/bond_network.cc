@@ -1,0 +1,133 @@
+#include "dem/bond_network.h"
+
+namespace ligament::dem
+{
+template <int dim>
+Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const DemMaterial &material,
+                                      double thickness)
+{
+  const double r = face.q_i + face.q_j;
+  return {face.i,
+          face.j,
+          face.normal,
+          face.lever_i,
+          face.lever_j,
+          face.area,
+          r,
+          material.bending_stiffness<dim>(face.area, r, thickness),
+          material.twisting_stiffness(face.area, r)};
+}
+
+template <int dim>
+BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemMaterial &material)
+    : mask_(packing.size(), 0)
+{
+  const int n = packing.size(), n_dir = int(packing.directions.size());
+  core::require(n_dir <= max_directions, "the packing has more lattice directions than supported");
+  for (const auto &d : packing.directions)
+    directions_.push_back({d.normal, d.area, d.distance,
+                           material.bending_stiffness<dim>(d.area, d.distance, packing.thickness),
+                           material.twisting_stiffness(d.area, d.distance)});
+
+  std::vector<std::array<int, 2 * max_directions>> offset(n);
+  for (auto &o : offset)
+    o.fill(0);
+  for (const auto &face : packing.faces) {
+    if (face.cracked)
+      continue;
+    ++n_bonds_;
+    const int k = face.direction;
+    if (k < 0) {
+      irregular_.push_back(make_bond(face, material, packing.thickness));
+      continue;
+    }
+    const bool along = face.normal.dot(directions_[k].normal) > 0;
+    const int i = along ? face.i : face.j, j = along ? face.j : face.i;
+    mask_[i] |= 1u << k;
+    mask_[j] |= 1u << (n_dir + k);
+    offset[i][k] = j - i;
+    offset[j][n_dir + k] = i - j;
+  }
+  intact_.assign(irregular_.size(), 1);
+  find_segments(offset);
+
+  first_irregular_.assign(n + 1, 0);
+  for (const auto &b : irregular_)
+    ++first_irregular_[b.i + 1], ++first_irregular_[b.j + 1];
+  for (int i = 0; i < n; ++i)
+    first_irregular_[i + 1] += first_irregular_[i];
+  irregular_of_.resize(first_irregular_[n]);
+  std::vector<int> next(first_irregular_.begin(), first_irregular_.end() - 1);
+  for (std::size_t b = 0; b < irregular_.size(); ++b)
+    irregular_of_[next[irregular_[b].i]++] = irregular_of_[next[irregular_[b].j]++] = int(b);
+}
+
+template <int dim>
+void BondNetwork<dim>::find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset)
+{
+  const int n = n_particles(), n_slots = 2 * n_directions();
+  segment_of_.resize(n);
+  std::array<int, 2 * max_directions> run{}; // offsets of the present run, 0 while not needed
+  int begin = 0;
+  const auto close = [&](int end) {
+    RowSegment s{begin, end, {}, {}};
+    for (int k = 0; k < n_directions(); ++k)
+      s.forward[k] = run[k], s.backward[k] = run[n_directions() + k];
+    for (int i = begin; i < end; ++i)
+      segment_of_[i] = int(segments_.size());
+    segments_.push_back(s);
+  };
+  for (int i = 0; i < n; ++i) {
+    auto merged = run;
+    bool fits = true;
+    for (int s = 0; s < n_slots && fits; ++s) {
+      if (offset[i][s] != 0) {
+        fits = run[s] == 0 || run[s] == offset[i][s];
+        merged[s] = offset[i][s];
+      }
+      fits = fits && begin + merged[s] >= 0 && i + merged[s] < n;
+    }
+    if (!fits) {
+      close(i);
+      begin = i;
+      merged = offset[i];
+    }
+    run = merged;
+  }
+  if (n > 0)
+    close(n);
+}
+
+template <int dim>
+Bond<dim> BondNetwork<dim>::lattice_bond(int i, int j, int direction) const
+{
+  const auto &d = directions_[direction];
+  const Vector<dim> lever = d.distance / 2 * d.normal;
+  return {i, j, d.normal, lever, -lever, d.area, d.distance, d.bending, d.twist};
+}
+
+template <int dim>
+Bond<dim> BondNetwork<dim>::bond(const BondId &id) const
+{
+  if (id.direction < 0)
+    return irregular_[id.index];
+  const RowSegment &s = segments_[segment_of_[id.index]];
+  return lattice_bond(id.index, id.index + s.forward[id.direction], id.direction);
+}
+
+template <int dim>
+void BondNetwork<dim>::remove(const BondId &id)
+{
+  --n_bonds_;
+  if (id.direction < 0) {
+    intact_[id.index] = 0;
+    return;
+  }
+  const Bond<dim> b = bond(id);
+  mask_[b.i] &= ~(1u << id.direction);
+  mask_[b.j] &= ~(1u << (n_directions() + id.direction));
+}
+
+template class BondNetwork<2>;
+template class BondNetwork<3>;
+} // namespace ligament::dem

@@ -1,0 +1,122 @@
+// All bonded faces of a packing: lattice bonds as bits over constant index offsets, irregular ones
+// as a table.
+#pragma once
+
+#include "dem/bond.h"
+#include "dem/material.h"
+#include "particles/packing.h"
+
+#include <cstdint>
+
+namespace ligament::dem
+{
+/// More directions than any lattice here has (FCC 6, BCC 7).
+inline constexpr int max_directions = 7;
+
+/// What all lattice bonds of one direction share.
+template <int dim>
+struct DirectionData
+{
+  Vector<dim> normal;
+  double area, distance; // S, r
+  double bending, twist; // k_b, k_t in N m
+};
+
+/// Particles [begin, end) whose neighbours lie at the same index offsets: forward[k] along
+/// direction k, backward[k] against it. An offset that no particle of the run needs is 0; every
+/// offset stays inside the arrays for the whole run.
+struct RowSegment
+{
+  int begin, end;
+  std::array<int, max_directions> forward, backward;
+};
+
+/// Names a bond: the forward lattice bond of particle `index`, or entry `index` of the table when
+/// direction is -1.
+struct BondId
+{
+  int index;
+  int direction;
+};
+
+template <int dim>
+class BondNetwork
+{
+public:
+  /// Bonds of all faces that aren't cracked.
+  BondNetwork(const particles::Packing<dim> &packing, const DemMaterial &material);
+
+  int n_particles() const { return int(mask_.size()); }
+  int n_directions() const { return int(directions_.size()); }
+  long n_bonds() const { return n_bonds_; }
+
+  const std::vector<DirectionData<dim>> &directions() const { return directions_; }
+  const std::vector<RowSegment> &segments() const { return segments_; }
+  /// Bit k: the forward bond of direction k carries; bit n_directions + k: the backward one.
+  const std::vector<std::uint32_t> &mask() const { return mask_; }
+  const std::vector<Bond<dim>> &irregular() const { return irregular_; }
+  const std::vector<char> &irregular_intact() const { return intact_; }
+
+  Bond<dim> bond(const BondId &id) const;
+
+  /// visit(BondId, const Bond<dim> &) for every bond that carries: lattice ones by particle, then
+  /// the table.
+  template <typename Visit>
+  void for_each_bond(Visit &&visit) const;
+
+  /// The same for the bonds of one particle.
+  template <typename Visit>
+  void for_each_bond_of(int particle, Visit &&visit) const;
+
+  /// The bond no longer carries.
+  void remove(const BondId &id);
+
+  static Bond<dim> make_bond(const particles::Face<dim> &face, const DemMaterial &material,
+                             double thickness);
+
+private:
+  void find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset);
+  Bond<dim> lattice_bond(int i, int j, int direction) const;
+
+  std::vector<DirectionData<dim>> directions_;
+  std::vector<std::uint32_t> mask_;
+  std::vector<RowSegment> segments_;
+  std::vector<int> segment_of_;
+  std::vector<Bond<dim>> irregular_;
+  std::vector<char> intact_;
+  std::vector<int> first_irregular_, irregular_of_; // rows of table entries per particle
+  long n_bonds_ = 0;
+};
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_bond(Visit &&visit) const
+{
+  const int n_dir = n_directions();
+  for (const RowSegment &s : segments_)
+    for (int i = s.begin; i < s.end; ++i)
+      for (int k = 0; k < n_dir; ++k)
+        if (mask_[i] >> k & 1)
+          visit(BondId{i, k}, lattice_bond(i, i + s.forward[k], k));
+  for (std::size_t b = 0; b < irregular_.size(); ++b)
+    if (intact_[b])
+      visit(BondId{int(b), -1}, irregular_[b]);
+}
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_bond_of(int particle, Visit &&visit) const
+{
+  const int n_dir = n_directions(), i = particle;
+  for (int k = 0; k < n_dir; ++k) {
+    const RowSegment &s = segments_[segment_of_[i]];
+    if (mask_[i] >> k & 1)
+      visit(BondId{i, k}, lattice_bond(i, i + s.forward[k], k));
+    if (mask_[i] >> (n_dir + k) & 1)
+      visit(BondId{i + s.backward[k], k}, lattice_bond(i + s.backward[k], i, k));
+  }
+  for (int b = first_irregular_[i]; b < first_irregular_[i + 1]; ++b)
+    if (intact_[irregular_of_[b]])
+      visit(BondId{irregular_of_[b], -1}, irregular_[irregular_of_[b]]);
+}
+} // namespace ligament::dem

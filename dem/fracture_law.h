@@ -1,0 +1,16 @@
+// When a bond breaks: the criterion on the traction of its face.
+#pragma once
+
+namespace ligament::dem
+{
+struct FractureLaw
+{
+  enum class Criterion
+  {
+    none,
+    maximum_tension // s_nn >= strength, theory.md section D6
+  };
+  Criterion criterion = Criterion::none;
+  double strength = 0; // Pa
+};
+} // namespace ligament::dem

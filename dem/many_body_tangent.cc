@@ -1,0 +1,191 @@
+// What the coupler asks of the many-body law: its energy linearised, its faces, and tensors.
+#include "dem/many_body_force.h"
+
+namespace ligament::dem
+{
+namespace
+{
+/// Rows of omega x a = -a x omega: how a rotation vector moves the tip of a lever.
+Eigen::Matrix<double, 2, 1> tip_rows(const Vector<2> &a)
+{
+  return {-a[1], a[0]};
+}
+Eigen::Matrix<double, 3, 3> tip_rows(const Vector<3> &a)
+{
+  Eigen::Matrix<double, 3, 3> m;
+  m << 0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0;
+  return m;
+}
+
+/// Du = sum over the members of these blocks times their degrees of freedom.
+template <int dim>
+using Block = Eigen::Matrix<double, dim, n_particle_dofs<dim>>;
+
+template <int dim>
+Block<dim> block(const Vector<dim> &lever, double sign)
+{
+  Block<dim> b;
+  b.template leftCols<dim>().setIdentity();
+  b.template rightCols<n_spins<dim>>() = tip_rows(lever);
+  return sign * b;
+}
+
+Eigen::Matrix<double, 1, 1> bending_rows(const Bond<2> &)
+{
+  return Spin<2>(1.);
+}
+Eigen::Matrix<double, 3, 3> bending_rows(const Bond<3> &b)
+{
+  const Vector<3> t = b.normal.unitOrthogonal();
+  Eigen::Matrix<double, 3, 3> m;
+  m << b.normal.transpose(), t.transpose(), b.normal.cross(t).transpose();
+  return m;
+}
+Spin<2> bending_stiffness(const Bond<2> &b)
+{
+  return Spin<2>(b.bending);
+}
+Spin<3> bending_stiffness(const Bond<3> &b)
+{
+  return {b.twist, b.bending, b.bending};
+}
+} // namespace
+
+template <int dim>
+void ManyBodyForce<dim>::add_tangent(
+    const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const
+{
+  using Term = particles::QuadraticTerm<dim>;
+  constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
+  const double two_g = 2 * material_.shear_modulus();
+  const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
+    return get(packing_.centre, i) + lever;
+  };
+
+  Term term;
+  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+    term.kind = Term::Kind::bond;
+    term.location = place(b.i, b.lever_i);
+    term.members = {b.i, b.j};
+    term.rows.setZero(dim + spins, 2 * dofs);
+    term.rows.template topLeftCorner<dim, dofs>() = block<dim>(b.lever_i, -1);
+    term.rows.template topRightCorner<dim, dofs>() = block<dim>(b.lever_j, 1);
+    term.rows.template block<spins, spins>(dim, dim) = -bending_rows(b);
+    term.rows.template block<spins, spins>(dim, dofs + dim) = bending_rows(b);
+    term.stiffness.resize(dim + spins);
+    term.stiffness.head(dim).setConstant(two_g * b.area / b.distance);
+    term.stiffness.tail(spins) = bending_stiffness(b);
+    add(term);
+  });
+
+  for (const auto &wall : surface_.walls()) {
+    term.kind = Term::Kind::wall;
+    term.location = place(wall.i, wall.lever);
+    term.members = {wall.i};
+    term.rows = wall.prescribed.asDiagonal() * block<dim>(wall.lever, -1);
+    term.stiffness.setConstant(dim, two_g * wall.area / wall.q);
+    add(term);
+  }
+
+  if (material_.poissons_ratio == 0)
+    return;
+  std::vector<std::vector<int>> walls_of(packing_.size());
+  for (std::size_t w = 0; w < surface_.walls().size(); ++w)
+    walls_of[surface_.walls()[w].i].push_back(int(w));
+  for (int i = 0; i < packing_.size(); ++i) {
+    term.kind = Term::Kind::volumetric;
+    term.location = place(i, Vector<dim>::Zero());
+    term.members = {i};
+    bonds_.for_each_bond_of(
+        i, [&](BondId, const Bond<dim> &b) { term.members.push_back(b.i == i ? b.j : b.i); });
+    term.rows.setZero(1, term.members.size() * dofs);
+    int member = 1;
+    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+      const bool first = b.i == i;
+      const Vector<dim> own = first ? b.lever_i : b.lever_j, other = first ? b.lever_j : b.lever_i;
+      const auto weight = (b.area / b.distance / packing_.volume[i] * own.transpose()).eval();
+      term.rows.template middleCols<dofs>(0) += weight * block<dim>(own, -1);
+      term.rows.template middleCols<dofs>(member++ * dofs) += weight * block<dim>(other, 1);
+    });
+    for (const int w : walls_of[i]) {
+      const auto &wall = surface_.walls()[w];
+      const auto weight =
+          (wall.area / packing_.volume[i] * wall.prescribed.cwiseProduct(wall.normal).transpose())
+              .eval();
+      term.rows.template middleCols<dofs>(0) += weight * block<dim>(wall.lever, -1);
+    }
+    term.stiffness.setConstant(1, lambda_per_volume_[i] * packing_.volume[i] * packing_.volume[i]);
+    add(term);
+  }
+}
+
+template <int dim>
+void ManyBodyForce<dim>::for_each_face(
+    const std::function<void(const particles::FaceView<dim> &)> &visit) const
+{
+  const auto both_sides = [&](const Bond<dim> &b, bool bonded) {
+    const Vector<dim> centroid = get(packing_.centre, b.i) + b.lever_i;
+    visit({b.i, b.j, b.normal, b.area, centroid, bonded});
+    visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
+  };
+  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) { both_sides(b, true); });
+  for (const auto &face : packing_.boundary_faces)
+    visit({face.i, -1, face.normal, face.area,
+           Vector<dim>(get(packing_.centre, face.i) + face.lever), false});
+}
+
+template <int dim>
+void ManyBodyForce<dim>::stresses(const Particles &particles,
+                                  Components<n_strains<dim>> &stress) const
+{
+  std::vector<double> pressure;
+  dilatation(particles, surface_, pressure);
+  for (auto &a : stress)
+    a.assign(packing_.size(), 0.);
+  const double two_g = 2 * material_.shear_modulus();
+  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+    const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
+                            get(particles.displacement, b.i), get(particles.displacement, b.j));
+    const Vector<dim> f =
+        b.area / b.distance * (two_g * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+    add(stress, b.i, symmetric_product<dim>(m.a_i, f));
+    add(stress, b.j, symmetric_product<dim>(m.a_j, -f));
+  });
+  surface_.add_moments(particles, pressure, stress);
+  for (auto &a : stress)
+    for (int i = 0; i < packing_.size(); ++i)
+      a[i] /= packing_.volume[i];
+}
+
+template <int dim>
+double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::vector<int> &of) const
+{
+  std::vector<double> pressure;
+  dilatation(particles, surface_, pressure);
+  const double two_g = 2 * material_.shear_modulus();
+  double largest = 0;
+  for (const int i : of)
+    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+      const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
+                              get(particles.displacement, b.i), get(particles.displacement, b.j));
+      const Vector<dim> t =
+          (two_g * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j) / b.distance;
+      largest = std::max(largest, t.dot(m.normal_sum.normalized()));
+    });
+  return largest;
+}
+
+// The virtual members are instantiated here, the rest of the class in its own file.
+template void ManyBodyForce<2>::add_tangent(
+    const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
+template void ManyBodyForce<3>::add_tangent(
+    const std::function<void(const particles::QuadraticTerm<3> &)> &) const;
+template void
+ManyBodyForce<2>::for_each_face(const std::function<void(const particles::FaceView<2> &)> &) const;
+template void
+ManyBodyForce<3>::for_each_face(const std::function<void(const particles::FaceView<3> &)> &) const;
+template void ManyBodyForce<2>::stresses(const Particles &, Components<3> &) const;
+template void ManyBodyForce<3>::stresses(const Particles &, Components<6> &) const;
+template double ManyBodyForce<2>::max_tension(const Particles &, const std::vector<int> &) const;
+template double ManyBodyForce<3>::max_tension(const Particles &, const std::vector<int> &) const;
+} // namespace ligament::dem

@@ -1,0 +1,178 @@
+#include "dem/surface_loads.h"
+
+#include <fmt/format.h>
+
+namespace ligament::dem
+{
+template <int dim>
+SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const DemMaterial &material,
+                                std::vector<core::BoundaryLoad<dim>> loads)
+    : shear_modulus_(material.shear_modulus()), loads_(std::move(loads)),
+      displacement_(loads_.size(), Vector<dim>::Zero()), traction_(displacement_),
+      reaction_(displacement_)
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  for (const auto &face : packing.boundary_faces) {
+    WallFace<dim> wall{face.i, face.normal, face.lever, face.area, face.q, Vector<dim>::Zero(), {}};
+    wall.load.fill(-1);
+    for (std::size_t l = 0; l < loads_.size(); ++l)
+      if (loads_[l].boundary == face.boundary && loads_[l].kind != Kind::traction)
+        for (int c = 0; c < dim; ++c)
+          if (loads_[l].value[c]) {
+            core::require(
+                wall.load[c] < 0,
+                fmt::format("two loads prescribe component {} on boundary {}", c, face.boundary));
+            wall.prescribed[c] = 1;
+            wall.load[c] = int(l);
+          }
+    if (wall.prescribed.any())
+      walls_.push_back(wall);
+    for (std::size_t l = 0; l < loads_.size(); ++l)
+      if (loads_[l].boundary == face.boundary && loads_[l].kind == Kind::traction)
+        tractions_.push_back({face.i, face.lever, face.area, int(l),
+                              Vector<dim>(Vector<dim>::Ones() - wall.prescribed)});
+  }
+}
+
+template <int dim>
+void SurfaceLoads<dim>::set_time(double t)
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  for (std::size_t l = 0; l < loads_.size(); ++l)
+    if (loads_[l].kind == Kind::traction)
+      traction_[l] = loads_[l].traction(t);
+    else
+      for (int c = 0; c < dim; ++c)
+        if (loads_[l].value[c])
+          displacement_[l][c] = loads_[l].displacement(c, t);
+}
+
+template <int dim>
+void SurfaceLoads<dim>::set_zero()
+{
+  for (auto *values : {&displacement_, &traction_})
+    for (auto &v : *values)
+      v.setZero();
+}
+
+template <int dim>
+Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall,
+                                        const particles::Particles<dim> &p) const
+{
+  Vector<dim> du = -get(p.displacement, wall.i) - Turn<dim>::of(p, wall.i).change(wall.lever);
+  for (int c = 0; c < dim; ++c)
+    du[c] = wall.load[c] < 0 ? 0. : du[c] + displacement_[wall.load[c]][c];
+  return du;
+}
+
+template <int dim>
+Vector<dim> SurfaceLoads<dim>::traction(const TractionFace<dim> &face) const
+{
+  return face.acting.cwiseProduct(traction_[face.load]);
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_dilatation(const particles::Particles<dim> &particles,
+                                       const std::vector<double> &stiffness_per_volume,
+                                       std::vector<double> &pressure) const
+{
+  for (const auto &wall : walls_)
+    pressure[wall.i] +=
+        stiffness_per_volume[wall.i] * wall.area * wall.normal.dot(relative(wall, particles));
+  for (const auto &face : tractions_) {
+    const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
+    pressure[face.i] +=
+        stiffness_per_volume[face.i] * face.area * a.dot(traction(face)) / (2 * shear_modulus_);
+  }
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
+                                   const std::vector<double> &pressure)
+{
+  for (auto &r : reaction_)
+    r.setZero();
+  for (const auto &wall : walls_) {
+    const Vector<dim> a = wall.lever + Turn<dim>::of(particles, wall.i).change(wall.lever);
+    const Vector<dim> f =
+        wall.area * (2 * shear_modulus_ / wall.q * relative(wall, particles) +
+                     pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
+    add(particles.force, wall.i, f);
+    add(particles.torque, wall.i, cross(a, f));
+    for (int c = 0; c < dim; ++c)
+      if (wall.load[c] >= 0)
+        reaction_[wall.load[c]][c] += f[c];
+  }
+  for (const auto &face : tractions_) {
+    const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
+    const Vector<dim> f = face.area * traction(face);
+    add(particles.force, face.i, f);
+    // The second part: theta depends on the lever that turns with the particle.
+    add(particles.torque, face.i,
+        Spin<dim>((1 - pressure[face.i] / (2 * shear_modulus_)) * cross(a, f)));
+    reaction_[face.load] += f;
+  }
+}
+
+template <int dim>
+double SurfaceLoads<dim>::energy(const particles::Particles<dim> &particles) const
+{
+  double sum = 0;
+  for (const auto &wall : walls_)
+    sum += shear_modulus_ * wall.area / wall.q * relative(wall, particles).squaredNorm();
+  return sum;
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_moments(const particles::Particles<dim> &particles,
+                                    const std::vector<double> &pressure,
+                                    Components<n_strains<dim>> &moments) const
+{
+  const auto lever = [&](const auto &face) -> Vector<dim> {
+    return face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
+  };
+  for (const auto &wall : walls_) {
+    const Vector<dim> f =
+        wall.area * (2 * shear_modulus_ / wall.q * relative(wall, particles) +
+                     pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
+    add(moments, wall.i, symmetric_product<dim>(lever(wall), f));
+  }
+  for (const auto &face : tractions_)
+    add(moments, face.i, symmetric_product<dim>(lever(face), face.area * traction(face)));
+}
+
+template <int dim>
+void SurfaceLoads<dim>::book_work(const particles::Particles<dim> &particles,
+                                  const std::vector<double> &pressure)
+{
+  // The energy depends on the traction itself through theta: its gradient times the change of the
+  // traction is work too.
+  std::vector<Vector<dim>> place, gradient;
+  for (const auto &face : tractions_) {
+    const Vector<dim> change = Turn<dim>::of(particles, face.i).change(face.lever);
+    place.push_back(get(particles.displacement, face.i) + change);
+    gradient.push_back(pressure[face.i] * face.area / (2 * shear_modulus_) *
+                       face.acting.cwiseProduct(face.lever + change));
+  }
+  if (booked_) {
+    for (std::size_t l = 0; l < loads_.size(); ++l)
+      work_ += 0.5 * (reaction_[l] + old_reaction_[l]).dot(displacement_[l] - old_displacement_[l]);
+    for (std::size_t f = 0; f < tractions_.size(); ++f) {
+      const auto &face = tractions_[f];
+      const Vector<dim> now = traction_[face.load], before = old_traction_[face.load];
+      work_ +=
+          0.5 * face.area * face.acting.cwiseProduct(now + before).dot(place[f] - old_place_[f]);
+      work_ += 0.5 * (gradient[f] + old_gradient_[f]).dot(now - before);
+    }
+  }
+  booked_ = true;
+  old_displacement_ = displacement_;
+  old_traction_ = traction_;
+  old_reaction_ = reaction_;
+  old_place_ = std::move(place);
+  old_gradient_ = std::move(gradient);
+}
+
+template class SurfaceLoads<2>;
+template class SurfaceLoads<3>;
+} // namespace ligament::dem
