@@ -1,9 +1,7 @@
 // The geometry that a packing hands to the force: cells, faces between them, outer faces.
 #pragma once
 
-#include "core/types.h"
-
-#include <vector>
+#include "particles/particles.h"
 
 namespace ligament::particles
 {
@@ -12,11 +10,11 @@ template <int dim>
 struct Face
 {
   int i, j;
-  Vector<dim> normal;    // unit, from i to j
-  double area;           // m^2 (2D: length times thickness)
-  double q_i, q_j;       // m, distances from the centres to the face plane; q_i + q_j = r
-  Vector<dim> lever_i;   // m, from centre i to the point of the face where traction acts
-  Vector<dim> lever_j;   // m, from centre j; unclipped faces: lever_i = q_i n, lever_j = -q_j n
+  Vector<dim> normal;  // unit, from i to j
+  double area;         // m^2 (2D: length times thickness)
+  double q_i, q_j;     // m, distances from the centres to the face plane; q_i + q_j = r
+  Vector<dim> lever_i; // m, from centre i to the point of the face where traction acts
+  Vector<dim> lever_j; // m, from centre j; unclipped faces: lever_i = q_i n, lever_j = -q_j n
   /// Index of the lattice direction (see Packing::directions) when the face is a whole one of the
   /// lattice and both its cells are whole; -1 when anything about it is irregular.
   int direction;
@@ -55,7 +53,18 @@ struct Packing
   std::vector<Face<dim>> faces;
   std::vector<BoundaryFace<dim>> boundary_faces;
   std::vector<LatticeDirection<dim>> directions; // empty for random packings
+  /// Name of a particle that does not depend on which part of the specimen is packed.
+  std::vector<std::int64_t> global_id;
+  /// Gap-free runs along the close-packed direction: run r holds particles
+  /// row_begin[r] .. row_begin[r + 1] - 1. Empty for random packings.
+  std::vector<int> row_begin;
 
   int size() const { return int(volume.size()); }
 };
+
+/// Particles at rest with the cells of the packing: mass = density V, inertia m d^2/8 (2D, disc) or
+/// m d^2/10 (3D, sphere) with the particle's own mass. Density in kg/m^3. Throws core::InputError
+/// unless it is positive.
+template <int dim>
+void fill_particles(const Packing<dim> &packing, double density, Particles<dim> &particles);
 } // namespace ligament::particles

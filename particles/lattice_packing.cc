@@ -1,0 +1,426 @@
+#include "particles/lattice_packing.h"
+
+#include "core/check.h"
+#include "particles/lattice.h"
+#include "particles/specimen_shape.h"
+#include "particles/voronoi_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace ligament::particles
+{
+LatticeKind lattice_kind(const std::string &name)
+{
+  static const std::map<std::string, LatticeKind> kinds = {
+      {"square", LatticeKind::square},
+      {"hexagonal", LatticeKind::hexagonal},
+      {"simple_cubic", LatticeKind::simple_cubic},
+      {"fcc", LatticeKind::fcc}};
+  const auto kind = kinds.find(name);
+  core::require(kind != kinds.end(),
+                "unknown packing \"" + name + "\": use square, hexagonal, simple_cubic or fcc");
+  return kind->second;
+}
+
+namespace
+{
+// Ids of the planes that bound a cell: a lattice neighbour (its place in Lattice::reachable), a
+// side of the specimen, the start cube, or a side of a void.
+constexpr int side_id = -10, start_id = -1, first_void_id = -100;
+
+/// What is left of one face of a cell that is not a whole lattice cell.
+template <int dim>
+struct FacePart
+{
+  int id;
+  Vector<dim> normal; // unit, out of the cell
+  double distance;    // from the centre to the plane
+  double area;
+  Vector<dim> moment; // area times centroid, about the centre
+};
+
+template <int dim>
+struct IrregularCell
+{
+  double volume = 0;
+  std::vector<FacePart<dim>> parts;
+  Vector<dim> lower = Vector<dim>::Constant(1e300), upper = -lower; // about the centre
+};
+
+/// A line of lattice points along the close-packed direction, and the numbers of its particles.
+template <int dim>
+struct Row
+{
+  LatticeIndex<dim> start;
+  std::vector<int> particle; // -1: no particle
+};
+
+template <int dim>
+class Packer
+{
+public:
+  explicit Packer(const LatticeParameters<dim> &parameters);
+  Packing<dim> pack();
+
+private:
+  using Index = LatticeIndex<dim>;
+
+  void lay_out_rows();
+  void place_particles();
+  void join_faces();
+
+  bool is_kept(const Index &k) const
+  {
+    return shape_.distance(lattice_.position(k)) >= (0.25 - 1e-9) * lattice_.spacing;
+  }
+  bool has_all_neighbours(const Index &k) const;
+  IrregularCell<dim> irregular_cell(const Index &k, const Vector<dim> &x) const;
+  void add_parts(const VoronoiCell<dim> &cell, double sign, const Vector<dim> &x,
+                 IrregularCell<dim> &result) const;
+  void subtract_voids(const VoronoiCell<dim> &cell, std::size_t first, double sign,
+                      const Vector<dim> &x, IrregularCell<dim> &result) const;
+  bool is_in_zone(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper) const;
+  int particle_at(const Index &k) const;
+  bool is_whole(int i) const { return irregular_of_[i] < 0; }
+  bool is_cracked(int i, int j) const;
+  void add_lattice_face(int i, int j, int direction);
+  void add_irregular_faces(int i, const Index &k);
+
+  const SpecimenShape<dim> shape_;
+  const Lattice<dim> lattice_;
+  const double tolerance_; // m
+  const double thickness_;
+  Vector<dim> zone_lower_, zone_upper_;
+  std::array<std::array<bool, 2>, dim> coupled_;
+
+  std::vector<Row<dim>> rows_;
+  Index first_row_, n_rows_; // component 0 unused
+  std::vector<int> irregular_of_;
+  std::vector<IrregularCell<dim>> irregular_;
+  Packing<dim> packing_;
+};
+
+template <int dim>
+Packer<dim>::Packer(const LatticeParameters<dim> &p)
+    : shape_(p), lattice_(p), tolerance_(1e-9 * p.spacing), thickness_(dim == 2 ? p.thickness : 1)
+{
+  for (int a = 0; a < dim; ++a) {
+    coupled_[a] = {p.zone_lower[a] > p.lower[a] + tolerance_,
+                   p.zone_upper[a] < p.upper[a] - tolerance_};
+    zone_lower_[a] = std::max(p.zone_lower[a], p.lower[a]);
+    zone_upper_[a] = std::min(p.zone_upper[a], p.upper[a]);
+    core::require(zone_upper_[a] - zone_lower_[a] > p.spacing,
+                  "the discrete zone holds no particles: move it into the specimen or widen it");
+  }
+  packing_.spacing = p.spacing;
+  packing_.thickness = thickness_;
+  for (const LatticeNeighbour<dim> &n : lattice_.forward)
+    packing_.directions.push_back({n.direction, n.distance, lattice_.face_area * thickness_});
+}
+
+template <int dim>
+void Packer<dim>::lay_out_rows()
+{
+  Vector<dim> least = Vector<dim>::Constant(1e300), most = -least;
+  for (int corner = 0; corner < 1 << dim; ++corner) {
+    Vector<dim> x;
+    for (int a = 0; a < dim; ++a)
+      x[a] = (corner >> a & 1) ? zone_upper_[a] : zone_lower_[a];
+    least = least.cwiseMin(lattice_.coordinates(x));
+    most = most.cwiseMax(lattice_.coordinates(x));
+  }
+  for (int a = 0; a < dim; ++a) {
+    // Beyond this the numbers of lattice points don't fit their bits.
+    core::require(std::max(-least[a], most[a]) < (dim == 2 ? 1 << 29 : 1 << 19),
+                  "the specimen has too many particles in one direction: make the spacing larger");
+    first_row_[a] = int(std::floor(least[a])) - 1;
+    n_rows_[a] = int(std::ceil(most[a])) + 2 - first_row_[a];
+  }
+  const Vector<dim> step = lattice_.row_direction();
+  for (int c = 0; c < (dim == 3 ? n_rows_[dim - 1] : 1); ++c)
+    for (int b = 0; b < n_rows_[1]; ++b) {
+      Index k = first_row_;
+      k[0] = 0;
+      k[1] += b;
+      if (dim == 3)
+        k[dim - 1] += c;
+      const Vector<dim> x = lattice_.position(k);
+      double begin = -1e9, end = 1e9;
+      for (int a = 0; a < dim; ++a) {
+        double s = zone_lower_[a] - x[a], t = zone_upper_[a] - x[a];
+        if (std::abs(step[a]) < tolerance_) {
+          if (s > tolerance_ || t < -tolerance_)
+            end = begin - 1;
+          continue;
+        }
+        s /= step[a], t /= step[a];
+        begin = std::max(begin, std::min(s, t));
+        end = std::min(end, std::max(s, t));
+      }
+      Row<dim> row{k, {}};
+      if (begin <= end) {
+        row.start[0] = int(std::floor(begin)) - 1;
+        row.particle.assign(int(std::ceil(end)) + 2 - row.start[0], -1);
+      }
+      rows_.push_back(std::move(row));
+    }
+}
+
+template <int dim>
+bool Packer<dim>::has_all_neighbours(const Index &k) const
+{
+  for (const LatticeNeighbour<dim> &n : lattice_.forward)
+    if (!is_kept(k + n.offset) || !is_kept(k - n.offset))
+      return false;
+  return true;
+}
+
+/// Adds sign times the faces and the volume of a part of a cell.
+template <int dim>
+void Packer<dim>::add_parts(const VoronoiCell<dim> &cell, double sign, const Vector<dim> &x,
+                            IrregularCell<dim> &result) const
+{
+  for (const auto &face : cell.faces()) {
+    auto part = std::find_if(result.parts.begin(), result.parts.end(),
+                             [&](const auto &p) { return p.id == face.id; });
+    if (part == result.parts.end())
+      part =
+          result.parts.insert(part, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero()});
+    part->area += sign * face.area;
+    part->moment += sign * face.area * face.centroid;
+    result.volume += sign * face.area * face.distance / dim;
+  }
+  // Corners inside a void bound nothing.
+  for (const Vector<dim> &corner : cell.vertices()) {
+    const Vector<dim> y = x + corner;
+    if (std::none_of(shape_.voids.begin(), shape_.voids.end(),
+                     [&](const auto &v) { return v.contains(y, tolerance_); }))
+    {
+      result.lower = result.lower.cwiseMin(corner);
+      result.upper = result.upper.cwiseMax(corner);
+    }
+  }
+}
+
+/// Takes the union of the voids away by inclusion and exclusion: every set of voids, from number
+/// `first` on, that meets in the cell.
+template <int dim>
+void Packer<dim>::subtract_voids(const VoronoiCell<dim> &cell, std::size_t first, double sign,
+                                 const Vector<dim> &x, IrregularCell<dim> &result) const
+{
+  int id = first_void_id;
+  for (std::size_t v = 0; v < shape_.voids.size(); id -= int(shape_.voids[v++].sides.size())) {
+    // The polygon of a hole may reach a little out of its circle.
+    const double reach = cell.max_radius() + 0.1 * lattice_.spacing;
+    if (v < first || shape_.voids[v].distance(x) > reach)
+      continue;
+    VoronoiCell<dim> common = cell;
+    int side_number = id;
+    for (const HalfSpace<dim> &side : shape_.voids[v].sides)
+      common.clip(side.normal, side.offset - side.normal.dot(x), side_number--);
+    if (common.is_empty())
+      continue;
+    add_parts(common, -sign, x, result);
+    subtract_voids(common, v + 1, -sign, x, result);
+  }
+}
+
+template <int dim>
+IrregularCell<dim> Packer<dim>::irregular_cell(const Index &k, const Vector<dim> &x) const
+{
+  const double d = lattice_.spacing;
+  VoronoiCell<dim> cell(4 * d, start_id, 1e-13 * d);
+  for (int a = 0; a < dim; ++a) {
+    cell.clip(-Vector<dim>::Unit(a), x[a] - shape_.lower[a], side_id - 2 * a);
+    cell.clip(Vector<dim>::Unit(a), shape_.upper[a] - x[a], side_id - 2 * a - 1);
+  }
+  for (std::size_t n = 0; n < lattice_.reachable.size(); ++n) {
+    const LatticeNeighbour<dim> &other = lattice_.reachable[n];
+    if (other.distance / 2 > cell.max_radius())
+      break;
+    if (cell.is_cut_by(other.direction, other.distance / 2) && is_kept(k + other.offset))
+      cell.clip(other.direction, other.distance / 2, int(n));
+  }
+  IrregularCell<dim> result;
+  add_parts(cell, 1, x, result);
+  subtract_voids(cell, 0, 1, x, result);
+
+  const double least = 1e-12 * lattice_.face_area;
+  auto &parts = result.parts;
+  parts.erase(std::remove_if(parts.begin(), parts.end(),
+                             [&](const auto &part) { return std::abs(part.area) < least; }),
+              parts.end());
+  for (FacePart<dim> &part : parts) {
+    if (part.id == start_id)
+      throw std::logic_error("a Voronoi cell of the packing is open");
+    if (part.id <= first_void_id) // subtracted: area and moment are negative, the normal leads out
+      part = {part.id, -part.normal, -part.distance, -part.area, -part.moment};
+  }
+  return result;
+}
+
+template <int dim>
+bool Packer<dim>::is_in_zone(const Vector<dim> &x, const Vector<dim> &lower,
+                             const Vector<dim> &upper) const
+{
+  for (int a = 0; a < dim; ++a)
+    if ((coupled_[a][0] && x[a] + lower[a] < zone_lower_[a] - tolerance_) ||
+        (coupled_[a][1] && x[a] + upper[a] > zone_upper_[a] + tolerance_))
+      return false;
+  return true;
+}
+
+template <int dim>
+void Packer<dim>::place_particles()
+{
+  const double d = lattice_.spacing;
+  const Vector<dim> &extent = lattice_.extent;
+  for (Row<dim> &row : rows_) {
+    bool in_run = false;
+    for (std::size_t n = 0; n < row.particle.size(); ++n, in_run = row.particle[n - 1] >= 0) {
+      Index k = row.start;
+      k[0] += int(n);
+      const Vector<dim> x = lattice_.position(k);
+      // Where the centre is out of the zone, so is the cell.
+      if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
+        continue;
+      const double distance = shape_.distance(x);
+      if (distance < (0.25 - 1e-9) * d)
+        continue;
+      bool whole = distance > 1.25 * d;
+      if (!whole && has_all_neighbours(k)) {
+        whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
+                ((shape_.upper - x - extent).array() > -1e-12 * d).all();
+        for (const Void<dim> &v : shape_.voids)
+          whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
+      }
+      if (whole) {
+        if (!is_in_zone(x, -extent, extent))
+          continue;
+        irregular_of_.push_back(-1);
+        packing_.volume.push_back(lattice_.cell_volume * thickness_);
+      } else {
+        IrregularCell<dim> cell = irregular_cell(k, x);
+        if (!is_in_zone(x, cell.lower, cell.upper))
+          continue;
+        irregular_of_.push_back(int(irregular_.size()));
+        packing_.volume.push_back(cell.volume * thickness_);
+        irregular_.push_back(std::move(cell));
+      }
+      row.particle[n] = packing_.size() - 1;
+      if (!in_run)
+        packing_.row_begin.push_back(row.particle[n]);
+      packing_.global_id.push_back(Lattice<dim>::global_id(k));
+      for (int a = 0; a < dim; ++a)
+        packing_.centre[a].push_back(x[a]);
+    }
+  }
+  packing_.row_begin.push_back(packing_.size());
+}
+
+template <int dim>
+int Packer<dim>::particle_at(const Index &k) const
+{
+  int row = 0;
+  for (int a = dim - 1; a >= 1; --a) {
+    const int r = k[a] - first_row_[a];
+    if (r < 0 || r >= n_rows_[a])
+      return -1;
+    row = row * n_rows_[a] + r;
+  }
+  const int n = k[0] - rows_[row].start[0];
+  return n < 0 || n >= int(rows_[row].particle.size()) ? -1 : rows_[row].particle[n];
+}
+
+template <int dim>
+bool Packer<dim>::is_cracked(int i, int j) const
+{
+  if (shape_.cracks.empty())
+    return false;
+  const Vector<dim> a = get(packing_.centre, i), b = get(packing_.centre, j);
+  for (const CrackPlane<dim> &crack : shape_.cracks)
+    if (crack.is_crossed_by(a, b))
+      return true;
+  return false;
+}
+
+template <int dim>
+void Packer<dim>::add_lattice_face(int i, int j, int direction)
+{
+  const LatticeDirection<dim> &n = packing_.directions[direction];
+  const double q = n.distance / 2;
+  packing_.faces.push_back({i, j, n.normal, n.area, q, q, q * n.normal, -q * n.normal,
+                            is_whole(i) && is_whole(j) ? direction : -1, is_cracked(i, j)});
+}
+
+template <int dim>
+void Packer<dim>::add_irregular_faces(int i, const Index &k)
+{
+  const std::size_t first_face = packing_.faces.size();
+  for (const FacePart<dim> &part : irregular_[irregular_of_[i]].parts) {
+    const Vector<dim> lever = part.moment / part.area;
+    if (part.id < 0) {
+      const int boundary = part.id <= first_void_id ? inner_surface<dim> : side_id - part.id;
+      packing_.boundary_faces.push_back(
+          {i, part.normal, part.area * thickness_, part.distance, lever, boundary});
+      continue;
+    }
+    const LatticeNeighbour<dim> &n = lattice_.reachable[part.id];
+    const int j = particle_at(k + n.offset);
+    if (j <= i || is_whole(j)) // those of whole cells are lattice faces
+      continue;
+    packing_.faces.push_back({i, j, n.direction, part.area * thickness_, n.distance / 2,
+                              n.distance / 2, lever, lever - n.distance * n.direction, -1,
+                              is_cracked(i, j)});
+  }
+  for (std::size_t m = 0; m < lattice_.forward.size(); ++m)
+    if (const int j = particle_at(k + lattice_.forward[m].offset); j >= 0 && is_whole(j))
+      add_lattice_face(i, j, int(m));
+  std::sort(packing_.faces.begin() + first_face, packing_.faces.end(),
+            [](const auto &a, const auto &b) { return a.j < b.j; });
+}
+
+template <int dim>
+void Packer<dim>::join_faces()
+{
+  packing_.faces.reserve(packing_.size() * lattice_.forward.size() + 8 * irregular_.size());
+  for (const Row<dim> &row : rows_)
+    for (std::size_t n = 0; n < row.particle.size(); ++n) {
+      const int i = row.particle[n];
+      if (i < 0)
+        continue;
+      Index k = row.start;
+      k[0] += int(n);
+      if (!is_whole(i))
+        add_irregular_faces(i, k);
+      else
+        for (std::size_t m = 0; m < lattice_.forward.size(); ++m)
+          if (const int j = particle_at(k + lattice_.forward[m].offset); j >= 0)
+            add_lattice_face(i, j, int(m));
+    }
+}
+
+template <int dim>
+Packing<dim> Packer<dim>::pack()
+{
+  lay_out_rows();
+  place_particles();
+  core::require(packing_.size() > 0,
+                "the discrete zone holds no whole particle: widen it or make the spacing smaller");
+  join_faces();
+  return std::move(packing_);
+}
+} // namespace
+
+template <int dim>
+Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters)
+{
+  return Packer<dim>(parameters).pack();
+}
+
+template Packing<2> make_lattice_packing(const LatticeParameters<2> &);
+template Packing<3> make_lattice_packing(const LatticeParameters<3> &);
+} // namespace ligament::particles

@@ -1,0 +1,91 @@
+// Packings on a lattice: cells, faces and initial cracks of a box specimen or of a zone in it.
+#pragma once
+
+#include "particles/packing.h"
+
+#include <string>
+
+namespace ligament::particles
+{
+enum class LatticeKind
+{
+  square,       // 2D
+  hexagonal,    // 2D
+  simple_cubic, // 3D
+  fcc           // 3D
+};
+
+/// Reads "square", "hexagonal", "simple_cubic" or "fcc"; throws core::InputError on others.
+LatticeKind lattice_kind(const std::string &name);
+
+/// 2D: a disc cut out of the specimen, in m; its radius must be at least the spacing.
+template <int dim>
+struct DiscHole
+{
+  Vector<dim> centre;
+  double radius;
+};
+
+/// A box cut out of the specimen, in m; each of its sides must be at least the spacing wide. A side
+/// on the surface of the specimen, or beyond it, opens the notch there.
+template <int dim>
+struct BoxNotch
+{
+  Vector<dim> lower, upper;
+};
+
+/// A cut without width: 2D a segment (two points), 3D a convex plane polygon, in m.
+template <int dim>
+using CrackPoints = std::vector<Vector<dim>>;
+
+/// The lattice, in lattice axes at orientation 0, turned about the centre of the specimen:
+///   square, simple_cubic: rows along x, y, z;
+///   hexagonal: close-packed rows along x, stacked along y at (d/2, sqrt(3)/2 d);
+///   fcc: close-packed rows [110] along x and [-110] along y, cube axis [001] along z, layers at
+///        (d/2, d/2, d/sqrt(2)).
+/// It is anchored to the specimen alone, so that a zone and the whole specimen share particles. The
+/// centre of the specimen is a point of inversion symmetry between particles: at half of
+/// (d, d[, d]) from one (square, simple cubic), at (d/4, sqrt(3)/4 d) (hexagonal) or
+/// (d/4, d/4, d/sqrt(8)) (fcc). A crack through the centre along the rows (layers) thus runs midway
+/// between two of them and cuts bonds, not particles.
+template <int dim>
+struct LatticeParameters
+{
+  LatticeKind kind = dim == 2 ? LatticeKind::hexagonal : LatticeKind::fcc;
+  double spacing = 0;                        // m, nearest-neighbour distance d
+  Spin<dim> orientation = Spin<dim>::Zero(); // rad; 2D angle, 3D rotation vector
+  double thickness = 1;                      // m, 2D only
+  Vector<dim> lower = Vector<dim>::Zero();   // m, specimen
+  Vector<dim> upper = Vector<dim>::Zero();
+  std::vector<DiscHole<dim>> holes;
+  std::vector<BoxNotch<dim>> notches;
+  std::vector<CrackPoints<dim>> cracks;
+  Vector<dim> zone_lower = Vector<dim>::Constant(-1e300); // m, what is packed
+  Vector<dim> zone_upper = Vector<dim>::Constant(1e300);
+};
+
+/// Packs the zone of the specimen.
+///
+/// Particles are the lattice points in the material, except those nearer than d/4 to its surface;
+/// their cells are the Voronoi cells of all particles of the specimen, cut by its surface. So
+/// (C1) sum S n = 0 and (C2) sum S a (x) n = V I hold to round-off for every cell with all its
+/// neighbours. Faces smaller than 1e-12 of a lattice face are left out. Holes are polygons of equal
+/// area with sides of about d/2. Voids are taken from cells and faces as sets, corners included.
+///
+/// Sides of the zone strictly inside the specimen are coupled: particles whose cell reaches across
+/// are left out, and the cells at the edge keep their volume but have neither Face nor BoundaryFace
+/// there.
+///
+/// Particles are numbered along rows, rows along layers, so that neighbours of a run of particles
+/// lie at constant index offsets. Faces are sorted by (i, j), i < j; on lattice faces that is also
+/// the order of the directions. Faces between two whole lattice cells have a direction, and
+/// q = d/2 and lever = q n exactly.
+///
+/// A face is cracked when the segment between the centres crosses a crack, its rim included.
+/// Centres within 1e-9 d of the plane of the crack count as lying on its positive side: left of the
+/// segment (2D), where the points turn counter-clockwise (3D).
+///
+/// Throws core::InputError for impossible parameters, holes in 3D, and an empty zone.
+template <int dim>
+Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters);
+} // namespace ligament::particles

@@ -1,0 +1,27 @@
+#include "particles/packing.h"
+
+#include "core/check.h"
+
+namespace ligament::particles
+{
+template <int dim>
+void fill_particles(const Packing<dim> &packing, double density, Particles<dim> &particles)
+{
+  core::require(density > 0, "the density of a packing must be positive");
+  const int n = packing.size();
+  particles.resize(n);
+  particles.reference = packing.centre;
+  particles.volume = packing.volume;
+  particles.global_id = packing.global_id;
+  const double gyration = packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
+  for (int i = 0; i < n; ++i) {
+    particles.mass[i] = density * packing.volume[i];
+    particles.inverse_mass[i] = 1 / particles.mass[i];
+    particles.inertia[i] = gyration * particles.mass[i];
+    particles.inverse_inertia[i] = 1 / particles.inertia[i];
+  }
+}
+
+template void fill_particles(const Packing<2> &, double, Particles<2> &);
+template void fill_particles(const Packing<3> &, double, Particles<3> &);
+} // namespace ligament::particles
