@@ -7,19 +7,21 @@
 namespace ligament::core {
 /// A buffered file opened for writing. Every failure of the system throws EnvironmentError with
 /// path and reason. Mode::replace writes beside the target and renames in commit(), so that no
-/// reader ever meets half a file; without commit() the target stays as it was. Mode::append and
-/// targets that are not regular files (devices, pipes) are written in place.
+/// reader ever meets half a file; without commit() the target stays as it was. Mode::stream starts
+/// the file anew and can be read while it grows, Mode::append continues it. Targets that are not
+/// regular files (devices, pipes) are written in place.
 class OutputFile
 {
 public:
   enum class Mode
   {
     replace,
+    stream,
     append
   };
 
   explicit OutputFile(std::string path, Mode mode = Mode::replace);
-  /// Does not throw; what an appending file still holds is written if possible.
+  /// Does not throw; what a growing file still holds is written if possible.
   ~OutputFile();
   OutputFile(const OutputFile &) = delete;
   OutputFile &operator=(const OutputFile &) = delete;

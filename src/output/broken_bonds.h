@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// Columns i, j, time, x, y, z, nx, ny, nz, size, energy with a row of units.
 void write_broken_bonds(const std::string &path, const std::vector<BrokenBond> &bonds,
                         int dimension);

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// Errors are signed and relative, run/reference - 1. What cannot be computed stays empty, is null
 /// in the JSON, and `notes` says why.
 struct CompareResult

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// Index of the value that is largest by magnitude; empty for an empty or all-zero curve.
 std::optional<std::size_t> peak_index(const std::vector<double> &load);
 

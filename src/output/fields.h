@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// A quantity on particles, nodes or cells. Both models use the same names and units:
 /// displacement (m), velocity (m/s), stress (Pa), global_id, material.
 struct Field

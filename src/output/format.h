@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// 121000 -> "121 000".
 std::string grouped(std::int64_t n);
 

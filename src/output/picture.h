@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 struct Color
 {
   std::uint8_t r, g, b;

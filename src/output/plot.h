@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 struct Series
 {
   std::string label;

@@ -6,7 +6,8 @@
 #include <cstdio>
 #include <string>
 
-namespace ligament::program {
+namespace ligament::program
+{
 struct ProgressState
 {
   std::int64_t step = 0, n_steps = 0;

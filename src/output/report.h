@@ -3,7 +3,8 @@
 
 #include <string>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// Writes report.html into the output folder from the files that lie there and returns its path.
 /// InputError when the folder holds no run.
 std::string write_report(const std::string &run_folder);

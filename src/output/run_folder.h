@@ -3,7 +3,8 @@
 
 #include <string>
 
-namespace ligament::program {
+namespace ligament::program
+{
 struct RunFolder
 {
   std::string path;

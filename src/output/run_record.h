@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// A named figure of the scene or of the result, in SI units.
 struct Figure
 {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 struct Snapshot
 {
   int dimension = 2;

@@ -6,7 +6,8 @@
 #include <optional>
 #include <string>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// Wall time of the pure discrete model of the same specimen over the wall time of this run, with
 /// the time per particle and step that this run measured. Empty when a figure is missing.
 std::optional<double> predicted_saving(const RunRecord &record);

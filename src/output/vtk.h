@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-namespace ligament::program {
+namespace ligament::program
+{
 /// XML with inline base64 blocks, compressed by zlib at its fastest level, 64-bit headers. Units
 /// are written where ParaView shows them. All writers throw EnvironmentError when the disk refuses
 /// and never leave half a file. Points are reference positions: warp by `displacement`.

@@ -1,0 +1,63 @@
+#include "src/output/history.h"
+
+#include "core/check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ligament::program
+{
+std::vector<Column> history_columns(int dimension)
+{
+  std::vector<Column> columns = {{"time", "s"},    {"step", "1"},         {"load", "N"},
+                                 {"stress", "Pa"}, {"displacement", "m"}, {"strain", "1"}};
+  for (const char *energy : {"kinetic_discrete", "potential_discrete", "kinetic_far",
+                             "potential_far", "blended", "fracture", "friction", "damper_fine",
+                             "damper_gap", "damping", "external_work", "residual"})
+    columns.push_back({energy, "J"});
+  columns.push_back({"broken_bonds", "1"});
+  columns.push_back({"crack_length", dimension == 2 ? "m" : "m^2"});
+  return columns;
+}
+
+HistoryWriter::HistoryWriter(const std::string &path, std::vector<Column> columns,
+                             int rows_per_flush)
+    : columns_(std::move(columns)), row_(columns_.size(), std::numeric_limits<double>::quiet_NaN()),
+      file_(path, core::OutputFile::Mode::stream), rows_per_flush_(rows_per_flush)
+{
+  std::string names, units;
+  for (const auto &column : columns_) {
+    const char *separator = names.empty() ? "" : ",";
+    names += separator + column.name;
+    units += separator + column.unit;
+  }
+  file_.write(names + "\n" + units + "\n");
+  file_.flush();
+}
+
+void HistoryWriter::set(const std::string &name, double value)
+{
+  const auto column = std::find_if(columns_.begin(), columns_.end(),
+                                   [&](const Column &c) { return c.name == name; });
+  core::require(column != columns_.end(), "history has no column '" + name + "'");
+  row_[column - columns_.begin()] = value;
+}
+
+void HistoryWriter::end_row()
+{
+  std::string line;
+  for (double &value : row_) {
+    // The shortest digits that give the same number back.
+    line += fmt::format("{}{}", line.empty() ? "" : ",", value);
+    value = std::numeric_limits<double>::quiet_NaN();
+  }
+  file_.write(line + "\n");
+  if (++unflushed_ >= rows_per_flush_) {
+    file_.flush();
+    unflushed_ = 0;
+  }
+}
+} // namespace ligament::program

@@ -1,0 +1,91 @@
+#include "src/output/verdict.h"
+
+#include "src/output/format.h"
+
+#include <fmt/core.h>
+
+#include <cctype>
+#include <vector>
+
+namespace ligament::program
+{
+namespace
+{
+/// Above this share of the external work the ledger is not closed well enough to trust a run.
+constexpr double largest_good_residual = 1e-2;
+
+std::string join(const std::vector<std::string> &parts)
+{
+  std::string text;
+  for (const auto &part : parts)
+    text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
+
+std::string model_part(const RunRecord &r)
+{
+  if (r.kind == "pure_fem")
+    return fmt::format("{} cells", grouped(r.cells));
+  if (r.kind == "pure_dem") {
+    std::string text = grouped(r.particles) + " particles";
+    if (r.wall_seconds > 0)
+      text += fmt::format(", {:.3g} million particle-steps per second",
+                          1e-6 * double(r.particles) * double(r.steps) / r.wall_seconds);
+    return text;
+  }
+  std::string text =
+      fmt::format("{} particles and {} cells", grouped(r.particles), grouped(r.cells));
+  if (r.equivalent_particles > 0)
+    text += fmt::format(" stood for {} particles", grouped(r.equivalent_particles));
+  if (const auto saving = predicted_saving(r))
+    text += fmt::format(": {:.1f} x {} than pure discrete elements would be at this rate",
+                        *saving >= 1 ? *saving : 1 / *saving, *saving >= 1 ? "faster" : "slower");
+  return text;
+}
+} // namespace
+
+std::optional<double> predicted_saving(const RunRecord &r)
+{
+  if (r.particles == 0 || r.equivalent_particles == 0 || !r.discrete_seconds ||
+      !(*r.discrete_seconds > 0) || !(r.wall_seconds > 0))
+    return {};
+  // Both models take the same number of steps: the coupler leaves the critical step alone.
+  const double pure = *r.discrete_seconds * double(r.equivalent_particles) / double(r.particles);
+  return pure / r.wall_seconds;
+}
+
+std::string verdict(const RunRecord &r)
+{
+  std::vector<std::string> parts = {model_part(r)};
+  if (r.energy_residual)
+    parts.push_back(fmt::format("energy residual {:.1g}", *r.energy_residual));
+  if (r.status == "guard" || r.status == "failed")
+    parts.push_back(fmt::format("stopped: {}", r.reason));
+  else if (r.energy_residual && !(*r.energy_residual <= largest_good_residual))
+    parts.push_back("the energies do not add up: do not trust this run");
+  else if (r.energy_residual && r.status == "done")
+    parts.push_back("nothing unstable");
+  return join(parts);
+}
+
+std::string headline(const RunRecord &r)
+{
+  std::string text;
+  if (r.status == "running")
+    text = "The run is not finished: ";
+  if (r.peak_load) {
+    text += fmt::format("peak load {}", quantity(*r.peak_load, "N"));
+    if (r.peak_stress)
+      text += fmt::format(" ({})", quantity(*r.peak_stress, "Pa"));
+    if (r.peak_time)
+      text += fmt::format(" after {}", quantity(*r.peak_time, "s"));
+    text += "; ";
+  }
+  text += r.broken_bonds == 0 ? "nothing broke" : grouped(r.broken_bonds) + " broken faces";
+  if (r.broken_bonds > 0 && r.crack_length)
+    text += r.dimension == 2 ? ", crack length " + quantity(*r.crack_length, "m")
+                             : ", crack area " + quantity(*r.crack_length, "m^2");
+  text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+  return text + ".";
+}
+} // namespace ligament::program
