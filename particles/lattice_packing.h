@@ -68,7 +68,7 @@ struct LatticeParameters
 ///
 /// Particles are the lattice points in the material, except those nearer than d/4 to its surface;
 /// their cells are the Voronoi cells of all particles of the specimen, cut by its surface. So
-/// (C1) sum S n = 0 and (C2) sum S a (x) n = V I hold to round-off for every cell with all its
+/// (D2a) sum S n = 0 and (D2b) sum S a (x) n = V I hold to round-off for every cell with all its
 /// neighbours. Faces smaller than 1e-12 of a lattice face are left out. Holes are polygons of equal
 /// area with sides of about d/2. Voids are taken from cells and faces as sets, corners included.
 ///

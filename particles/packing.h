@@ -5,7 +5,7 @@
 
 namespace ligament::particles
 {
-/// Plane face between the cells of particles i and j (physics.md section 1 in docs/theory.md).
+/// Plane face between the cells of particles i and j (docs/theory.md, section 1.1).
 template <int dim>
 struct Face
 {
