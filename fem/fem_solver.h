@@ -9,6 +9,9 @@
 
 namespace ligament::fem
 {
+template <int dim>
+class CellKernel;
+
 /// Isotropic body of the mesh: stiffness equal to that of the discrete law.
 template <int dim>
 struct Body
@@ -19,46 +22,62 @@ struct Body
 };
 
 /// Nodes carry displacement (at n) and velocity (at n + 1/2). Hanging nodes are interpolated from
-/// their masters, held components follow their load exactly.
+/// their masters, held components follow their load exactly. Where two loads hold the same
+/// component of a node, the first in the list does.
 ///
-/// A coupler takes cells over (`release_cells`): they then add neither force nor mass here, and the
-/// coupler advances their nodes, which `is_released_node` names.
+/// A coupler takes cells over (`release_cells`): they then add neither force nor mass nor traction
+/// here, and the coupler advances their nodes, which `is_released_node` names. Nodes on the border
+/// still receive force and mass from the solver's own cells.
 template <int dim>
 class FemSolver
 {
 public:
-  FemSolver(Mesh<dim> mesh, const Body<dim> &body,
-            const std::vector<core::BoundaryLoad<dim>> &loads);
+  FemSolver(Mesh<dim> mesh, const Body<dim> &body, std::vector<core::BoundaryLoad<dim>> loads);
   ~FemSolver();
+  FemSolver(FemSolver &&) noexcept;
+  FemSolver &operator=(FemSolver &&) noexcept;
 
   /// From now on the cells (by index) belong to the coupler.
   void release_cells(const std::vector<int> &cells);
 
   /// Overwrites `force`: minus the internal force of the solver's own cells plus tractions, with
   /// forces on hanging nodes handed to their masters. Held components get the internal force too:
-  /// it is their reaction.
+  /// it is their reaction. Hanging nodes are distributed first; external work is booked.
   void compute_forces(double time);
 
   /// v += dt f/m of all nodes that are not released; held components get the velocity that
   /// brings them to their load's displacement at time + dt after drift(dt).
   void kick(double dt, double time);
 
-  /// u += dt v of all nodes that are not released; hanging nodes (of own cells) follow.
+  /// u += dt v of all nodes that are not released; then all hanging nodes follow.
   void drift(double dt);
 
-  /// Hanging nodes take the displacement of their masters.
+  /// Hanging nodes take displacement and velocity of their masters.
   void distribute();
 
-  double potential_energy() const;        // J, own cells; displacements as they are
-  double kinetic_energy(double dt) const; // J, 1/2 v(-) M v(+), nodes not released; before kick
+  /// 1/2 u.K u of the solver's own cells, with the displacements as they are; in J.
+  double potential_energy() const;
 
-  /// Largest stable leap-frog step of the own cells, in s (element bound 2/omega_max).
+  /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m, in J, of the free components of nodes that are not
+  /// released; before kick. Held components move as prescribed: their inertia is neither counted
+  /// here nor in external_work nor in reaction.
+  double kinetic_energy(double dt) const;
+
+  /// Work done on the body by supports and tractions at nodes that are not released, since
+  /// reset_work, in J: the force of the previous and the present compute_forces, averaged, times
+  /// the displacement in between. kinetic + potential - external work is then an exact invariant.
+  double external_work() const { return external_work_; }
+  void reset_work() { external_work_ = 0; }
+
+  /// Largest stable leap-frog step of the own cells, in s (element bound 2/omega_max); infinite if
+  /// there are none.
   double stable_step() const;
 
-  /// Lumped mass of the own cells at every node (hanging nodes' share given to their masters).
+  /// Lumped mass of the own cells at every node in kg (hanging nodes' share given to their
+  /// masters).
   const std::vector<double> &lumped_mass() const { return mass_; }
 
-  /// Sum over the boundary's held nodes of the force the support exerts on the body, in N;
+  /// Sum over the nodes that the load holds of the force the support exerts on the body, in N;
   /// for traction loads the sum of applied forces. Index as in the list given to the constructor.
   Vector<dim> reaction(int load) const;
 
@@ -70,13 +89,30 @@ public:
   Components<dim> displacement, velocity, force;
 
 private:
-  struct Kernel; // batches of equal cells
+  /// A component of a node on which a load acts.
+  struct LoadedComponent
+  {
+    int node, component, load;
+    double area;                                // m^2, of tractions: the node's share of the side
+    double old_force = 0, old_displacement = 0; // at the previous compute_forces
+  };
+
+  void find_held_components();
+  void update_own_cells();
+  void hand_to_masters(std::vector<double> &values) const;
+  double load_force(const LoadedComponent &c) const; // on the body, in N
+  void book_work();
+
   Mesh<dim> mesh_;
   Body<dim> body_;
   std::vector<core::BoundaryLoad<dim>> loads_;
-  std::unique_ptr<Kernel> kernel_;
-  std::vector<double> mass_, inverse_mass_;
-  std::vector<char> released_node_;
+  std::vector<char> is_own_cell_, released_node_;
   std::array<std::vector<char>, dim> held_;
+  std::vector<std::pair<int, int>> own_ranges_; // nodes that are not released
+  std::unique_ptr<CellKernel<dim>> kernel_;
+  std::vector<double> mass_, inverse_mass_;
+  std::vector<LoadedComponent> held_components_, traction_components_;
+  double external_work_ = 0, force_time_ = 0;
+  bool has_previous_forces_ = false;
 };
 } // namespace ligament::fem

@@ -22,7 +22,8 @@ struct CellFace
 {
   int cell;
   int face;     // 2 * axis + (0 lower, 1 upper)
-  int boundary; // side of the specimen, or inner_surface<dim> for the edge towards the discrete zone
+  int boundary; // side of the specimen, or inner_surface<dim> for the edge towards the discrete
+                // zone
 };
 
 /// What to mesh: a box, minus an inner box that the discrete zone fills alone. The inner box may
@@ -41,11 +42,11 @@ struct MeshParameters
 template <int dim>
 struct Mesh
 {
-  std::vector<Vector<dim>> nodes;                       // m
+  std::vector<Vector<dim>> nodes;                        // m
   std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes in lexicographic order, x fastest
-  std::vector<Vector<dim>> cell_lower;                  // m, lower corner
-  std::vector<Vector<dim>> cell_size;                   // m
-  std::vector<int> cell_level;                          // 0: finest
+  std::vector<Vector<dim>> cell_lower;                   // m, lower corner
+  std::vector<Vector<dim>> cell_size;                    // m
+  std::vector<int> cell_level;                           // 0: finest
   std::vector<HangingNode> hanging;
   std::vector<CellFace<dim>> boundary_faces;
 

@@ -1,0 +1,267 @@
+#include "fem/fem_solver.h"
+
+#include "core/check.h"
+#include "fem/cell_kernel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::fem
+{
+namespace
+{
+/// Local numbers of the nodes of a cell's face, in lexicographic order.
+template <int dim>
+std::array<int, n_cell_nodes<dim> / 2> face_nodes(int face)
+{
+  std::array<int, n_cell_nodes<dim> / 2> nodes;
+  int n = 0;
+  for (int a = 0; a < n_cell_nodes<dim>; ++a)
+    if ((a >> (face / 2) & 1) == face % 2)
+      nodes[n++] = a;
+  return nodes;
+}
+} // namespace
+
+template <int dim>
+FemSolver<dim>::FemSolver(Mesh<dim> mesh, const Body<dim> &body,
+                          std::vector<core::BoundaryLoad<dim>> loads)
+    : mesh_(std::move(mesh)), body_(body), loads_(std::move(loads)),
+      is_own_cell_(mesh_.n_cells(), 1), released_node_(mesh_.n_nodes(), 0)
+{
+  core::require(body.density > 0 && body.thickness > 0,
+                fmt::format("far field: density {} kg/m^3 and thickness {} m must be positive",
+                            body.density, body.thickness));
+  for (auto *field : {&displacement, &velocity, &force})
+    for (auto &component : *field)
+      component.assign(mesh_.n_nodes(), 0.);
+  find_held_components();
+  update_own_cells();
+}
+
+template <int dim>
+FemSolver<dim>::~FemSolver() = default;
+template <int dim>
+FemSolver<dim>::FemSolver(FemSolver &&) noexcept = default;
+template <int dim>
+FemSolver<dim> &FemSolver<dim>::operator=(FemSolver &&) noexcept = default;
+
+template <int dim>
+void FemSolver<dim>::find_held_components()
+{
+  // Hanging nodes on a held side follow masters that lie on it, too.
+  std::vector<char> is_hanging(mesh_.n_nodes(), 0);
+  for (const HangingNode &h : mesh_.hanging)
+    is_hanging[h.node] = 1;
+  for (int c = 0; c < dim; ++c)
+    held_[c].assign(mesh_.n_nodes(), 0);
+  for (int l = 0; l < int(loads_.size()); ++l)
+    for (const CellFace<dim> &face : mesh_.boundary_faces)
+      if (face.boundary == loads_[l].boundary &&
+          loads_[l].kind != core::BoundaryLoad<dim>::Kind::traction)
+        for (const int a : face_nodes<dim>(face.face))
+          for (int c = 0; c < dim; ++c) {
+            const int node = mesh_.cells[face.cell][a];
+            if (!loads_[l].value[c] || held_[c][node] || is_hanging[node])
+              continue;
+            held_[c][node] = 1;
+            held_components_.push_back({node, c, l, 0});
+          }
+}
+
+template <int dim>
+void FemSolver<dim>::update_own_cells()
+{
+  kernel_ =
+      std::make_unique<CellKernel<dim>>(mesh_, body_.stiffness, body_.thickness, is_own_cell_);
+
+  mass_.assign(mesh_.n_nodes(), 0.);
+  for (int cell = 0; cell < mesh_.n_cells(); ++cell)
+    if (is_own_cell_[cell])
+      for (const int node : mesh_.cells[cell])
+        mass_[node] +=
+            body_.density * body_.thickness * mesh_.cell_size[cell].prod() / n_cell_nodes<dim>;
+  hand_to_masters(mass_);
+  inverse_mass_.resize(mesh_.n_nodes());
+  for (int i = 0; i < mesh_.n_nodes(); ++i)
+    inverse_mass_[i] = mass_[i] > 0 && !released_node_[i] ? 1 / mass_[i] : 0;
+
+  own_ranges_.clear();
+  for (int i = 0; i < mesh_.n_nodes(); ++i)
+    if (!released_node_[i]) {
+      if (own_ranges_.empty() || own_ranges_.back().second != i)
+        own_ranges_.emplace_back(i, i);
+      ++own_ranges_.back().second;
+    }
+
+  traction_components_.clear();
+  for (int l = 0; l < int(loads_.size()); ++l) {
+    if (loads_[l].kind != core::BoundaryLoad<dim>::Kind::traction)
+      continue;
+    std::vector<double> area(mesh_.n_nodes(), 0.);
+    for (const CellFace<dim> &face : mesh_.boundary_faces)
+      if (face.boundary == loads_[l].boundary && is_own_cell_[face.cell]) {
+        const Vector<dim> &h = mesh_.cell_size[face.cell];
+        const double share =
+            h.prod() / h[face.face / 2] * body_.thickness / (n_cell_nodes<dim> / 2);
+        for (const int a : face_nodes<dim>(face.face))
+          area[mesh_.cells[face.cell][a]] += share;
+      }
+    hand_to_masters(area);
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < mesh_.n_nodes(); ++i)
+        if (loads_[l].value[c] && area[i] > 0)
+          traction_components_.push_back({i, c, l, area[i]});
+  }
+  has_previous_forces_ = false;
+}
+
+template <int dim>
+void FemSolver<dim>::release_cells(const std::vector<int> &cells)
+{
+  for (const int cell : cells) {
+    is_own_cell_[cell] = 0;
+    for (const int node : mesh_.cells[cell])
+      released_node_[node] = 1;
+  }
+  update_own_cells();
+}
+
+template <int dim>
+void FemSolver<dim>::hand_to_masters(std::vector<double> &values) const
+{
+  for (const HangingNode &h : mesh_.hanging) {
+    for (const auto &[master, weight] : h.masters)
+      values[master] += weight * values[h.node];
+    values[h.node] = 0;
+  }
+}
+
+template <int dim>
+void FemSolver<dim>::distribute()
+{
+  for (auto *field : {&displacement, &velocity})
+    for (auto &values : *field)
+      for (const HangingNode &h : mesh_.hanging) {
+        double sum = 0;
+        for (const auto &[master, weight] : h.masters)
+          sum += weight * values[master];
+        values[h.node] = sum;
+      }
+}
+
+template <int dim>
+void FemSolver<dim>::compute_forces(double time)
+{
+  distribute();
+  for (auto &f : force)
+    std::fill(f.begin(), f.end(), 0.);
+  kernel_->subtract_forces(displacement, force);
+  for (auto &f : force)
+    hand_to_masters(f);
+  force_time_ = time;
+  for (const LoadedComponent &t : traction_components_)
+    force[t.component][t.node] += load_force(t);
+  book_work();
+}
+
+template <int dim>
+double FemSolver<dim>::load_force(const LoadedComponent &c) const
+{
+  const core::BoundaryLoad<dim> &load = loads_[c.load];
+  if (load.kind == core::BoundaryLoad<dim>::Kind::traction)
+    return c.area * load.traction(force_time_)[c.component];
+  return -force[c.component][c.node];
+}
+
+template <int dim>
+void FemSolver<dim>::book_work()
+{
+  for (auto *components : {&held_components_, &traction_components_})
+    for (LoadedComponent &c : *components) {
+      const double f = load_force(c), u = displacement[c.component][c.node];
+      if (has_previous_forces_ && !released_node_[c.node])
+        external_work_ += (c.old_force + f) / 2 * (u - c.old_displacement);
+      c.old_force = f;
+      c.old_displacement = u;
+    }
+  has_previous_forces_ = true;
+}
+
+template <int dim>
+Vector<dim> FemSolver<dim>::reaction(int load) const
+{
+  Vector<dim> sum = Vector<dim>::Zero();
+  for (const auto *components : {&held_components_, &traction_components_})
+    for (const LoadedComponent &c : *components)
+      if (c.load == load)
+        sum[c.component] += load_force(c);
+  return sum;
+}
+
+template <int dim>
+void FemSolver<dim>::kick(double dt, double time)
+{
+  for (int c = 0; c < dim; ++c) {
+    double *__restrict v = velocity[c].data();
+    const double *__restrict f = force[c].data();
+    const double *__restrict w = inverse_mass_.data(); // 0 for released and hanging nodes
+    for (int i = 0; i < mesh_.n_nodes(); ++i)
+      v[i] += dt * f[i] * w[i];
+  }
+  for (const LoadedComponent &h : held_components_)
+    if (!released_node_[h.node])
+      velocity[h.component][h.node] = (loads_[h.load].displacement(h.component, time + dt) -
+                                       displacement[h.component][h.node]) /
+                                      dt;
+}
+
+template <int dim>
+void FemSolver<dim>::drift(double dt)
+{
+  for (int c = 0; c < dim; ++c) {
+    double *__restrict u = displacement[c].data();
+    const double *__restrict v = velocity[c].data();
+    for (const auto &[begin, end] : own_ranges_)
+      for (int i = begin; i < end; ++i)
+        u[i] += dt * v[i];
+  }
+  distribute();
+}
+
+template <int dim>
+double FemSolver<dim>::potential_energy() const
+{
+  Components<dim> f;
+  for (auto &component : f)
+    component.assign(mesh_.n_nodes(), 0.);
+  kernel_->subtract_forces(displacement, f);
+  double sum = 0;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < mesh_.n_nodes(); ++i)
+      sum -= displacement[c][i] * f[c][i];
+  return sum / 2;
+}
+
+template <int dim>
+double FemSolver<dim>::kinetic_energy(double dt) const
+{
+  double sum = 0;
+  for (int c = 0; c < dim; ++c)
+    for (const auto &[begin, end] : own_ranges_)
+      for (int i = begin; i < end; ++i)
+        if (!held_[c][i])
+          sum += velocity[c][i] * (mass_[i] * velocity[c][i] + dt * force[c][i]);
+  return sum / 2;
+}
+
+template <int dim>
+double FemSolver<dim>::stable_step() const
+{
+  return kernel_->stable_step(body_.density, body_.thickness);
+}
+
+template class FemSolver<2>;
+template class FemSolver<3>;
+} // namespace ligament::fem

@@ -1,0 +1,393 @@
+#include "core/check.h"
+#include "fem/mesh.h"
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace ligament::fem
+{
+namespace
+{
+/// Distances in finest cells, so that all decisions are made in whole numbers.
+using Index = std::int64_t;
+
+/// One direction of the specimen, cut where the inner box begins and ends. Each section carries
+/// whole base cells; node positions count finest cells from the lower end.
+class Axis
+{
+public:
+  Axis(double lower, double upper, double inner_lower, double inner_upper, double base_size,
+       int levels)
+      : base_(Index(1) << levels)
+  {
+    const double margin = 1e-9 * (upper - lower);
+    std::vector<double> ends{lower};
+    if (inner_lower > lower + margin && inner_lower < upper - margin)
+      ends.push_back(inner_lower);
+    if (inner_upper > lower + margin && inner_upper < upper - margin)
+      ends.push_back(inner_upper);
+    ends.push_back(upper);
+    for (std::size_t s = 0; s + 1 < ends.size(); ++s) {
+      const double length = ends[s + 1] - ends[s];
+      const double middle = ends[s] + length / 2;
+      const bool inner = middle > inner_lower && middle < inner_upper;
+      const Index n = base_ * std::max<Index>(1, std::llround(length / base_size));
+      sections_.push_back({ends[s], ends[s + 1], n_, n, inner});
+      n_ += n;
+    }
+    inner_begin_ = inner_end_ = -1;
+    for (const Section &s : sections_)
+      if (s.inner) {
+        inner_begin_ = s.begin;
+        inner_end_ = s.begin + s.n;
+      }
+  }
+
+  struct Section
+  {
+    double lower, upper; // m
+    Index begin, n;      // finest cells
+    bool inner;          // inside the left-out box, as far as this direction is concerned
+  };
+
+  Index n() const { return n_; }
+  const std::vector<Section> &sections() const { return sections_; }
+  bool meets_inner_box() const { return inner_begin_ >= 0; }
+  bool leaves_room() const { return inner_end_ - inner_begin_ < n_; }
+
+  double position(Index i) const
+  {
+    const Section &s = section([&](const Section &c) { return i <= c.begin + c.n; });
+    if (i == s.begin + s.n)
+      return s.upper;
+    return s.lower + (s.upper - s.lower) * double(i - s.begin) / double(s.n);
+  }
+
+  Index index(double x) const
+  {
+    const Section &s = section([&](const Section &c) { return x <= c.upper; });
+    return s.begin + std::llround((x - s.lower) / (s.upper - s.lower) * double(s.n));
+  }
+
+  /// Size of a finest cell that begins at i, in m.
+  double finest_size(Index i) const
+  {
+    const Section &s = section([&](const Section &c) { return i < c.begin + c.n; });
+    return (s.upper - s.lower) / double(s.n);
+  }
+
+  bool in_inner_box(Index i, Index n) const { return i >= inner_begin_ && i + n <= inner_end_; }
+
+  /// Distance of the interval [i, i + n] from the inner box.
+  Index distance(Index i, Index n) const
+  {
+    return std::max({Index(0), inner_begin_ - (i + n), i - inner_end_});
+  }
+
+private:
+  template <typename Condition>
+  const Section &section(Condition condition) const
+  {
+    const auto s = std::find_if(sections_.begin(), sections_.end(), condition);
+    return s == sections_.end() ? sections_.back() : *s;
+  }
+
+  Index base_, n_ = 0, inner_begin_, inner_end_;
+  std::vector<Section> sections_;
+};
+
+using Grid = std::vector<Axis>; // one per direction
+
+template <int dim>
+using Lattice = std::array<Index, dim>;
+
+template <int dim>
+bool has_inner_box(const MeshParameters<dim> &p)
+{
+  return (p.inner_upper - p.inner_lower).minCoeff() > 0;
+}
+
+constexpr const char *axis_name = "xyz";
+
+template <int dim>
+void check_parameters(const MeshParameters<dim> &p)
+{
+  for (int k = 0; k < dim; ++k)
+    core::require(p.upper[k] > p.lower[k] && std::isfinite(p.upper[k] - p.lower[k]),
+                  fmt::format("far-field mesh: the specimen has no extent in {} ({} m to {} m); "
+                              "give an upper corner above the lower one",
+                              axis_name[k], p.lower[k], p.upper[k]));
+  core::require(p.cell_size > 0 && std::isfinite(p.cell_size),
+                fmt::format("far-field mesh: cell size {} m is not positive", p.cell_size));
+  core::require(p.levels >= 0 && p.levels <= 20,
+                fmt::format("far-field mesh: {} levels; allowed are 0 to 20", p.levels));
+  core::require(p.fine_cells >= 0 && p.cells_per_level >= 1,
+                fmt::format("far-field mesh: fine cells ({}) must be at least 0, cells per level "
+                            "({}) at least 1",
+                            p.fine_cells, p.cells_per_level));
+}
+
+/// Sections that get cells must not be thinner than their largest cells: squeezed cells would
+/// govern the time step and refinement could not follow the requested distances.
+template <int dim>
+void check_sections(const Grid &grid, const MeshParameters<dim> &p, double base_size)
+{
+  for (int k = 0; k < dim; ++k) {
+    bool others_leave_room = false;
+    for (int l = 0; l < dim; ++l)
+      others_leave_room |= l != k && grid[l].leaves_room();
+    for (const auto &s : grid[k].sections()) {
+      const double length = s.upper - s.lower;
+      if ((s.inner && !others_leave_room) || length >= 0.75 * base_size)
+        continue;
+      const int levels = int(std::floor(std::log2(length / (0.75 * p.cell_size))));
+      throw core::InputError(fmt::format(
+          "far-field mesh: the section {} = {:.6g} m to {:.6g} m is {:.6g} m wide, thinner than "
+          "one cell of {:.6g} m (cell size {:.6g} m, {} levels); {}",
+          axis_name[k], s.lower, s.upper, length, base_size, p.cell_size, p.levels,
+          levels >= 0 ? fmt::format("use at most {} levels or widen the section", levels)
+                      : "use smaller cells or widen the section"));
+    }
+  }
+}
+
+template <int dim>
+Grid make_grid(const MeshParameters<dim> &p, int levels)
+{
+  const double base_size = std::ldexp(p.cell_size, levels);
+  const bool inner = has_inner_box(p);
+  Grid grid;
+  double n_base = 1;
+  for (int k = 0; k < dim; ++k) {
+    n_base *= std::max(1., (p.upper[k] - p.lower[k]) / base_size);
+    core::require(n_base < 1e8, fmt::format("far-field mesh: more than 1e8 cells of {:.6g} m; use "
+                                            "larger cells or more levels",
+                                            base_size));
+    grid.emplace_back(p.lower[k], p.upper[k], inner ? p.inner_lower[k] : p.upper[k],
+                      inner ? p.inner_upper[k] : p.lower[k], base_size, levels);
+  }
+  if (inner) {
+    bool leaves_room = false;
+    for (int k = 0; k < dim; ++k) {
+      core::require(grid[k].meets_inner_box(),
+                    fmt::format("far-field mesh: the discrete zone ({:.6g} m to {:.6g} m in {}) "
+                                "lies outside the specimen; move it inside",
+                                p.inner_lower[k], p.inner_upper[k], axis_name[k]));
+      leaves_room |= grid[k].leaves_room();
+    }
+    core::require(leaves_room, "far-field mesh: the discrete zone fills the whole specimen; make "
+                               "it smaller or do without far field");
+  }
+  check_sections<dim>(grid, p, base_size);
+  return grid;
+}
+
+/// Base cells outside the inner box.
+template <int dim>
+void make_base_mesh(const Grid &grid, Index base, dealii::Triangulation<dim> &triangulation)
+{
+  Lattice<dim> n_points;
+  Index n_cells = 1, total_points = 1;
+  for (int k = 0; k < dim; ++k) {
+    n_points[k] = grid[k].n() / base + 1;
+    n_cells *= n_points[k] - 1;
+    total_points *= n_points[k];
+  }
+  constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
+  std::vector<unsigned int> vertex_number(total_points, none);
+  std::vector<dealii::Point<dim>> vertices;
+  std::vector<dealii::CellData<dim>> cells;
+  for (Index c = 0; c < n_cells; ++c) {
+    Lattice<dim> lower;
+    bool inside = true;
+    Index rest = c;
+    for (int k = 0; k < dim; ++k) {
+      lower[k] = rest % (n_points[k] - 1);
+      rest /= n_points[k] - 1;
+      inside = inside && grid[k].in_inner_box(lower[k] * base, base);
+    }
+    if (inside)
+      continue;
+    cells.emplace_back();
+    for (int v = 0; v < n_cell_nodes<dim>; ++v) {
+      Index number = 0;
+      dealii::Point<dim> p;
+      for (int k = dim - 1; k >= 0; --k) {
+        const Index i = lower[k] + (v >> k & 1);
+        number = number * n_points[k] + i;
+        p[k] = grid[k].position(i * base);
+      }
+      if (vertex_number[number] == none) {
+        vertex_number[number] = vertices.size();
+        vertices.push_back(p);
+      }
+      cells.back().vertices[v] = vertex_number[number];
+    }
+  }
+  triangulation.create_triangulation(vertices, cells, {});
+}
+
+template <int dim>
+Lattice<dim> lattice_point(const Grid &grid, const dealii::Point<dim> &p)
+{
+  Lattice<dim> i;
+  for (int k = 0; k < dim; ++k)
+    i[k] = grid[k].index(p[k]);
+  return i;
+}
+
+/// Refines what is nearer to the inner box than its size allows. The first distance has one cell
+/// more than asked for: hanging nodes then lie beyond the fine region, not on its border.
+template <int dim>
+void refine(const Grid &grid, const MeshParameters<dim> &p, int levels,
+            dealii::Triangulation<dim> &triangulation)
+{
+  for (int level = levels; level > 0; --level) {
+    Index required = p.fine_cells + 1;
+    for (int l = 1; l < level; ++l)
+      required += p.cells_per_level * (Index(1) << l);
+    const Index size = Index(1) << level;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->level() == levels - level) {
+        const Lattice<dim> lower = lattice_point<dim>(grid, cell->vertex(0));
+        Index distance = 0;
+        for (int k = 0; k < dim; ++k)
+          distance = std::max(distance, grid[k].distance(lower[k], size));
+        if (distance < required)
+          cell->set_refine_flag();
+      }
+    triangulation.execute_coarsening_and_refinement();
+  }
+}
+
+/// Order of rows: x fastest, so that the cells of a row and their nodes lie side by side.
+template <int dim>
+std::vector<int> row_order(const std::vector<Lattice<dim>> &points)
+{
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::lexicographical_compare(points[a].rbegin(), points[a].rend(), points[b].rbegin(),
+                                        points[b].rend());
+  });
+  return order;
+}
+
+template <int dim>
+void add_cells(const Grid &grid, int levels, const dealii::DoFHandler<dim> &dofs, Mesh<dim> &mesh,
+               std::vector<int> &node_of_dof)
+{
+  std::vector<Lattice<dim>> node_points(dofs.n_dofs()), cell_points;
+  std::vector<int> cell_levels;
+  std::vector<std::array<int, n_cell_nodes<dim>>> cells;
+  std::vector<dealii::types::global_dof_index> indices(n_cell_nodes<dim>);
+  for (const auto &cell : dofs.active_cell_iterators()) {
+    cell->get_dof_indices(indices);
+    cells.emplace_back();
+    for (int v = 0; v < n_cell_nodes<dim>; ++v) {
+      cells.back()[v] = int(indices[v]);
+      node_points[indices[v]] = lattice_point<dim>(grid, cell->vertex(v));
+    }
+    cell_points.push_back(lattice_point<dim>(grid, cell->vertex(0)));
+    cell_levels.push_back(levels - cell->level());
+  }
+
+  node_of_dof.resize(dofs.n_dofs());
+  for (const int dof : row_order<dim>(node_points)) {
+    node_of_dof[dof] = mesh.n_nodes();
+    Vector<dim> x;
+    for (int k = 0; k < dim; ++k)
+      x[k] = grid[k].position(node_points[dof][k]);
+    mesh.nodes.push_back(x);
+  }
+  for (const int c : row_order<dim>(cell_points)) {
+    const Lattice<dim> &lower = cell_points[c];
+    const Index size = Index(1) << cell_levels[c];
+    Vector<dim> h;
+    for (int k = 0; k < dim; ++k) {
+      // From the section, not from the corners: equal cells have sizes equal to the last bit.
+      h[k] = grid[k].finest_size(lower[k]) * double(size);
+      for (int side = 0; side < 2; ++side) {
+        const Index face = lower[k] + side * size;
+        const int normal = 2 * k + side;
+        if (face == (side ? grid[k].n() : 0))
+          mesh.boundary_faces.push_back({mesh.n_cells(), normal, normal});
+        else {
+          Lattice<dim> beyond = lower;
+          beyond[k] += side ? size : -size;
+          bool inside = true;
+          for (int l = 0; l < dim; ++l)
+            inside = inside && grid[l].in_inner_box(beyond[l], size);
+          if (inside)
+            mesh.boundary_faces.push_back({mesh.n_cells(), normal, inner_surface<dim>});
+        }
+      }
+    }
+    mesh.cells.emplace_back();
+    for (int v = 0; v < n_cell_nodes<dim>; ++v)
+      mesh.cells.back()[v] = node_of_dof[cells[c][v]];
+    mesh.cell_lower.push_back(mesh.nodes[mesh.cells.back()[0]]);
+    mesh.cell_size.push_back(h);
+    mesh.cell_level.push_back(cell_levels[c]);
+  }
+}
+
+template <int dim>
+void add_hanging_nodes(const dealii::DoFHandler<dim> &dofs, const std::vector<int> &node_of_dof,
+                       Mesh<dim> &mesh)
+{
+  dealii::AffineConstraints<double> constraints;
+  dealii::DoFTools::make_hanging_node_constraints(dofs, constraints);
+  constraints.close();
+  for (const auto &line : constraints.get_lines()) {
+    HangingNode hanging{node_of_dof[line.index], {}};
+    for (const auto &[dof, weight] : line.entries)
+      hanging.masters.emplace_back(node_of_dof[dof], weight);
+    std::sort(hanging.masters.begin(), hanging.masters.end());
+    mesh.hanging.push_back(hanging);
+  }
+  std::sort(mesh.hanging.begin(), mesh.hanging.end(),
+            [](const HangingNode &a, const HangingNode &b) { return a.node < b.node; });
+}
+} // namespace
+
+template <int dim>
+Mesh<dim> make_mesh(const MeshParameters<dim> &parameters)
+{
+  check_parameters(parameters);
+  const int levels = has_inner_box(parameters) ? parameters.levels : 0;
+  const Grid grid = make_grid(parameters, levels);
+
+  dealii::Triangulation<dim> triangulation(
+      dealii::Triangulation<dim>::limit_level_difference_at_vertices);
+  make_base_mesh(grid, Index(1) << levels, triangulation);
+  refine(grid, parameters, levels, triangulation);
+
+  const dealii::FE_Q<dim> element(1);
+  dealii::DoFHandler<dim> dofs(triangulation);
+  dofs.distribute_dofs(element);
+  core::require(
+      dofs.n_dofs() < (1u << 31) / dim,
+      fmt::format("far-field mesh: {} nodes are too many; use larger cells or more levels",
+                  dofs.n_dofs()));
+
+  Mesh<dim> mesh;
+  std::vector<int> node_of_dof;
+  add_cells(grid, levels, dofs, mesh, node_of_dof);
+  add_hanging_nodes(dofs, node_of_dof, mesh);
+  return mesh;
+}
+
+template Mesh<2> make_mesh<2>(const MeshParameters<2> &);
+template Mesh<3> make_mesh<3>(const MeshParameters<3> &);
+} // namespace ligament::fem
