@@ -1,6 +1,7 @@
 // What both models show at one time, as plain arrays: the common ground of VTK files and pictures.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -66,6 +67,10 @@ struct BrokenBond
   double size;        // 2D: length of the face, m; 3D: its area, m^2
   double energy;      // J, released by the face
 };
+
+/// Two unit vectors that span the plane of a face with unit normal n; the first one has z = 0, in
+/// 2D it is the direction of the face.
+std::array<std::array<double, 3>, 2> face_tangents(const double *n);
 
 /// The field of this name; null when there is none.
 const Field *find_field(const std::vector<Field> &fields, const std::string &name);

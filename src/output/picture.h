@@ -1,6 +1,7 @@
 // Pictures of specimen, zones and crack without a display: coloured particles, cells and lines.
 #pragma once
 
+#include "src/output/color.h"
 #include "src/output/fields.h"
 
 #include <array>
@@ -11,11 +12,6 @@
 
 namespace ligament::program
 {
-struct Color
-{
-  std::uint8_t r, g, b;
-};
-
 /// Particles drawn as discs (2D) or shaded spheres (3D). x, y, z per particle.
 struct Scatter
 {

@@ -36,4 +36,7 @@ std::string svg(const Plot &plot);
 /// Round values that divide [lower, upper] into about n parts: multiples of 1, 2 or 5 times a power
 /// of ten.
 std::vector<double> nice_ticks(double lower, double upper, int n);
+
+/// A tick with as many decimals as the distance to its neighbours needs.
+std::string tick_text(double tick, double distance);
 } // namespace ligament::program

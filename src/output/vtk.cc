@@ -158,20 +158,6 @@ void write_dataset(const std::string &path, const char *type, const std::string 
   file.commit();
 }
 
-/// Two unit vectors that span the plane of the face; the first lies in the plane z = 0 in 2D.
-std::array<std::array<double, 3>, 2> tangents(const double *n)
-{
-  const double in_plane = std::hypot(n[0], n[1]);
-  const std::array<double, 3> t = in_plane > 0.1
-                                      ? std::array<double, 3>{-n[1] / in_plane, n[0] / in_plane, 0}
-                                      : std::array<double, 3>{1, 0, 0};
-  std::array<double, 3> s = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
-                             n[0] * t[1] - n[1] * t[0]};
-  const double length = std::hypot(s[0], s[1], s[2]);
-  for (double &c : s)
-    c /= length;
-  return {t, s};
-}
 } // namespace
 
 void write_particles_vtp(const std::string &path, const ParticleFields &particles)
@@ -214,7 +200,7 @@ void write_broken_bonds_vtp(const std::string &path, const std::vector<BrokenBon
   Field i{"global_id_i", "1", Kind::scalar, {}, Storage::int64};
   Field j{"global_id_j", "1", Kind::scalar, {}, Storage::int64};
   for (const auto &bond : bonds) {
-    const auto [t, s] = tangents(bond.normal);
+    const auto [t, s] = face_tangents(bond.normal);
     const double half = 0.5 * (dimension == 2 ? bond.size : std::sqrt(bond.size));
     static constexpr double along_t[] = {-1, 1, 1, -1}, along_s[] = {-1, -1, 1, 1};
     for (std::size_t k = 0; k < corners; ++k)

@@ -1,0 +1,399 @@
+#include "src/output/compare.h"
+
+#include "core/check.h"
+#include "core/files.h"
+#include "src/output/broken_bonds.h"
+#include "src/output/crack_path.h"
+#include "src/output/curve.h"
+#include "src/output/field_error.h"
+#include "src/output/format.h"
+#include "src/output/html.h"
+#include "src/output/plot.h"
+#include "src/output/run_folder.h"
+#include "src/output/run_record.h"
+#include "src/output/table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+/// A run, or a curve of which nothing else is known.
+struct Side
+{
+  std::string name;
+  std::optional<RunFolder> folder;
+  std::optional<RunRecord> record;
+  Table curve;
+
+  std::optional<std::vector<double>> values(const char *column, const char *unit) const
+  {
+    if (!curve.has(column))
+      return {};
+    auto numbers = curve.column(column, unit);
+    const bool known =
+        std::any_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
+    return known ? std::optional(std::move(numbers)) : std::nullopt;
+  }
+};
+
+std::string name_of(const std::string &path)
+{
+  auto normal = std::filesystem::path(path).lexically_normal();
+  if (!normal.has_filename())
+    normal = normal.parent_path();
+  std::string name = normal.extension() == ".csv" ? normal.stem() : normal.filename();
+  for (char &c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.')
+      c = '_';
+  return name;
+}
+
+Side read_run(const std::string &path)
+{
+  Side side{name_of(path), RunFolder{path}, {}, {}};
+  core::require(side.folder->holds_a_run(),
+                path + ": not the output folder of a run (no run.json in it)");
+  side.record = read_run_record(side.folder->record());
+  side.curve = read_csv(side.folder->history());
+  return side;
+}
+
+Side read_reference(const std::string &path)
+{
+  if (std::filesystem::is_directory(path))
+    return read_run(path);
+  core::require(std::filesystem::is_regular_file(path),
+                path + ": neither the output folder of a run nor a CSV file");
+  return {name_of(path), {}, {}, read_csv(path)};
+}
+
+std::optional<double> relative_error(const std::optional<double> &run,
+                                     const std::optional<double> &reference)
+{
+  if (!run || !reference || *reference == 0)
+    return {};
+  return *run / *reference - 1;
+}
+
+std::optional<double> ratio(const std::optional<double> &a, const std::optional<double> &b)
+{
+  if (!a || !b || !(*a > 0) || !(*b > 0))
+    return {};
+  return *a / *b;
+}
+
+/// What both sides can be measured by: load over displacement, or stress over strain.
+struct Measure
+{
+  const char *x, *x_unit, *y, *y_unit;
+};
+constexpr Measure by_stress = {"strain", "1", "stress", "Pa"};
+constexpr Measure by_load = {"displacement", "m", "load", "N"};
+
+bool has(const Side &side, const Measure &m)
+{
+  return side.values(m.x, m.x_unit) && side.values(m.y, m.y_unit);
+}
+
+std::optional<double> stiffness(const Side &side, const Measure &m)
+{
+  if (!has(side, m))
+    return {};
+  return fit_stiffness(*side.values(m.x, m.x_unit), *side.values(m.y, m.y_unit));
+}
+
+std::optional<double> peak(const Side &side, const Measure &m)
+{
+  const bool load = std::string(m.y) == "load";
+  if (side.record && (load ? side.record->peak_load : side.record->peak_stress))
+    return load ? side.record->peak_load : side.record->peak_stress;
+  const auto values = side.values(m.y, m.y_unit);
+  if (!values)
+    return {};
+  const auto index = peak_index(*values);
+  return index ? std::optional((*values)[*index]) : std::nullopt;
+}
+
+/// External work up to the peak: booked by a run, else the area under the curve.
+std::optional<double> work_at_peak(const Side &side)
+{
+  const auto load = side.values("load", "N");
+  const auto index = load ? peak_index(*load) : std::nullopt;
+  if (!index)
+    return {};
+  if (const auto work = side.values("external_work", "J"))
+    return std::isfinite((*work)[*index]) ? std::optional((*work)[*index]) : std::nullopt;
+  const auto displacement = side.values("displacement", "m");
+  if (!displacement)
+    return {};
+  double area = 0;
+  for (std::size_t i = 1; i <= *index; ++i)
+    area += 0.5 * ((*load)[i] + (*load)[i - 1]) * ((*displacement)[i] - (*displacement)[i - 1]);
+  return area;
+}
+
+struct Distances
+{
+  std::optional<double> mean, max;
+};
+
+/// Both directions, in units of `diameter`.
+Distances crack_distance(const std::vector<BrokenBond> &run_part,
+                         const std::vector<BrokenBond> &run,
+                         const std::vector<BrokenBond> &reference_part,
+                         const std::vector<BrokenBond> &reference, double diameter)
+{
+  Distances result;
+  double sum = 0, largest = 0;
+  int n_directions = 0;
+  for (const auto &distances :
+       {nearest_distances(run_part, reference), nearest_distances(reference_part, run)})
+  {
+    if (distances.empty())
+      continue;
+    double direction = 0;
+    for (const double distance : distances) {
+      direction += distance / diameter;
+      largest = std::max(largest, distance / diameter);
+    }
+    sum += direction / double(distances.size());
+    ++n_directions;
+  }
+  if (n_directions > 0)
+    result = {sum / n_directions, largest};
+  return result;
+}
+
+std::vector<BrokenBond> part(const std::vector<BrokenBond> &bonds, double time, bool later)
+{
+  std::vector<BrokenBond> chosen;
+  std::copy_if(bonds.begin(), bonds.end(), std::back_inserter(chosen),
+               [&](const BrokenBond &b) { return (b.time > time) == later; });
+  return chosen;
+}
+
+class Comparison
+{
+public:
+  Comparison(Side run, Side reference) : run_(std::move(run)), reference_(std::move(reference)) {}
+
+  CompareResult result()
+  {
+    curves();
+    if (reference_.record) {
+      crack();
+      fields();
+      cost();
+    } else
+      r_.notes.push_back("the reference is a curve: no crack path, fields or times to compare");
+    write_files();
+    return std::move(r_);
+  }
+
+private:
+  void line(const std::string &name, const std::string &run, const std::string &reference,
+            const std::string &difference)
+  {
+    r_.lines.push_back({name, run, reference, difference});
+  }
+  static std::string text(const std::optional<double> &value, const char *unit)
+  {
+    return value ? quantity(*value, unit) : "-";
+  }
+  static std::string diameters(const std::optional<double> &value)
+  {
+    return value ? fmt::format("{:.2f} d", *value) : "-";
+  }
+
+  void curves()
+  {
+    // The user's curve decides what can be compared; two runs have everything.
+    const bool load = run_.values("load", "N") && reference_.values("load", "N");
+    const Measure &by_peak = load ? by_load : by_stress;
+    const auto a = peak(run_, by_peak), b = peak(reference_, by_peak);
+    r_.peak_load_error = relative_error(a, b);
+    line(load ? "peak load" : "peak stress", text(a, by_peak.y_unit), text(b, by_peak.y_unit),
+         percent(r_.peak_load_error));
+    if (!r_.peak_load_error)
+      r_.notes.push_back("peak: both curves need a column load (N) or stress (Pa) that is not 0");
+
+    const bool stress = has(run_, by_stress) && has(reference_, by_stress);
+    measure_ = stress ? by_stress : by_load;
+    const auto ka = stiffness(run_, measure_), kb = stiffness(reference_, measure_);
+    r_.stiffness_error = relative_error(ka, kb);
+    const char *unit = stress ? "Pa" : "N/m";
+    line("stiffness", text(ka, unit), text(kb, unit), percent(r_.stiffness_error));
+    if (!r_.stiffness_error)
+      r_.notes.push_back("stiffness: three points between 10 % and 50 % of the peak are needed, "
+                         "with strain and stress or displacement and load in both curves");
+
+    const auto wa = work_at_peak(run_), wb = work_at_peak(reference_);
+    r_.energy_error = relative_error(wa, wb);
+    line("external work at the peak", text(wa, "J"), text(wb, "J"), percent(r_.energy_error));
+  }
+
+  void crack()
+  {
+    std::vector<BrokenBond> a, b;
+    for (const auto &[side, bonds] : {std::pair(&run_, &a), std::pair(&reference_, &b)})
+      if (std::filesystem::exists(side->folder->broken_bonds()))
+        *bonds = read_broken_bonds(side->folder->broken_bonds());
+    line("broken faces", grouped(std::int64_t(a.size())), grouped(std::int64_t(b.size())), "");
+    if (a.empty() || b.empty()) {
+      r_.notes.push_back("crack path: not in both runs a face broke");
+      return;
+    }
+    const double d = run_.record->spacing;
+    const auto all = crack_distance(a, a, b, b, d);
+    r_.crack_distance_mean = all.mean;
+    r_.crack_distance_max = all.max;
+    line("crack path, mean distance", "", "", diameters(all.mean));
+    line("crack path, largest distance", "", "", diameters(all.max));
+    const auto &ta = run_.record->peak_time, &tb = reference_.record->peak_time;
+    if (!ta || !tb)
+      return;
+    const auto before = crack_distance(part(a, *ta, false), a, part(b, *tb, false), b, d);
+    r_.crack_distance_mean_to_peak = before.mean;
+    r_.crack_distance_max_to_peak = before.max;
+    line("  up to the peak, mean / largest", "", "",
+         diameters(before.mean) + " / " + diameters(before.max));
+    const auto after = crack_distance(part(a, *ta, true), a, part(b, *tb, true), b, d);
+    r_.crack_distance_mean_after_peak = after.mean;
+    r_.crack_distance_max_after_peak = after.max;
+    line("  after the peak, mean / largest", "", "",
+         diameters(after.mean) + " / " + diameters(after.max));
+  }
+
+  void fields()
+  {
+    const std::string a = run_.folder->peak_snapshot(), b = reference_.folder->peak_snapshot();
+    if (!std::filesystem::exists(a) || !std::filesystem::exists(b)) {
+      r_.notes.push_back("fields: not both runs kept a snapshot at the peak");
+      return;
+    }
+    const FieldError error = field_error(read_snapshot(a), read_snapshot(b));
+    r_.matched_particles = error.matched;
+    r_.displacement_error = error.displacement;
+    r_.displacement_error_max = error.displacement_max;
+    r_.velocity_error = error.velocity;
+    r_.velocity_error_max = error.velocity_max;
+    if (error.matched == 0)
+      r_.notes.push_back("fields: no particle stands at the same place in both runs");
+    const auto both = [](const std::optional<double> &l2, const std::optional<double> &max) {
+      return l2 ? fmt::format("{:.2f} % / {:.2f} %", 100 * *l2, 100 * max.value_or(0)) : "-";
+    };
+    const std::string matched = grouped(error.matched) + " particles";
+    line("displacement at the peak, L2 / largest", matched, "",
+         both(error.displacement, error.displacement_max));
+    line("velocity at the peak, L2 / largest", matched, "",
+         both(error.velocity, error.velocity_max));
+  }
+
+  void cost()
+  {
+    const RunRecord &a = *run_.record, &b = *reference_.record;
+    r_.time_ratio = ratio(b.wall_seconds, a.wall_seconds);
+    r_.particle_ratio = ratio(double(b.particles), double(a.particles));
+    const auto factor = [](const std::optional<double> &f) {
+      return f ? fmt::format("{:.2f} x", *f) : "-";
+    };
+    line("particles", grouped(a.particles), grouped(b.particles), factor(r_.particle_ratio));
+    line("wall time", duration(a.wall_seconds), duration(b.wall_seconds), factor(r_.time_ratio));
+  }
+
+  void write_files()
+  {
+    Plot plot;
+    plot.title = run_.name + " against " + reference_.name;
+    plot.x = {measure_.x, measure_.x_unit, false};
+    plot.y = {measure_.y, measure_.y_unit, false};
+    for (const Side *side : {&run_, &reference_})
+      if (has(*side, measure_))
+        plot.series.push_back({side->name, *side->values(measure_.x, measure_.x_unit),
+                               *side->values(measure_.y, measure_.y_unit), side == &reference_,
+                               false, true});
+    if (plot.series.size() < 2)
+      r_.notes.push_back("plot: the curves have no pair of columns in common");
+    const std::string stem = run_.folder->path + "/compare_" + reference_.name;
+    r_.svg_file = stem + ".svg";
+    r_.html_file = stem + ".html";
+    const std::string drawing = svg(plot);
+    core::write_file(r_.svg_file, drawing);
+
+    std::vector<std::vector<std::string>> rows;
+    for (const auto &l : r_.lines)
+      rows.push_back({l.name, l.run, l.reference, l.difference});
+    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + drawing;
+    for (const auto &note : r_.notes)
+      body += "<p>" + escape_xml(note) + "</p>\n";
+    core::write_file(r_.html_file, html_page(plot.title, body));
+  }
+
+  Side run_, reference_;
+  Measure measure_ = by_load;
+  CompareResult r_;
+};
+} // namespace
+
+CompareResult compare(const std::string &run_folder, const std::string &reference)
+{
+  return Comparison(read_run(run_folder), read_reference(reference)).result();
+}
+
+std::string table(const CompareResult &result)
+{
+  CompareResult::Line head{"", "run", "reference", "difference"};
+  std::size_t width[3] = {0, head.run.size(), head.reference.size()};
+  for (const auto &l : result.lines) {
+    width[0] = std::max(width[0], l.name.size());
+    width[1] = std::max(width[1], l.run.size());
+    width[2] = std::max(width[2], l.reference.size());
+  }
+  std::string text;
+  const auto add = [&](const CompareResult::Line &l) {
+    text += fmt::format("{:<{}}  {:>{}}  {:>{}}  {}\n", l.name, width[0], l.run, width[1],
+                        l.reference, width[2], l.difference);
+  };
+  add(head);
+  for (const auto &l : result.lines)
+    add(l);
+  for (const auto &note : result.notes)
+    text += "note: " + note + "\n";
+  return text;
+}
+
+nlohmann::json to_json(const CompareResult &r)
+{
+  nlohmann::json json;
+  const auto put = [&](const char *name, const std::optional<double> &value) {
+    json[name] = value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  put("peak_load_error", r.peak_load_error);
+  put("stiffness_error", r.stiffness_error);
+  put("crack_distance_mean", r.crack_distance_mean);
+  put("crack_distance_max", r.crack_distance_max);
+  put("crack_distance_mean_to_peak", r.crack_distance_mean_to_peak);
+  put("crack_distance_max_to_peak", r.crack_distance_max_to_peak);
+  put("crack_distance_mean_after_peak", r.crack_distance_mean_after_peak);
+  put("crack_distance_max_after_peak", r.crack_distance_max_after_peak);
+  put("energy_error", r.energy_error);
+  put("time_ratio", r.time_ratio);
+  put("particle_ratio", r.particle_ratio);
+  put("displacement_error", r.displacement_error);
+  put("displacement_error_max", r.displacement_error_max);
+  put("velocity_error", r.velocity_error);
+  put("velocity_error_max", r.velocity_error_max);
+  json["matched_particles"] = r.matched_particles;
+  json["notes"] = r.notes;
+  json["plot"] = r.svg_file;
+  json["page"] = r.html_file;
+  return json;
+}
+} // namespace ligament::program
