@@ -13,6 +13,9 @@ namespace ligament::program
 {
 /// Scenes are read before the dimension is known to the compiler; z is 0 in 2D.
 using Point = std::array<double, 3>;
+using PartialPoint = std::array<std::optional<double>, 3>;
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A cut without width: 2D a segment (two points), 3D a convex plane polygon (three or more).
 struct Crack
@@ -35,7 +38,7 @@ struct Notch
 
 struct Specimen
 {
-  Point size; // m, a box centred at the origin
+  Point size;           // m, a box centred at the origin
   double thickness = 1; // m, 2D only
   std::vector<Crack> cracks;
   std::vector<Hole> holes;
@@ -44,9 +47,9 @@ struct Specimen
 
 struct FractureParameters
 {
-  std::string criterion = "none";       // none, maximum_tension
-  std::optional<double> strength;       // Pa
-  std::optional<double> toughness;      // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
+  std::string criterion = "none";  // none, maximum_tension
+  std::optional<double> strength;  // Pa
+  std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
 };
 
 struct MaterialParameters
@@ -67,18 +70,20 @@ struct DiscreteZone
     box
   };
   Extent extent = Extent::box;
-  Point lower, upper; // m; sides that reach beyond the specimen are not coupled
-  std::string packing = "hexagonal"; // square, hexagonal (2D); simple_cubic, fcc (3D)
-  double spacing; // m, d
+  /// m; sides that reach beyond the specimen are not coupled. Infinite only while it is read:
+  /// afterwards such sides lie half a specimen outside.
+  Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
+  std::string packing; // square, hexagonal (2D); simple_cubic, fcc (3D); empty: not given
+  double spacing = 0;  // m, d; 0: not given, which only scenes without particles may do
   /// 2D: {angle}; 3D: rotation vector; rad. Close-packed rows lie along x at 0.
   Point orientation = {0, 0, 0};
 };
 
 struct FarField
 {
-  double cell_size;          // m, h beside the zone
-  int levels = 0;            // refinement levels: the largest cells have size h 2^levels
-  int cells_per_level = 4;   // cells between two steps of the mesh size
+  double cell_size;        // m, h beside the zone
+  int levels = 0;          // refinement levels: the largest cells have size h 2^levels
+  int cells_per_level = 4; // cells between two steps of the mesh size
 };
 
 struct CouplingParameters
@@ -96,32 +101,33 @@ struct CouplingParameters
 
 struct Damping
 {
-  double local = 0;   // fraction of the force, against the motion
-  double mass = 0;    // 1/s, all bodies
+  double local = 0; // fraction of the force, against the motion
+  double mass = 0;  // 1/s, all bodies
   bool kinetic = false;
 };
 
 struct LoadParameters
 {
-  std::string boundary; // left right bottom top back front
-  std::string kind;     // velocity displacement traction
-  std::array<std::optional<double>, 3> value;
-  double ramp = 0; // s
+  std::string boundary;                          // left right bottom top back front
+  PartialPoint velocity, displacement, traction; // m/s, m, Pa; one of them has components
+  double ramp = 0;                               // s
+  std::string kind;                              // name of the one that has components
+  PartialPoint value;                            // and its components
 };
 
 struct TimeParameters
 {
   double duration; // s
   double step_fraction = 0.9;
-  std::optional<double> step; // s; refused above the stable one
+  std::optional<double> step;    // s; refused above the stable one
   std::string stop_when = "end"; // end, specimen_broken
 };
 
 struct OutputParameters
 {
-  double field_interval = std::numeric_limits<double>::infinity(); // s
-  double history_interval = 0; // s; 0: duration/2000
-  double progress_interval = 2; // s of wall time
+  double field_interval = infinity; // s; infinite: never
+  double history_interval = 0;      // s; 0: duration/2000
+  double progress_interval = 2;     // s of wall time
 };
 
 struct Scene

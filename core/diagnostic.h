@@ -1,0 +1,31 @@
+// What is wrong with an input, where, why, and how to put it right.
+#pragma once
+
+#include "core/place.h"
+
+#include <string>
+#include <vector>
+
+namespace ligament::core
+{
+struct Diagnostic
+{
+  enum class Severity
+  {
+    error,
+    warning
+  };
+  Place place;
+  std::string key;     // JSON pointer of the key it is about, such as /coupling/overlap_cells
+  std::string message; // one line
+  std::string reason;  // may be empty
+  std::string remedy;  // may be empty
+  Severity severity = Severity::error;
+};
+
+/// "scene.json:14:7: error: message", then the reason and the remedy on lines of their own.
+std::string to_string(const Diagnostic &diagnostic);
+
+/// In the order of the file, what came from the command line after it.
+void sort_by_place(std::vector<Diagnostic> &diagnostics);
+} // namespace ligament::core

@@ -1,0 +1,98 @@
+#include "src/launcher/command_line.h"
+
+#include "core/version.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+namespace ligament::program
+{
+namespace
+{
+void add_scene_options(CLI::App &app, CommandLine &line)
+{
+  app.add_option("scene", line.scene, "scene file")->required()->type_name("SCENE");
+  // One value per --set: what follows belongs to other options.
+  app.add_option("--set", line.overrides, "replaces a value of the scene; may be repeated")
+      ->type_name("/PATH=VALUE")
+      ->type_size(1)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  app.add_option("--output,-o", line.output, "folder for the results")->type_name("DIR");
+  app.add_option("-n", line.ranks, "number of ranks (only 1 so far)")->type_name("RANKS");
+}
+
+void declare(CLI::App &app, CommandLine &line)
+{
+  app.require_subcommand(1);
+  app.set_version_flag("--version",
+                       fmt::format("ligament {} (commit {})", core::version(), core::commit()));
+  app.failure_message(CLI::FailureMessage::help);
+
+  CLI::App &run = *app.add_subcommand("run", "computes a scene");
+  add_scene_options(run, line);
+
+  CLI::App &check =
+      *app.add_subcommand("check", "everything but time stepping: errors, sizes, steps, cost");
+  add_scene_options(check, line);
+  check.add_flag("--draw", line.draw, "also draws zones and boundary conditions");
+
+  CLI::App &compare = *app.add_subcommand("compare", "a run beside its reference");
+  compare.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
+  compare.add_option("reference", line.reference, "folder of the reference, or a CSV curve")
+      ->required()
+      ->type_name("REFERENCE");
+
+  CLI::App &explain = *app.add_subcommand("explain", "default, unit, bounds and meaning of a key");
+  explain.add_option("key", line.key, "such as /coupling/overlap_cells; without it: all keys")
+      ->type_name("KEY");
+  explain.add_flag("--markdown", line.markdown, "all keys, as the page of the manual");
+  explain.add_flag("--schema", line.schema, "all keys, as JSON schema for editors");
+
+  CLI::App &report = *app.add_subcommand("report", "writes the HTML report of a run again");
+  report.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
+
+  CLI::App &verify = *app.add_subcommand("verify", "runs the built-in cases: is this build right?");
+  verify.add_option("case", line.verify_case, "one case; without it: all")->type_name("CASE");
+  verify.add_flag("--full", line.full, "also the cases that take long");
+
+  for (CLI::App *command : app.get_subcommands({}))
+    command->add_flag("--json", line.json, "ends with one JSON object on the last line");
+}
+} // namespace
+
+std::string error_json(const std::string &message)
+{
+  return nlohmann::json{{"errors", nlohmann::json::array({{{"message", message}}})}}.dump();
+}
+
+CommandLine parse_command_line(int argc, const char *const *argv)
+{
+  CommandLine line;
+  CLI::App app("Ligament: fracture of large specimens, discrete elements where they break, finite "
+               "elements around",
+               "ligament");
+  declare(app, line);
+  try {
+    app.parse(argc, argv);
+    line.command = app.get_subcommands().front()->get_name();
+  } catch (const CLI::ParseError &error) {
+    // Exit code 2 for all mistakes; CLI11 counts help and version as errors with code 0.
+    line.exit_code = error.get_exit_code() == 0 ? app.exit(error) : 2;
+    if (*line.exit_code == 0)
+      return line;
+    fmt::print(stderr, "error: {}\n  remedy: see ligament --help\n", error.what());
+    const bool json = std::any_of(
+        argv, argv + argc, [](const char *word) { return std::string_view(word) == "--json"; });
+    if (json)
+      fmt::print("{}\n", error_json(error.what()));
+  }
+  return line;
+}
+} // namespace ligament::program

@@ -1,0 +1,37 @@
+// The commands and options that users type; the launcher and the solver read the same ones.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligament::program
+{
+struct CommandLine
+{
+  std::string command; // run check compare explain report verify
+  bool json = false;   // end with one JSON object on the last line of standard output
+
+  std::string scene;                  // run, check: file
+  std::vector<std::string> overrides; // run, check: "/path=value", in their order
+  std::string output;                 // run, check: folder; empty: chosen from the scene's name
+  int ranks = 1;                      // run, check
+  bool draw = false;                  // check: also a picture
+  std::string run, reference;         // compare, report: folders (the reference may be a curve)
+  std::string key;                    // explain; empty: all keys
+  bool markdown = false;              // explain: the page of the manual
+  bool schema = false;                // explain: the JSON schema
+  std::string verify_case;            // verify; empty: all
+  bool full = false;                  // verify: also the slow ones
+
+  /// Set when nothing is left to do: help and version were printed, or a mistake (2).
+  std::optional<int> exit_code;
+};
+
+/// Reads the arguments; help and version go to standard output, mistakes to standard error (and,
+/// with --json, to standard output as an object with "errors").
+CommandLine parse_command_line(int argc, const char *const *argv);
+
+/// Text of {"errors": [message]} on one line, for mistakes that have no place in a scene.
+std::string error_json(const std::string &message);
+} // namespace ligament::program

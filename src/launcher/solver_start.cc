@@ -1,0 +1,43 @@
+#include "src/launcher/solver_start.h"
+
+#include "core/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include <unistd.h>
+
+namespace ligament::program
+{
+void start_solver(int argc, char *const *argv)
+{
+  std::error_code failed;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  core::require<core::EnvironmentError>(!failed,
+                                        "cannot find the own program: " + failed.message());
+  const std::string solver = (self.parent_path() / "ligament-solver").string();
+  std::string name = solver;
+  std::vector<char *> arguments(argv, argv + argc);
+  arguments[0] = name.data();
+  arguments.push_back(nullptr);
+  execv(solver.c_str(), arguments.data());
+  throw core::EnvironmentError(
+      fmt::format("cannot start {}: {}; build or install both programs into the same folder",
+                  solver, std::strerror(errno)));
+}
+
+int launched_ranks()
+{
+  for (const char *name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
+    if (const char *value = std::getenv(name))
+      return std::max(1, std::atoi(value));
+  return 1;
+}
+} // namespace ligament::program

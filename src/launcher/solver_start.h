@@ -1,0 +1,14 @@
+// Hands over to the solver, a second program beside this one: it takes long to load.
+#pragma once
+
+#include <string>
+
+namespace ligament::program
+{
+/// Replaces this process by the solver with the same arguments; returns only by an exception.
+/// Throws core::EnvironmentError when the solver cannot be started.
+[[noreturn]] void start_solver(int argc, char *const *argv);
+
+/// How many processes mpirun or srun has started beside this one; 1 without them.
+int launched_ranks();
+} // namespace ligament::program

@@ -1,0 +1,107 @@
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+constexpr const char *side_names[] = {"left", "right", "bottom", "top", "back", "front"};
+
+int side_number(const std::string &boundary)
+{
+  return int(std::find(std::begin(side_names), std::end(side_names), boundary) -
+             std::begin(side_names));
+}
+
+bool has_components(const PartialPoint &value)
+{
+  return std::any_of(value.begin(), value.end(), [](const auto &x) { return x.has_value(); });
+}
+
+/// The keys of a load that have components.
+std::vector<std::string> kinds_of(const LoadParameters &load)
+{
+  std::vector<std::string> kinds;
+  if (has_components(load.velocity))
+    kinds.push_back("velocity");
+  if (has_components(load.displacement))
+    kinds.push_back("displacement");
+  if (has_components(load.traction))
+    kinds.push_back("traction");
+  return kinds;
+}
+
+bool acts_on(const LoadParameters &load, int c)
+{
+  return load.velocity[c] || load.displacement[c] || load.traction[c];
+}
+
+void check_against_overlap(const LoadParameters &load, const std::string &key, const Layout &layout,
+                           Findings &f)
+{
+  const int side = side_number(load.boundary), axis = side / 2;
+  if (!layout.coupled || layout.coupled_side[side])
+    return;
+  // The zone reaches this side. Overlaps along the other axes end on it.
+  for (int other = 0; other < 2 * layout.dim; ++other)
+    if (other / 2 != axis && layout.coupled_side[other]) {
+      f.error(
+          key + "/boundary",
+          fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
+                      key, load.boundary),
+          fmt::format("/discrete_zone/region reaches this side and is coupled along \"{}\"; an "
+                      "overlap may end only at free sides",
+                      side_names[other]),
+          "end the region before this side, or load other sides");
+      return;
+    }
+}
+} // namespace
+
+void check_loads(const Scene &scene, const Layout *layout, Findings &f)
+{
+  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
+    const LoadParameters &load = scene.loads[k];
+    const std::string key = "/loads/" + std::to_string(k);
+    if (!f.sound({key}))
+      continue;
+    if (scene.dimension == 2 && (load.boundary == "back" || load.boundary == "front")) {
+      f.error(key + "/boundary",
+              fmt::format("\"boundary\" in {} is \"{}\", a side that 2D scenes do not have", key,
+                          load.boundary),
+              "/dimension is 2", "choose \"left\", \"right\", \"bottom\" or \"top\"");
+      continue;
+    }
+    const std::vector<std::string> kinds = kinds_of(load);
+    if (kinds.empty())
+      f.error(key, fmt::format("{} has no \"velocity\", \"displacement\" or \"traction\"", key),
+              "a load without components does nothing", "add one of them, or remove the load");
+    if (kinds.size() > 1)
+      f.error(key + "/" + kinds[1],
+              fmt::format("both \"{}\" and \"{}\" in {}", kinds[0], kinds[1], key),
+              "one load is of one kind", "write two loads with different components");
+    if (!f.sound({key}))
+      continue;
+    for (std::size_t j = 0; j < k; ++j)
+      for (int c = 0; c < scene.dimension; ++c)
+        if (scene.loads[j].boundary == load.boundary && acts_on(load, c) &&
+            acts_on(scene.loads[j], c) && f.sound({key}))
+          f.error(key + "/boundary",
+                  fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice",
+                              key, "xyz"[c], load.boundary),
+                  fmt::format("/loads/{} acts on it already", j),
+                  "keep one of the two, or set the component to null in one");
+    if (layout && f.sound({key}))
+      check_against_overlap(load, key, *layout, f);
+    if (load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"}))
+      f.warning(key + "/ramp",
+                fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
+                "the load will not reach its value", "");
+  }
+  if (scene.loads.empty() && f.sound({"/loads"}))
+    f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
+}
+} // namespace ligament::program

@@ -1,0 +1,301 @@
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ligament::program
+{
+namespace
+{
+using Extent = DiscreteZone::Extent;
+
+const std::string zone_key = "/discrete_zone", far_key = "/far_field",
+                  region_key = "/discrete_zone/region", spacing_key = "/discrete_zone/spacing",
+                  cell_key = "/far_field/cell_size", size_key = "/specimen/size";
+
+constexpr const char *axis_names = "xyz";
+
+bool is_coupled(const Scene &scene)
+{
+  return scene.zone.extent == Extent::box && scene.far_field.has_value();
+}
+
+Box box_of(const Specimen &specimen)
+{
+  Box box;
+  for (int c = 0; c < 3; ++c) {
+    box.lower[c] = -specimen.size[c] / 2;
+    box.upper[c] = specimen.size[c] / 2;
+  }
+  return box;
+}
+
+/// Both models must be able to exist: the keys that are needed only then.
+void check_models(const Scene &scene, Findings &f)
+{
+  if (!f.given(zone_key))
+    f.error(
+        zone_key, "missing key \"discrete_zone\" in /",
+        "it says where the body is made of discrete elements",
+        "add \"discrete_zone\": {\"region\": .., \"packing\": .., \"spacing\": ..}, or \"none\"");
+  if (!f.sound({zone_key}) || !f.sound({far_key}))
+    return;
+  const bool no_far = !scene.far_field.has_value();
+  if (scene.zone.extent == Extent::none) {
+    if (no_far)
+      f.error(far_key, "neither \"discrete_zone\" nor \"far_field\" is there",
+              "a scene needs at least one of the two models", "give one of them");
+    return;
+  }
+  if (scene.zone.extent == Extent::box && no_far)
+    f.error(far_key, "missing key \"far_field\" in /",
+            "the discrete zone is a part of the specimen, the rest needs finite elements",
+            "add \"far_field\": {\"cell_size\": ..}, or \"far_field\": \"none\" for the pure "
+            "discrete reference");
+  if (scene.zone.extent == Extent::box && !f.given(region_key))
+    f.error(region_key, "missing key \"region\" in /discrete_zone",
+            "it says which part of the specimen is discrete",
+            "add \"region\": {\"lower\": [..], \"upper\": [..]}, or \"extent\": \"all\"");
+  for (const std::string key : {"packing", "spacing"})
+    if (!f.given(zone_key + "/" + key))
+      f.error(zone_key + "/" + key, fmt::format("missing key \"{}\" in /discrete_zone", key),
+              "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
+}
+
+void check_packing(const Scene &scene, Findings &f)
+{
+  const std::string key = zone_key + "/packing";
+  if (!f.sound_and_given({"/discrete_zone/packing"}) || !f.sound({"/dimension"}))
+    return;
+  const bool plane = scene.zone.packing == "square" || scene.zone.packing == "hexagonal";
+  if (plane != (scene.dimension == 2))
+    f.error(key,
+            fmt::format("\"packing\" in /discrete_zone is \"{}\", which is not a packing in {}D",
+                        scene.zone.packing, scene.dimension),
+            fmt::format("/dimension is {}", scene.dimension),
+            scene.dimension == 2 ? "choose \"hexagonal\" or \"square\""
+                                 : "choose \"fcc\" or \"simple_cubic\"");
+}
+
+void check_fracture(const Scene &scene, Findings &f)
+{
+  const std::string section = "/material/fracture";
+  const bool strength = f.given(section + "/strength"), toughness = f.given(section + "/toughness");
+  if (strength && toughness)
+    f.error(section + "/toughness", "both \"strength\" and \"toughness\" in /material/fracture",
+            "the strength of a bond follows from the toughness", "remove one of them");
+  if (!f.sound({section + "/criterion"}))
+    return;
+  if (scene.material.fracture.criterion == "none" && (strength || toughness))
+    f.warning(section + (strength ? "/strength" : "/toughness"),
+              "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"", "");
+  if (scene.material.fracture.criterion != "none" && !strength && !toughness && f.sound({section}))
+    f.error(section + "/criterion",
+            "\"criterion\" in /material/fracture has neither \"strength\" nor \"toughness\"",
+            "it needs to know when a bond breaks", "add one of them, or choose \"none\"");
+}
+
+void check_time(const Scene &scene, Findings &f)
+{
+  if (f.given("/time/step") && f.given("/time/step_fraction"))
+    f.error("/time/step", "both \"step\" and \"step_fraction\" in /time",
+            "they are two ways to say the same", "remove one of them");
+  else if (f.sound_and_given({"/time/step", "/time/duration"}) &&
+           *scene.time.step > scene.time.duration)
+    f.error("/time/step",
+            fmt::format("\"step\" in /time is {} s, longer than the duration of {} s",
+                        *scene.time.step, scene.time.duration),
+            "nothing would be computed", "give a smaller step, or none");
+  if (f.sound({"/time/stop_when", "/material/fracture/criterion"}) &&
+      scene.time.stop_when == "specimen_broken" && scene.material.fracture.criterion == "none")
+    f.warning("/time/stop_when", "\"stop_when\" in /time waits for a fracture that cannot happen",
+              "the fracture criterion is \"none\"", "");
+}
+
+/// The spacing against the specimen: enough particles to be a body, not more than fit an index.
+void check_spacing(const Scene &scene, const Box &zone, Findings &f)
+{
+  const double d = scene.zone.spacing;
+  double number = 1;
+  for (int c = 0; c < scene.dimension; ++c) {
+    number *= (zone.upper[c] - zone.lower[c]) / d;
+    if (scene.specimen.size[c] < 4 * d) {
+      f.error(spacing_key,
+              fmt::format("\"spacing\" in /discrete_zone is {} m, more than a quarter of the "
+                          "specimen in {}",
+                          d, axis_names[c]),
+              fmt::format("the specimen is {} m there", scene.specimen.size[c]),
+              fmt::format("give at most {:.4g} m", scene.specimen.size[c] / 4));
+      return;
+    }
+  }
+  if (number > 1e9)
+    f.error(spacing_key,
+            fmt::format("\"spacing\" in /discrete_zone is {} m, which makes about {:.1e} particles",
+                        d, number),
+            "more than 1e9 cannot be numbered", "give a larger spacing, or check its unit");
+}
+
+void check_cell_number(const Scene &scene, Findings &f)
+{
+  const double largest = scene.far_field->cell_size * std::pow(2.0, scene.far_field->levels);
+  double number = 1;
+  for (int c = 0; c < scene.dimension; ++c)
+    number *= std::max(1.0, scene.specimen.size[c] / largest);
+  if (number > 1e9)
+    f.error(cell_key,
+            fmt::format("\"cell_size\" in /far_field is {} m, which makes at least {:.1e} cells",
+                        scene.far_field->cell_size, number),
+            "more than 1e9 cannot be numbered", "give a larger size, or check its unit");
+}
+
+/// Where the zone lies; empty when its region is impossible.
+std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Findings &f)
+{
+  Layout layout;
+  layout.dim = scene.dimension;
+  layout.specimen = layout.zone = specimen;
+  if (scene.zone.extent != Extent::box)
+    return layout;
+  layout.coupled = is_coupled(scene);
+  bool any_side = false;
+  for (int c = 0; c < scene.dimension; ++c) {
+    const double lower = scene.zone.lower[c], upper = scene.zone.upper[c];
+    const double tolerance = 1e-9 * scene.specimen.size[c];
+    if (lower >= upper) {
+      f.error(region_key, fmt::format("\"region\" in /discrete_zone is empty in {}", axis_names[c]),
+              fmt::format("it goes from {} m to {} m", lower, upper),
+              "give \"lower\" below \"upper\"");
+      return {};
+    }
+    if (lower >= specimen.upper[c] - tolerance || upper <= specimen.lower[c] + tolerance) {
+      f.error(
+          region_key,
+          fmt::format("\"region\" in /discrete_zone is outside the specimen in {}", axis_names[c]),
+          fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m", lower, upper,
+                      specimen.lower[c], specimen.upper[c]),
+          "move it; the specimen is centred at the origin");
+      return {};
+    }
+    layout.zone.lower[c] = std::max(lower, specimen.lower[c]);
+    layout.zone.upper[c] = std::min(upper, specimen.upper[c]);
+    layout.coupled_side[2 * c] = lower > specimen.lower[c] + tolerance;
+    layout.coupled_side[2 * c + 1] = upper < specimen.upper[c] - tolerance;
+    any_side = any_side || layout.coupled_side[2 * c] || layout.coupled_side[2 * c + 1];
+  }
+  if (!any_side && layout.coupled) {
+    f.error(region_key,
+            "\"region\" in /discrete_zone covers the whole specimen: no overlap with /far_field",
+            "no place is left for the far field",
+            "make it smaller, or write \"far_field\": \"none\"");
+    return {};
+  }
+  return layout;
+}
+
+void check_ratio(const Scene &scene, Findings &f)
+{
+  const double ratio = scene.far_field->cell_size / scene.zone.spacing;
+  const std::string message = fmt::format(
+      "\"cell_size\" in /far_field is {:.4g} times the \"spacing\" in /discrete_zone", ratio);
+  const auto remedy = [&](double low, double high) {
+    return fmt::format("give a cell_size from {:.4g} m to {:.4g} m", low * scene.zone.spacing,
+                       high * scene.zone.spacing);
+  };
+  // A ratio that was meant as 2 or 16 may miss it by rounding.
+  if (ratio < 2 - 1e-9 || ratio > 16 + 1e-9)
+    f.error(cell_key, message, "the overlap works for ratios from 2 to 16", remedy(2.5, 8));
+  else if (ratio < 2.5 - 1e-9 || ratio > 8 + 1e-9)
+    f.warning(cell_key, message, "ratios from 2.5 to 8 were measured to be accurate",
+              remedy(2.5, 8));
+}
+
+/// Room for the overlaps inside the zone and for the far field beside it.
+void check_widths(const Scene &scene, const Layout &layout, Findings &f)
+{
+  const double h = layout.cell_size, d = scene.zone.spacing;
+  const double largest = h * std::pow(2.0, scene.far_field->levels);
+  for (int c = 0; c < layout.dim; ++c) {
+    const bool low = layout.coupled_side[2 * c], high = layout.coupled_side[2 * c + 1];
+    if (!low && !high)
+      continue;
+    const double width = layout.zone.upper[c] - layout.zone.lower[c];
+    const double needed = (low + high) * layout.overlap + 8 * d;
+    if (width <= needed)
+      f.error(
+          region_key,
+          fmt::format("\"region\" in /discrete_zone is {:.4g} m wide in {}, too thin for {}", width,
+                      axis_names[c], low && high ? "two overlaps" : "its overlap"),
+          fmt::format("an overlap takes {} cells of {} m, and 8 spacings must lie between",
+                      scene.coupling.overlap_cells, h),
+          fmt::format("give more than {:.4g} m, or a smaller cell_size or overlap_cells", needed));
+    for (const bool upper : {false, true}) {
+      if (!(upper ? high : low))
+        continue;
+      const double gap = upper ? layout.specimen.upper[c] - layout.zone.upper[c]
+                               : layout.zone.lower[c] - layout.specimen.lower[c];
+      if (gap < largest * (1 - 1e-9))
+        f.error(
+            region_key,
+            fmt::format("the far field beside the \"region\" in /discrete_zone is only {:.4g} m "
+                        "wide at the {} end of {}",
+                        gap, upper ? "upper" : "lower", axis_names[c]),
+            fmt::format("its largest cells are {:.4g} m (cell_size times 2^levels)", largest),
+            "use fewer levels, or let the region end elsewhere or reach through (null)");
+    }
+  }
+}
+
+std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Findings &f)
+{
+  if (!f.sound({zone_key + "/extent"}))
+    return {};
+  const bool particles = scene.zone.extent != Extent::none;
+  const bool mesh = scene.zone.extent != Extent::all && scene.far_field.has_value();
+  if (particles && !f.sound({region_key}))
+    return {};
+  std::optional<Layout> layout = check_region(scene, specimen, f);
+  const bool spacing = particles && f.sound_and_given({spacing_key});
+  if (layout && spacing)
+    check_spacing(scene, layout->zone, f);
+  if (mesh && f.sound({cell_key, "/far_field/levels"}))
+    check_cell_number(scene, f);
+  if (!is_coupled(scene))
+    return f.sound({far_key}) ? layout : std::nullopt;
+  if (!spacing || !f.sound({cell_key}))
+    return {};
+  check_ratio(scene, f);
+  if (scene.coupling.scheme == "none")
+    f.warning("/coupling/scheme",
+              "\"scheme\" in /coupling is \"none\": the two models do not feel "
+              "each other",
+              "they overlap but are not joined", "");
+  if (!layout || !f.sound({cell_key, spacing_key, "/far_field/levels", "/coupling/overlap_cells"}))
+    return {};
+  layout->cell_size = scene.far_field->cell_size;
+  layout->overlap = scene.coupling.overlap_cells * layout->cell_size;
+  check_widths(scene, *layout, f);
+  return f.sound({region_key}) ? layout : std::nullopt;
+}
+} // namespace
+
+void check_scene(const Scene &scene, Findings &f)
+{
+  check_models(scene, f);
+  check_packing(scene, f);
+  check_fracture(scene, f);
+  check_time(scene, f);
+  if (!f.sound({"/dimension"}))
+    return;
+  std::optional<Layout> layout;
+  if (f.sound({size_key})) {
+    const Box specimen = box_of(scene.specimen);
+    layout = check_layout(scene, specimen, f);
+    check_cuts(scene, specimen, layout ? &*layout : nullptr, f);
+  }
+  check_loads(scene, layout ? &*layout : nullptr, f);
+}
+} // namespace ligament::program

@@ -1,0 +1,30 @@
+// Checks that need more than one key: impossible geometry, contradictions, what is missing.
+#pragma once
+
+#include "src/scene/findings.h"
+#include "src/scene/geometry.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// Where the models are, as far as the keys they follow from are right.
+struct Layout
+{
+  int dim = 2;
+  Box specimen;
+  Box zone;                  // the discrete zone inside the specimen
+  bool coupled = false;      // both models, joined along the sides below
+  bool coupled_side[6] = {}; // numbered like the sides of the specimen, core/types.h
+  double overlap = 0;        // m, width
+  double cell_size = 0;      // m, h
+};
+
+/// The scene as it was read, region sides still infinite where they reach through.
+void check_scene(const Scene &scene, Findings &findings);
+
+/// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
+void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
+
+/// Loads against each other, and against the overlap. `layout` as above.
+void check_loads(const Scene &scene, const Layout *layout, Findings &findings);
+} // namespace ligament::program

@@ -1,0 +1,34 @@
+// What the checks of a scene find: errors and warnings, placed at the keys they are about.
+#pragma once
+
+#include "core/json.h"
+
+#include <initializer_list>
+
+namespace ligament::program
+{
+class Findings
+{
+public:
+  /// `errors` holds what reading found; both lists grow.
+  Findings(const core::JsonValue &json, std::vector<core::Diagnostic> &errors,
+           std::vector<core::Diagnostic> &warnings);
+
+  /// True when the file or an override gives the key a value other than null.
+  bool given(const std::string &key) const;
+  /// True when nothing wrong was found at these keys, above or below them: their values may be
+  /// used.
+  bool sound(std::initializer_list<std::string> keys) const;
+  /// Both.
+  bool sound_and_given(std::initializer_list<std::string> keys) const;
+
+  void error(const std::string &key, const std::string &message, const std::string &reason,
+             const std::string &remedy);
+  void warning(const std::string &key, const std::string &message, const std::string &reason,
+               const std::string &remedy);
+
+private:
+  const core::JsonValue &json_;
+  std::vector<core::Diagnostic> &errors_, &warnings_;
+};
+} // namespace ligament::program

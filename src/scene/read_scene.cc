@@ -1,0 +1,157 @@
+#include "src/scene/read_scene.h"
+
+#include "core/json.h"
+#include "core/parameters/describe_parameters.h"
+#include "core/parameters/override.h"
+#include "core/parameters/read_parameters.h"
+#include "src/scene/check_scene.h"
+#include "src/scene/scene_parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace ligament::program
+{
+namespace
+{
+/// The dimension decides how the other keys are read; 0 when its own value is wrong.
+int dimension_of(const core::JsonValue &json)
+{
+  const core::JsonMember *member = json.find("dimension");
+  if (!member)
+    return Scene().dimension;
+  const core::JsonValue &value = member->value;
+  const bool good =
+      value.is(core::JsonValue::Kind::number) && (value.number == 2 || value.number == 3);
+  return good ? int(value.number) : 0;
+}
+
+/// What the table cannot say: "far_field": "none" makes everything discrete.
+void apply_far_field_word(const core::JsonValue &json, Scene &scene)
+{
+  const core::JsonMember *far = json.find("far_field");
+  const bool none =
+      far && far->value.is(core::JsonValue::Kind::string) && far->value.text == "none";
+  if (none && scene.zone.extent == DiscreteZone::Extent::box)
+    scene.zone.extent = DiscreteZone::Extent::all;
+}
+
+/// Values in the form in which the program uses them.
+void complete(Scene &scene)
+{
+  for (int c = 0; c < 3; ++c) {
+    const double size = scene.specimen.size[c];
+    if (scene.zone.extent == DiscreteZone::Extent::all || std::isinf(scene.zone.lower[c]))
+      scene.zone.lower[c] = -size;
+    if (scene.zone.extent == DiscreteZone::Extent::all || std::isinf(scene.zone.upper[c]))
+      scene.zone.upper[c] = size;
+  }
+  if (scene.zone.extent == DiscreteZone::Extent::all)
+    scene.far_field.reset();
+  for (LoadParameters &load : scene.loads)
+    for (const auto &[kind, value] :
+         {std::pair("velocity", load.velocity), std::pair("displacement", load.displacement),
+          std::pair("traction", load.traction)})
+      if (value[0] || value[1] || value[2]) {
+        load.kind = kind;
+        load.value = value;
+      }
+}
+} // namespace
+
+ReadResult parse_scene(const std::string &text, const std::string &name,
+                       const std::vector<std::string> &overrides)
+{
+  ReadResult result;
+  core::JsonValue json = core::parse_json(text, name, result.errors);
+  // A value that a repeated key hides does not stop the search for other mistakes, bad syntax does.
+  if (json.is(core::JsonValue::Kind::null) && !result.errors.empty())
+    return result;
+  Scene scene;
+  core::ParameterSection table;
+  declare_scene(table, scene);
+  for (const std::string &override_text : overrides)
+    core::apply_override(table, override_text, json, result.errors);
+  const int dimension = dimension_of(json);
+  core::read_parameters(table, json, "", dimension, table, result.errors);
+  apply_far_field_word(json, scene);
+  if (json.is(core::JsonValue::Kind::object)) {
+    Findings findings(json, result.errors, result.warnings);
+    check_scene(scene, findings);
+  }
+  core::sort_by_place(result.errors);
+  core::sort_by_place(result.warnings);
+  if (!result.errors.empty())
+    return result;
+  result.resolved = core::echo(table, dimension);
+  complete(scene);
+  result.scene = std::move(scene);
+  return result;
+}
+
+ReadResult read_scene(const std::string &file, const std::vector<std::string> &overrides)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (stream)
+    text << stream.rdbuf();
+  if (!stream || !text) {
+    ReadResult result;
+    const core::Place place{file};
+    result.errors.push_back({place, "", "cannot read the scene",
+                             "there is no such file, or it may not be read", "check the path"});
+    return result;
+  }
+  return parse_scene(text.str(), file, overrides);
+}
+
+std::string explain(const std::string &key)
+{
+  Scene scene;
+  core::ParameterSection table;
+  declare_scene(table, scene);
+  return core::explain(table, key);
+}
+
+nlohmann::ordered_json explain_json(const std::string &key)
+{
+  Scene scene;
+  core::ParameterSection table;
+  declare_scene(table, scene);
+  return core::explain_json(table, key);
+}
+
+nlohmann::ordered_json json_schema()
+{
+  Scene scene;
+  core::ParameterSection table;
+  declare_scene(table, scene);
+  nlohmann::ordered_json schema = core::schema(table);
+  schema["title"] = "Ligament scene";
+  return schema;
+}
+
+std::string reference_markdown()
+{
+  Scene scene;
+  core::ParameterSection table;
+  declare_scene(table, scene);
+  return "# Scene files: all keys\n"
+         "\n"
+         "Generated from the table in `src/scene/scene_parameters.cc` by `ligament explain "
+         "--markdown`; a test keeps it up to date.\n"
+         "\n"
+         "A scene is JSON with `//` and `/* */` comments. Numbers are in SI units; a string gives "
+         "another unit:\n"
+         "`\"12.5 mm\"`, `\"0.75 MPa*m^0.5\"`, `\"22.2 kJ/m^2\"`, `\"15 deg\"`. Units are products "
+         "of m, g, t, s, min, h, Hz,\n"
+         "N, Pa, bar, J, W, rad, deg and % with the usual prefixes; `*` or a blank multiplies, `/` "
+         "divides by the next\n"
+         "factor only, `^0.5` and `sqrt(..)` are powers. Any key can be given on the command line: "
+         "`--set /path=value`.\n" +
+         core::markdown_tables(table);
+}
+} // namespace ligament::program

@@ -1,0 +1,137 @@
+#include "src/scene/scene_parameters.h"
+
+namespace ligament::program
+{
+namespace
+{
+using Section = core::ParameterSection;
+
+// clang-format off
+void declare_crack(Section &s, Crack &c)
+{
+  s.add("points", c.points, "the two ends (2D), or the corners of a convex plane polygon (3D)").in("m").required();
+}
+
+void declare_hole(Section &s, Hole &h)
+{
+  s.add("centre", h.centre, "centre of the disc").in("m").required();
+  s.add("radius", h.radius, "radius of the disc; at least two spacings").in("m").above(0).required();
+}
+
+void declare_notch(Section &s, Notch &n)
+{
+  s.add("lower", n.lower, "corner of the box with the smallest coordinates").in("m").required();
+  s.add("upper", n.upper, "corner of the box with the largest coordinates").in("m").required();
+}
+
+void declare_specimen(Section &s, Specimen &p)
+{
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin").in("m").above(0).required();
+  s.add("thickness", p.thickness, "extent across the plane").in("m").above(0).only_in(2);
+  s.list("cracks", p.cracks, "cuts without width", declare_crack);
+  s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
+  s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
+}
+
+void declare_fracture(Section &s, FractureParameters &f)
+{
+  s.add("criterion", f.criterion, "what breaks a bond: the normal stress on its face, or nothing").one_of({"none", "maximum_tension"});
+  s.add("strength", f.strength, "normal stress at which a bond breaks; either this or toughness").in("Pa").above(0);
+  s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").above(0);
+}
+
+void declare_material(Section &s, MaterialParameters &m)
+{
+  s.add("youngs_modulus", m.youngs_modulus, "E of the body, the same in both models").in("Pa").above(0).required();
+  s.add("poissons_ratio", m.poissons_ratio, "nu of the body, the same in both models").at_least(-0.2).at_most(0.49).required();
+  s.add("density", m.density, "mass per volume").in("kg/m^3").above(0).required();
+  s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
+  declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
+}
+
+void declare_region(Section &s, DiscreteZone &z)
+{
+  s.add("lower", z.lower, "corner with the smallest coordinates; null: reaches through the specimen").in("m").null_means(-infinity);
+  s.add("upper", z.upper, "corner with the largest coordinates; null: reaches through the specimen").in("m").null_means(infinity);
+}
+
+void declare_zone(Section &s, DiscreteZone &z)
+{
+  s.add("extent", z.extent, "none: finite elements alone; all: discrete elements alone; box: the region below", {"none", "all", "box"});
+  declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
+  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the others 3D").one_of({"square", "hexagonal", "simple_cubic", "fcc"}).required_unless("extent is none");
+  s.add("spacing", z.spacing, "distance d of nearest neighbours").in("m").above(0).required_unless("extent is none");
+  s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").as_rotation();
+  s.set_shorthand("extent");
+}
+
+void declare_far_field(Section &s, FarField &f)
+{
+  s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").above(0).required();
+  s.add("levels", f.levels, "refinement levels: the largest cells have size h 2^levels").at_least(0).at_most(8);
+  s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
+}
+
+void declare_coupling(Section &s, CouplingParameters &c)
+{
+  s.add("scheme", c.scheme, "how the two models act as one body in the overlap").one_of({"fine_scale_split", "none"});
+  s.add("overlap_cells", c.overlap_cells, "width of the overlap in cells; 3 for fracture, 4 for waves, 2 for statics").at_least(2).at_most(20);
+  s.add("transition_cells", c.transition_cells, "cells behind the overlap over which the mass goes from consistent to lumped").at_least(0).at_most(50);
+  s.add("step_ratio", c.step_ratio, "fine steps in one step of the far field").at_least(1).at_most(64);
+  s.add("fine_damper", c.fine_damper, "c_f, damper of what the mesh cannot carry; 4 for elastic waves, 8 for fracture, 0: off").at_least(0).at_most(100);
+  s.add("gap_filter", c.gap_filter, "c_g, filter of the waves that neither model carries well; 4 for fracture, 0: off").at_least(0).at_most(100);
+  s.add("patch_fit", c.patch_fit, "corrects the overlap so that homogeneous strains are exact");
+  s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
+  s.add("guard", c.guard, "what happens when fracture approaches the overlap").one_of({"stop", "warn"});
+}
+
+void declare_damping(Section &s, Damping &d)
+{
+  s.add("local", d.local, "fraction of the force that acts against the motion").at_least(0).below(1);
+  s.add("mass", d.mass, "force against the momentum, of both models").in("1/s").at_least(0);
+  s.add("kinetic", d.kinetic, "velocities become zero when the kinetic energy has a peak");
+}
+
+void declare_load(Section &s, LoadParameters &l)
+{
+  s.add("boundary", l.boundary, "side of the specimen").one_of({"left", "right", "bottom", "top", "back", "front"}).required();
+  s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s");
+  s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m");
+  s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa");
+  s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").at_least(0);
+}
+
+void declare_time(Section &s, TimeParameters &t)
+{
+  s.add("duration", t.duration, "simulated time").in("s").above(0).required();
+  s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
+  s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").above(0);
+  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as it carries no load").one_of({"end", "specimen_broken"});
+}
+
+void declare_output(Section &s, OutputParameters &o)
+{
+  s.add("field_interval", o.field_interval, "simulated time between two outputs of all fields").in("s").above(0).word("never", infinity);
+  s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000").in("s").at_least(0);
+  s.add("progress_interval", o.progress_interval, "wall time between two progress lines").in("s").above(0);
+}
+} // namespace
+
+void declare_scene(Section &s, Scene &scene)
+{
+  s.ignore("$schema", "address of the JSON schema, for editors");
+  s.add("title", scene.title, "one line for reports");
+  s.add("dimension", scene.dimension, "2 or 3").at_least(2).at_most(3);
+  s.add("plane", scene.plane, "plane strain or plane stress", {"strain", "stress"}).only_in(2);
+  declare_specimen(s.section("specimen", "the body"), scene.specimen);
+  declare_material(s.section("material", "what it is made of"), scene.material);
+  declare_zone(s.section("discrete_zone", "where the body may break"), scene.zone);
+  s.section("far_field", scene.far_field, "none", "finite elements around the discrete zone; none: the pure discrete reference of the scene", declare_far_field);
+  declare_coupling(s.section("coupling", "the overlap of the two models"), scene.coupling);
+  declare_damping(s.section("damping", "losses without physical meaning, for quasi-static scenes"), scene.damping);
+  s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);
+  declare_time(s.section("time", "how long"), scene.time);
+  declare_output(s.section("output", "what is written, and how often"), scene.output);
+}
+// clang-format on
+} // namespace ligament::program

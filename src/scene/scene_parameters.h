@@ -1,0 +1,12 @@
+// The table of the scene file: every key, its default, unit, bounds and text.
+#pragma once
+
+#include "core/parameters/parameter_section.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// Declares all keys, bound to the scene, whose present values count as the defaults. A new key is
+/// one line here and one member in scene.h.
+void declare_scene(core::ParameterSection &section, Scene &scene);
+} // namespace ligament::program
