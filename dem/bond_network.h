@@ -54,8 +54,6 @@ public:
   const std::vector<RowSegment> &segments() const { return segments_; }
   /// Bit k: the forward bond of direction k carries; bit n_directions + k: the backward one.
   const std::vector<std::uint32_t> &mask() const { return mask_; }
-  const std::vector<Bond<dim>> &irregular() const { return irregular_; }
-  const std::vector<char> &irregular_intact() const { return intact_; }
 
   Bond<dim> bond(const BondId &id) const;
 
@@ -63,6 +61,10 @@ public:
   /// the table.
   template <typename Visit>
   void for_each_bond(Visit &&visit) const;
+
+  /// Only those of the table.
+  template <typename Visit>
+  void for_each_irregular(Visit &&visit) const;
 
   /// The same for the bonds of one particle.
   template <typename Visit>
@@ -98,6 +100,13 @@ void BondNetwork<dim>::for_each_bond(Visit &&visit) const
       for (int k = 0; k < n_dir; ++k)
         if (mask_[i] >> k & 1)
           visit(BondId{i, k}, lattice_bond(i, i + s.forward[k], k));
+  for_each_irregular(visit);
+}
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_irregular(Visit &&visit) const
+{
   for (std::size_t b = 0; b < irregular_.size(); ++b)
     if (intact_[b])
       visit(BondId{int(b), -1}, irregular_[b]);

@@ -8,7 +8,7 @@ struct FractureLaw
   enum class Criterion
   {
     none,
-    maximum_tension // s_nn >= strength, theory.md section D6
+    maximum_tension // s_nn >= strength, theory.md section 1.6
   };
   Criterion criterion = Criterion::none;
   double strength = 0; // Pa

@@ -2,14 +2,33 @@
 
 namespace ligament::dem
 {
+namespace
+{
+/// Mean face of the whole cells, in m^2; of all cells where none is whole.
+template <int dim>
+double mean_face_area(const particles::Packing<dim> &packing)
+{
+  double sum = 0;
+  if (!packing.directions.empty()) {
+    for (const auto &d : packing.directions)
+      sum += d.area;
+    return sum / double(packing.directions.size());
+  }
+  for (const auto &face : packing.faces)
+    sum += face.area;
+  return packing.faces.empty() ? 0. : sum / double(packing.faces.size());
+}
+} // namespace
+
 template <int dim>
 ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMaterial &material,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : packing_(std::move(packing)), material_(material), fracture_(fracture),
-      bonds_(packing_, material), surface_(packing_, material, std::move(loads)),
-      wall_share_(packing_.size(), 0.), lambda_per_volume_(packing_.size()),
-      pressure_(packing_.size(), 0.)
+      bonds_(packing_, material), kernel_(bonds_.directions(), material.shear_modulus()),
+      surface_(packing_, material, std::move(loads)), contacts_(material),
+      search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
+      lambda_per_volume_(packing_.size())
 {
   material_.check();
   for (const auto &wall : surface_.walls())
@@ -17,6 +36,9 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
                            packing_.volume[wall.i];
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
+  for (const auto &face : packing_.faces)
+    if (face.cracked)
+      contacts_.add(BondNetwork<dim>::make_bond(face, material_, packing_.thickness), true);
 }
 
 template <int dim>
@@ -31,72 +53,132 @@ void ManyBodyForce<dim>::update_volumetric_stiffness(int i)
 }
 
 template <int dim>
-void ManyBodyForce<dim>::dilatation(const Particles &particles, const SurfaceLoads<dim> &surface,
-                                    std::vector<double> &pressure) const
+LatticeArrays<dim> ManyBodyForce<dim>::arrays(const Particles &p, Workspace &work) const
 {
-  pressure.assign(packing_.size(), 0.);
-  if (material_.poissons_ratio == 0)
+  LatticeArrays<dim> a{};
+  for (int c = 0; c < dim; ++c)
+    a.displacement[c] = p.displacement[c].data();
+  if constexpr (dim == 2)
+    a.turn = {p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data()};
+  else
+    for (int c = 0; c < 4; ++c)
+      a.turn[c] = p.rotation[c].data();
+  a.mask = bonds_.mask().data();
+  a.lambda_per_volume = lambda_per_volume_.data();
+  a.pressure = work.pressure.data();
+  return a;
+}
+
+template <int dim>
+Turn<dim> ManyBodyForce<dim>::turn(const Particles &p, const Workspace &work, int i) const
+{
+  if constexpr (dim == 2)
+    return {work.cosine_minus_1[i], work.sine[i]};
+  else
+    return Turn<3>::of(p, i);
+}
+
+template <int dim>
+BondMotion<dim> ManyBodyForce<dim>::motion(const Bond<dim> &b, const Particles &p) const
+{
+  return {b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j), get(p.displacement, b.i),
+          get(p.displacement, b.j)};
+}
+
+template <int dim>
+Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<dim> &m,
+                                           const std::vector<double> &pressure) const
+{
+  return b.area / b.distance *
+         (2 * material_.shear_modulus() * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::dilatation(const Particles &p, const SurfaceLoads<dim> &surface,
+                                    Workspace &work) const
+{
+  const int n = packing_.size();
+  work.pressure.resize(n);
+  if constexpr (dim == 2) {
+    work.cosine_minus_1.resize(n);
+    work.sine.resize(n);
+    cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(), n);
+  }
+  if (material_.poissons_ratio == 0) {
+    std::fill(work.pressure.begin(), work.pressure.end(), 0.);
     return;
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
-                            get(particles.displacement, b.i), get(particles.displacement, b.j));
+  }
+  kernel_.dilatation(arrays(p, work), bonds_.segments());
+  bonds_.for_each_irregular([&](BondId, const Bond<dim> &b) {
+    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
+                            get(p.displacement, b.j));
     const double s_r = b.area / b.distance;
-    pressure[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
-    pressure[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
+    work.pressure[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
+    work.pressure[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
   });
-  surface.add_dilatation(particles, lambda_per_volume_, pressure);
+  surface.add_dilatation(p, lambda_per_volume_, work.pressure);
 }
 
 template <int dim>
-void ManyBodyForce<dim>::elastic_forces(Particles &particles, SurfaceLoads<dim> &surface,
-                                        std::vector<double> &pressure) const
+void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface, double strength,
+                                        Workspace &work) const
 {
-  dilatation(particles, surface, pressure);
-  for (auto *arrays : {&particles.force})
-    for (auto &a : *arrays)
-      std::fill(a.begin(), a.end(), 0.);
-  for (auto &a : particles.torque)
-    std::fill(a.begin(), a.end(), 0.);
-  const double two_g = 2 * material_.shear_modulus();
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
-                            get(particles.displacement, b.i), get(particles.displacement, b.j));
+  dilatation(p, surface, work);
+  LatticeArrays<dim> a = arrays(p, work);
+  for (int c = 0; c < dim; ++c)
+    a.force[c] = p.force[c].data();
+  for (int c = 0; c < n_spins<dim>; ++c)
+    a.torque[c] = p.torque[c].data();
+  work.exceeded_rows.clear();
+  work.exceeded.clear();
+  kernel_.forces(a, bonds_.segments(), strength, work.exceeded_rows);
+  const std::vector<double> &pressure = work.pressure;
+  bonds_.for_each_irregular([&](BondId id, const Bond<dim> &b) {
+    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
+                            get(p.displacement, b.j));
     const double s_r = b.area / b.distance;
-    const Vector<dim> f = s_r * (two_g * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
-    const Spin<dim> bend = bending_torque(b, particles);
-    add(particles.force, b.i, f);
-    add(particles.force, b.j, Vector<dim>(-f));
-    add(particles.torque, b.i,
-        Spin<dim>(cross(m.a_i, f) - s_r * pressure[b.i] * cross(m.a_i, m.du) + bend));
-    add(particles.torque, b.j,
-        Spin<dim>(-cross(m.a_j, f) + s_r * pressure[b.j] * cross(m.a_j, m.du) - bend));
+    const Vector<dim> f = bond_force(b, m, pressure);
+    const Spin<dim> bend = bending_torque(b, p);
+    add(p.force, b.i, f);
+    add(p.force, b.j, Vector<dim>(-f));
+    add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure[b.i] * m.du) + bend));
+    add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure[b.j] * m.du) - bend));
+    if (strength > 0 && f.dot(m.normal_sum.normalized()) >= strength * b.area)
+      work.exceeded.push_back(id);
   });
-  surface.add_forces(particles, pressure);
+  surface.add_forces(p, pressure);
 }
 
 template <int dim>
-void ManyBodyForce<dim>::compute(Particles &particles, double time)
+void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
   surface_.set_time(time);
-  elastic_forces(particles, surface_, pressure_);
-  surface_.book_work(particles, pressure_);
+  elastic_forces(p, surface_, strength(), work_);
+  if (!contacts_.all().empty()) {
+    searching_ = searching_ || contacts_.has_slid(p, packing_.spacing / 4);
+    if (searching_)
+      search_.update(p, bonds_, contacts_);
+    contacts_.add_forces(p);
+  }
+  surface_.book_work(p, work_.pressure);
+  const auto exceeding = exceeding_bonds(p);
+  if (!exceeding.empty())
+    break_bonds(p, exceeding, time);
 }
 
 template <int dim>
-double ManyBodyForce<dim>::potential_energy(const Particles &particles) const
+double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
-  double sum = surface_.energy(particles);
+  double sum = surface_.energy(p) + contacts_.energy(p);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
-                            get(particles.displacement, b.i), get(particles.displacement, b.j));
-    sum += material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
-           bending_energy(b, particles);
+    sum += material_.shear_modulus() * b.area / b.distance * motion(b, p).du.squaredNorm() +
+           bending_energy(b, p);
   });
-  std::vector<double> pressure;
-  dilatation(particles, surface_, pressure);
+  Workspace work;
+  dilatation(p, surface_, work);
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)
-      sum += 0.5 * pressure[i] * pressure[i] / lambda_per_volume_[i];
+      sum += 0.5 * work.pressure[i] * work.pressure[i] / lambda_per_volume_[i];
   return sum;
 }
 

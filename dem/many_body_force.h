@@ -1,26 +1,48 @@
 // The many-body law of discrete elements: exact isotropic elasticity on any packing, walls,
-// tractions, breaking bonds (theory.md sections D1 to D6).
+// tractions, breaking bonds, contact (theory.md section 1).
 #pragma once
 
 #include "dem/bond_network.h"
+#include "dem/contact_search.h"
+#include "dem/contacts.h"
 #include "dem/fracture_law.h"
+#include "dem/lattice_kernel.h"
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
 
+#include <optional>
+
 namespace ligament::dem
 {
+/// A bond that broke; place and normal in the reference configuration.
+template <int dim>
+struct BrokenBond
+{
+  int i, j;                        // particles
+  std::int64_t global_i, global_j; // their global ids
+  double time;                     // s
+  Vector<dim> position;            // m, face point
+  Vector<dim> normal;              // unit, from i to j
+  double area;                     // m^2
+  double energy;                   // J, released
+};
+
 template <int dim>
 class ManyBodyForce : public particles::ParticleForce<dim>
 {
 public:
   using Particles = particles::Particles<dim>;
 
+  /// Loads act on the outer faces of their boundary. Faces that a crack cuts touch from the start.
   ManyBodyForce(particles::Packing<dim> packing, const DemMaterial &material,
                 std::vector<core::BoundaryLoad<dim>> loads, const FractureLaw &fracture = {});
 
+  /// Also breaks the bonds that exceed the strength and books work and energies; in such a step the
+  /// force is the mean of those before and after, which closes the energy balance to second order.
+  /// Calling it again in the same state changes nothing more.
   void compute(Particles &particles, double time) override;
 
-  /// At the loads of the last compute.
+  /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;
 
   /// 2 / omega, omega the largest frequency by Lanczos iteration about the reference, raised by
@@ -48,25 +70,65 @@ public:
   double external_work() const { return surface_.external_work(); }
   void reset_work() { surface_.reset_work(); }
 
+  /// Energy in J that breaking bonds released.
+  double fracture_energy() const { return fracture_energy_; }
+  /// Energy in J that friction took.
+  double frictional_work() const { return contacts_.frictional_work(); }
+
+  const std::vector<BrokenBond<dim>> &broken_bonds() const { return broken_; }
   long n_bonds() const { return bonds_.n_bonds(); }
+  int n_contacts() const { return int(contacts_.all().size()); }
+
+  /// Bonds break at this tension on the face from now on, in Pa.
+  void set_strength(double strength);
+  const FractureLaw &fracture() const { return fracture_; }
   const DemMaterial &material() const { return material_; }
 
 private:
-  /// Forces, torques and pressure_ of bonds and loaded faces.
-  void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface,
-                      std::vector<double> &pressure) const;
-  /// lambda_i theta_i in Pa.
+  /// What one evaluation leaves behind.
+  struct Workspace
+  {
+    std::vector<double> pressure;             // lambda_i theta_i, Pa
+    std::vector<double> cosine_minus_1, sine; // 2D
+    std::vector<RowRange> exceeded_rows;
+    std::vector<BondId> exceeded; // irregular
+  };
+
+  LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
+  Turn<dim> turn(const Particles &particles, const Workspace &work, int i) const;
+  BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles) const;
+  Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
+                         const std::vector<double> &pressure) const;
+
+  /// Overwrites pressure and, in 2D, the cosines and sines.
   void dilatation(const Particles &particles, const SurfaceLoads<dim> &surface,
-                  std::vector<double> &pressure) const;
+                  Workspace &work) const;
+  /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
+  /// strength when it is above 0.
+  void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
+                      Workspace &work) const;
+
+  double strength() const;
+  /// The bonds that exceed the strength, in the order of global ids.
+  std::vector<BondId> exceeding_bonds(const Particles &particles) const;
+  void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
+  /// Elastic energy of one bond and of the volumes of its two particles, in J.
+  double local_energy(const Bond<dim> &bond, const Particles &particles) const;
   void update_volumetric_stiffness(int i);
 
   particles::Packing<dim> packing_;
   DemMaterial material_;
   FractureLaw fracture_;
   BondNetwork<dim> bonds_;
+  LatticeKernel<dim> kernel_;
   SurfaceLoads<dim> surface_;
+  Contacts<dim> contacts_;
+  ContactSearch<dim> search_;
+  bool searching_ = false;
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3
-  std::vector<double> pressure_;          // lambda_i theta_i, Pa
+  Workspace work_;
+  std::vector<BrokenBond<dim>> broken_;
+  double fracture_energy_ = 0;
 };
 } // namespace ligament::dem

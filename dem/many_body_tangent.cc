@@ -129,6 +129,9 @@ void ManyBodyForce<dim>::for_each_face(
     visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
   };
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) { both_sides(b, true); });
+  for (const auto &contact : contacts_.all())
+    if (contact.from_face)
+      both_sides(contact.face, false);
   for (const auto &face : packing_.boundary_faces)
     visit({face.i, -1, face.normal, face.area,
            Vector<dim>(get(packing_.centre, face.i) + face.lever), false});
@@ -138,20 +141,18 @@ template <int dim>
 void ManyBodyForce<dim>::stresses(const Particles &particles,
                                   Components<n_strains<dim>> &stress) const
 {
-  std::vector<double> pressure;
-  dilatation(particles, surface_, pressure);
+  Workspace work;
+  dilatation(particles, surface_, work);
   for (auto &a : stress)
     a.assign(packing_.size(), 0.);
-  const double two_g = 2 * material_.shear_modulus();
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
-                            get(particles.displacement, b.i), get(particles.displacement, b.j));
-    const Vector<dim> f =
-        b.area / b.distance * (two_g * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+    const auto m = motion(b, particles);
+    const Vector<dim> f = bond_force(b, m, work.pressure);
     add(stress, b.i, symmetric_product<dim>(m.a_i, f));
     add(stress, b.j, symmetric_product<dim>(m.a_j, -f));
   });
-  surface_.add_moments(particles, pressure, stress);
+  surface_.add_moments(particles, work.pressure, stress);
+  contacts_.add_moments(particles, stress);
   for (auto &a : stress)
     for (int i = 0; i < packing_.size(); ++i)
       a[i] /= packing_.volume[i];
@@ -160,17 +161,14 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
 template <int dim>
 double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::vector<int> &of) const
 {
-  std::vector<double> pressure;
-  dilatation(particles, surface_, pressure);
-  const double two_g = 2 * material_.shear_modulus();
+  Workspace work;
+  dilatation(particles, surface_, work);
   double largest = 0;
   for (const int i : of)
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-      const BondMotion<dim> m(b, Turn<dim>::of(particles, b.i), Turn<dim>::of(particles, b.j),
-                              get(particles.displacement, b.i), get(particles.displacement, b.j));
-      const Vector<dim> t =
-          (two_g * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j) / b.distance;
-      largest = std::max(largest, t.dot(m.normal_sum.normalized()));
+      const auto m = motion(b, particles);
+      largest = std::max(largest,
+                         bond_force(b, m, work.pressure).dot(m.normal_sum.normalized()) / b.area);
     });
   return largest;
 }

@@ -46,7 +46,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
   Particles p = particles;
   SurfaceLoads<dim> surface = surface_;
   surface.set_zero();
-  std::vector<double> pressure;
+  Workspace work;
   const int size = n_particle_dofs<dim> * p.size();
   // Scaled so that the largest displacement stays far below the spacing, whatever the units.
   double largest = 0;
@@ -67,7 +67,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
   double beta = 0;
   for (int s = 0; s < steps; ++s) {
     set_motion(p, v, amplitude);
-    elastic_forces(p, surface, pressure);
+    elastic_forces(p, surface, 0., work);
     get_force(p, y, amplitude);
     diagonal.push_back(v.dot(y));
     y -= diagonal.back() * v + beta * previous;

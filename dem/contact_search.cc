@@ -1,0 +1,116 @@
+#include "dem/contact_search.h"
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+namespace ligament::dem
+{
+template <int dim>
+ContactSearch<dim>::ContactSearch(const particles::Packing<dim> &packing, double face_area)
+    : spacing_(packing.spacing), skin_(packing.spacing / 4), face_area_(face_area),
+      on_surface_(packing.size(), 0)
+{
+  for (const auto &face : packing.boundary_faces)
+    add_surface_particle(face.i);
+  for (const auto &face : packing.faces)
+    if (face.cracked)
+      add_surface_particle(face.i), add_surface_particle(face.j);
+}
+
+template <int dim>
+void ContactSearch<dim>::add_surface_particle(int i)
+{
+  if (on_surface_[i])
+    return;
+  on_surface_[i] = 1;
+  surface_.push_back(i);
+}
+
+template <int dim>
+bool ContactSearch<dim>::due(const Particles &p) const
+{
+  if (searched_at_.size() != surface_.size())
+    return true;
+  for (std::size_t s = 0; s < surface_.size(); ++s)
+    if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin_ * skin_)
+      return true;
+  return false;
+}
+
+template <int dim>
+void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bonds,
+                                Contacts<dim> &contacts)
+{
+  if (!due(p))
+    return;
+  searched_at_.clear();
+  for (const int i : surface_)
+    searched_at_.push_back(get(p.displacement, i));
+  const double reach = spacing_ + 2 * skin_;
+  contacts.drop_distant(p, reach);
+
+  std::set<std::pair<int, int>> known;
+  const auto key = [](int i, int j) { return std::pair<int, int>(std::min(i, j), std::max(i, j)); };
+  for (const auto &c : contacts.all())
+    known.insert(key(c.face.i, c.face.j));
+
+  // Cells of the size of the reach; the key mixes the cell's integer coordinates.
+  using Cell = std::array<std::int64_t, dim>;
+  const auto position = [&](int i) -> Vector<dim> {
+    return get(p.reference, i) + get(p.displacement, i);
+  };
+  const auto cell_of = [&](const Vector<dim> &x) {
+    Cell c;
+    for (int a = 0; a < dim; ++a)
+      c[a] = std::int64_t(std::floor(x[a] / reach));
+    return c;
+  };
+  const auto hash = [](const Cell &c) {
+    std::uint64_t h = 0;
+    for (const auto v : c)
+      h = (h ^ std::uint64_t(v)) * 0x9e3779b97f4a7c15ull;
+    return h;
+  };
+  std::unordered_map<std::uint64_t, std::vector<int>> cells;
+  for (const int i : surface_)
+    cells[hash(cell_of(position(i)))].push_back(i);
+
+  std::vector<std::pair<int, int>> found;
+  int neighbours = 1;
+  for (int a = 0; a < dim; ++a)
+    neighbours *= 3;
+  for (const int i : surface_) {
+    const Vector<dim> x = position(i);
+    const Cell home = cell_of(x);
+    for (int m = 0; m < neighbours; ++m) {
+      Cell c = home;
+      for (int a = 0, rest = m; a < dim; ++a, rest /= 3)
+        c[a] += rest % 3 - 1;
+      const auto it = cells.find(hash(c));
+      if (it == cells.end())
+        continue;
+      for (const int j : it->second)
+        if (p.global_id[i] < p.global_id[j] && (position(j) - x).norm() < reach &&
+            !known.count(key(i, j)))
+          found.push_back({i, j});
+    }
+    bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
+  }
+  std::sort(found.begin(), found.end(), [&](const auto &a, const auto &b) {
+    return std::pair(p.global_id[a.first], p.global_id[a.second]) <
+           std::pair(p.global_id[b.first], p.global_id[b.second]);
+  });
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  for (const auto &[i, j] : found) {
+    if (known.count(key(i, j)))
+      continue;
+    const Vector<dim> n = (position(j) - position(i)).normalized();
+    const Vector<dim> lever = spacing_ / 2 * n;
+    contacts.add({i, j, n, lever, -lever, face_area_, spacing_, 0, 0}, false);
+  }
+}
+
+template class ContactSearch<2>;
+template class ContactSearch<3>;
+} // namespace ligament::dem
