@@ -156,7 +156,7 @@ Segments broken_faces(const ParticleFields &particles, const std::vector<BrokenB
       index[std::int64_t(ids->values[i])] = i;
   Segments segments;
   segments.color = crack_color;
-  segments.width = dimension == 2 ? 2.5 : 1.5;
+  segments.width = 2.5;
   for (const auto &bond : bonds) {
     if (is_cut(view, bond.centroid))
       continue;

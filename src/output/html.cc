@@ -16,6 +16,7 @@ h2{font-size:1.2em;margin:2em 0 .5em;border-bottom:1px solid #d5dae0}
 .pictures{display:flex;flex-wrap:wrap;gap:1em}
 figure{margin:0;flex:1 1 440px}
 figure img,svg{max-width:100%;height:auto}
+figure img{max-height:820px;width:auto}
 figcaption{color:#555;font-size:.9em}
 table{border-collapse:collapse;margin:.5em 0}
 th,td{padding:.2em .8em;border-bottom:1px solid #e3e6ea;text-align:right;white-space:nowrap}

@@ -4,6 +4,7 @@
 #include "src/output/canvas.h"
 #include "src/output/format.h"
 #include "src/output/plot.h"
+#include "src/output/stroke_font.h"
 
 #include <fmt/core.h>
 
@@ -15,7 +16,7 @@ namespace ligament::program
 namespace
 {
 constexpr double margin = 24, title_height = 15, label_height = 11; // pixels
-constexpr double bar_width = 18, bar_column = 130;
+constexpr double bar_width = 18, bar_gap = 26;
 constexpr int largest_height = 1500;
 constexpr Color ink = {40, 40, 40};
 
@@ -59,14 +60,20 @@ public:
       lower_ = {0, 0}, upper_ = {1, 1};
 
     const bool bar = !picture.value_label.empty();
-    const double free_width = picture.width - 2 * margin - (bar ? bar_column : 0);
+    // Room for the widest prefix of the unit; tick texts need less.
+    const double bar_column =
+        bar ? bar_gap + std::max(100., label_height * stroke_text(picture.value_label + " (" + "M" +
+                                                                  picture.value_unit + ")")
+                                                          .width)
+            : 0;
+    const double free_width = picture.width - 2 * margin - bar_column;
     const double free_height = largest_height - 2 * margin - header() - footer();
     const double w = upper_[0] - lower_[0], h = upper_[1] - lower_[1];
     pixels_per_metre_ =
         std::min(free_width / std::max(w, 1e-12 * h), free_height / std::max(h, 1e-12 * w));
     right_edge_ = margin + w * pixels_per_metre_;
     bottom_edge_ = margin + header() + h * pixels_per_metre_;
-    width = int(std::ceil(std::max(right_edge_ + (bar ? bar_column : 0) + margin, 420.)));
+    width = int(std::ceil(std::max(right_edge_ + bar_column + margin, 420.)));
     height = int(std::ceil(std::max(bottom_edge_ + footer() + margin, bar ? 260. : 0.)));
   }
 
@@ -201,8 +208,19 @@ private:
   {
     const Palette colors = palette(layer.values, layer.color);
     const double radius = std::max(layer.radius * project_.pixels_per_metre(), 0.75);
-    for (std::size_t i = 0; 3 * i + 2 < layer.positions.size(); ++i)
-      canvas_.disc(project_(&layer.positions[3 * i], place(layer.values, i)), radius, colors);
+    const auto draw = [&](double r, const Palette &palette) {
+      for (std::size_t i = 0; 3 * i + 2 < layer.positions.size(); ++i)
+        canvas_.disc(project_(&layer.positions[3 * i], place(layer.values, i)), r, palette);
+    };
+    if (picture_.dimension == 2) {
+      // Closes the gaps between touching discs (2/sqrt(3) radii reach their middle), a little
+      // darker so that the particles remain to be seen.
+      Palette darker = colors;
+      for (Color &c : darker)
+        c = {std::uint8_t(0.85 * c.r), std::uint8_t(0.85 * c.g), std::uint8_t(0.85 * c.b)};
+      draw(2 / std::sqrt(3.) * radius, darker);
+    }
+    draw(radius, colors);
   }
 
   void edges(const Quads &layer)
@@ -220,7 +238,7 @@ private:
 
   void lines(const Segments &layer)
   {
-    const Canvas::Pen pen{layer.color, layer.width, 1, 0.3};
+    const Canvas::Pen pen{layer.color, layer.width, 1, 0.5};
     for (std::size_t i = 0; i + 5 < layer.points.size(); i += 6) {
       auto a = project_(&layer.points[i]), b = project_(&layer.points[i + 3]);
       a.z += 1;
@@ -234,7 +252,7 @@ private:
 
   void color_bar()
   {
-    const double x = project_.right_edge() + 26, top = margin + Projection::header() + 26;
+    const double x = project_.right_edge() + bar_gap, top = margin + Projection::header() + 26;
     const double length = std::clamp(project_.bottom_edge() - top, 120., 420.);
     const Palette colors = colormap_palette();
     for (int i = 0; i < 256; ++i)

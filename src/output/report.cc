@@ -165,7 +165,8 @@ std::string model(const RunRecord &r)
   add("time step", quantity(r.dt, "s"));
   maybe("stable step, particles", r.dt_critical, "s");
   maybe("stable step, far field", r.dt_far, "s");
-  add("far field steps once per", fmt::format("{} steps", r.step_ratio));
+  if (r.step_ratio > 1)
+    add("far field steps once per", fmt::format("{} steps", r.step_ratio));
   add("steps", grouped(r.steps));
   add("simulated time", quantity(r.simulated_time, "s"));
   add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));

@@ -1,0 +1,140 @@
+// Compare: known figures from runs that differ in known ways.
+#include "src/output/compare.h"
+
+#include "core/check.h"
+#include "src/output/crack_path.h"
+#include "tests/unit/output/synthetic_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace ligament;
+using namespace ligament::program;
+using ligament::tests::SyntheticRun;
+
+namespace
+{
+// A few operations on doubles.
+constexpr double rounding = 1e-12;
+
+TEST(Compare, FindsTheFactorsBetweenTwoRuns)
+{
+  SyntheticRun run, reference;
+  run.peak_stress = 1.03 * reference.peak_stress;
+  run.stiffness = 0.98 * reference.stiffness;
+  run.wall_seconds = reference.wall_seconds / 8;
+  run.particles = reference.particles / 10;
+  run.crack_y = 1.5 * run.spacing;
+  run.displacement_factor = 1.25;
+  run.first_id = 77; // numbers differ between a zone and the whole specimen
+  run.write("a");
+  reference.write("b");
+  const CompareResult r = compare("a", "b/");
+
+  EXPECT_NEAR(*r.peak_load_error, 0.03, rounding);
+  EXPECT_NEAR(*r.stiffness_error, -0.02, rounding);
+  EXPECT_NEAR(*r.energy_error, run.work() / reference.work() - 1, rounding);
+  EXPECT_NEAR(*r.time_ratio, 8, rounding);
+  EXPECT_NEAR(*r.particle_ratio, 10, rounding);
+  // The same faces, shifted by 1.5 d: every distance is 1.5, in both directions.
+  for (const auto &distance : {r.crack_distance_mean, r.crack_distance_max,
+                               r.crack_distance_mean_to_peak, r.crack_distance_max_to_peak,
+                               r.crack_distance_mean_after_peak, r.crack_distance_max_after_peak})
+    EXPECT_NEAR(distance.value(), 1.5, rounding);
+  EXPECT_EQ(r.matched_particles, 10);
+  EXPECT_NEAR(*r.displacement_error, 0.25, rounding);
+  EXPECT_NEAR(*r.displacement_error_max, 0.25, rounding);
+  EXPECT_NEAR(*r.velocity_error, 0, rounding);
+  EXPECT_TRUE(r.notes.empty()) << table(r);
+  EXPECT_EQ(r.svg_file, "a/compare_b.svg");
+  EXPECT_TRUE(std::filesystem::exists(r.svg_file));
+  EXPECT_TRUE(std::filesystem::exists(r.html_file));
+}
+
+// The run's crack is longer by n faces: only its own direction sees 1, 2, ... n diameters.
+TEST(Compare, LongerCrackCountsInOneDirection)
+{
+  SyntheticRun run, reference;
+  run.n_broken_after = 5;
+  reference.n_broken_after = 2;
+  run.write("longer");
+  reference.write("shorter");
+  const CompareResult r = compare("longer", "shorter");
+  const int n_run = run.n_broken_before + run.n_broken_after;
+  EXPECT_NEAR(*r.crack_distance_max, 3, rounding);
+  EXPECT_NEAR(*r.crack_distance_mean, 0.5 * (1. + 2. + 3.) / n_run, rounding);
+  EXPECT_NEAR(*r.crack_distance_max_to_peak, 0, rounding);
+  EXPECT_NEAR(*r.crack_distance_mean_after_peak, 0.5 * (1. + 2. + 3.) / run.n_broken_after,
+              rounding);
+}
+
+TEST(Compare, WhatCannotBeComputedIsNull)
+{
+  SyntheticRun run, intact;
+  intact.n_broken_before = intact.n_broken_after = 0;
+  run.write("broken");
+  intact.write("intact");
+  std::filesystem::remove("intact/snapshot_peak.bin");
+  const auto json = to_json(compare("broken", "intact"));
+  for (const char *name :
+       {"crack_distance_mean", "crack_distance_max", "displacement_error", "velocity_error"})
+    EXPECT_TRUE(json.at(name).is_null()) << name;
+  EXPECT_TRUE(json.at("peak_load_error").is_number());
+  EXPECT_FALSE(json.at("notes").empty());
+}
+
+TEST(Compare, CurveWithUnitsAsReference)
+{
+  SyntheticRun run;
+  run.write("run");
+  // 1.25 times the peak at the same stiffness, in other units and without anything else.
+  std::string text = "displacement;load\nmm;kN\n";
+  for (int i = 0; i <= 50; ++i)
+    text += std::to_string(1e3 * 1.25 * i / 50. * run.peak_strain() * run.length) + ";" +
+            std::to_string(1e-3 * 1.25 * i / 50. * run.peak_load()) + "\n";
+  core::write_file("paper.csv", text);
+  const CompareResult r = compare("run", "paper.csv");
+  // std::to_string keeps 6 decimals of about 3e-3 mm and 100 kN.
+  const double cut = 0.5e-6 / (1e3 * 1.25 / 50 * run.peak_strain() * run.length);
+  EXPECT_NEAR(*r.peak_load_error, 1 / 1.25 - 1, cut);
+  EXPECT_NEAR(*r.stiffness_error, 0, cut);
+  EXPECT_NEAR(*r.energy_error, 1 / (1.25 * 1.25) - 1, 2 * cut);
+  EXPECT_FALSE(r.time_ratio);
+  EXPECT_FALSE(r.particle_ratio);
+  EXPECT_FALSE(r.crack_distance_max);
+  EXPECT_EQ(r.html_file, "run/compare_paper.html");
+}
+
+TEST(Compare, RefusesWhatIsNeither)
+{
+  SyntheticRun().write("good");
+  EXPECT_THROW(compare("good", "nothing_there"), core::InputError);
+  EXPECT_THROW(compare("nothing_there", "good"), core::InputError);
+  std::filesystem::create_directories("empty_folder");
+  EXPECT_THROW(compare("good", "empty_folder"), core::InputError);
+}
+
+TEST(CrackPath, NearestDistancesAgreeWithTheSlowSearch)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<BrokenBond> a(40), b(60);
+  for (auto *bonds : {&a, &b})
+    for (auto &bond : *bonds)
+      for (double &x : bond.centroid)
+        x = uniform(random);
+  const auto distances = nearest_distances(a, b);
+  ASSERT_EQ(distances.size(), a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double best = HUGE_VAL;
+    for (const auto &other : b)
+      best = std::min(best, std::hypot(a[i].centroid[0] - other.centroid[0],
+                                       a[i].centroid[1] - other.centroid[1],
+                                       a[i].centroid[2] - other.centroid[2]));
+    EXPECT_EQ(distances[i], best);
+  }
+  EXPECT_TRUE(nearest_distances(a, {}).empty());
+}
+} // namespace

@@ -1,0 +1,52 @@
+// Figures of load curves against formulas.
+#include "src/output/curve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ligament::program;
+
+namespace
+{
+TEST(Curve, StiffnessIsTheSlopeBetweenTenAndFiftyPercentBeforeThePeak)
+{
+  // Slack at the start, a line of slope k, softening near the peak, a fall behind it.
+  const double k = 3.5e9, peak = 2e6;
+  std::vector<double> strain, stress;
+  for (int i = 0; i <= 400; ++i) {
+    const double y = peak * i / 400.;
+    const double share = y / peak;
+    strain.push_back(y / k + (share < 0.1 ? -1e-4 : share > 0.5 ? 1e-3 * (share - 0.5) : 0));
+    stress.push_back(y);
+  }
+  for (int i = 400; i > 0; --i) {
+    strain.push_back(1e-2);
+    stress.push_back(peak * i / 401.);
+  }
+  EXPECT_EQ(*peak_index(stress), 400u);
+  EXPECT_NEAR(*fit_stiffness(strain, stress) / k, 1, 1e-9);
+
+  // Compression: both signs turn, the slope stays.
+  for (auto *values : {&strain, &stress})
+    for (double &value : *values)
+      value = -value;
+  EXPECT_NEAR(*fit_stiffness(strain, stress) / k, 1, 1e-9);
+}
+
+TEST(Curve, NothingToFitIsEmpty)
+{
+  EXPECT_FALSE(peak_index({}));
+  EXPECT_FALSE(peak_index({0, 0, 0}));
+  EXPECT_FALSE(fit_stiffness({0, 1, 2}, {0, 0, 0}));
+  EXPECT_FALSE(fit_stiffness({0, 1}, {0, 1}));
+  EXPECT_FALSE(fit_stiffness({1, 1, 1, 1, 1}, {0.2, 0.3, 0.4, 0.5, 1})); // no spread
+  EXPECT_EQ(*peak_index({NAN, 1, 3, 2}), 2u);
+}
+
+TEST(Curve, ResidualIsRelativeToTheLargestWork)
+{
+  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 5, 4}), 2e-3 / 5);
+  EXPECT_FALSE(relative_residual({1}, {0}));
+}
+} // namespace

@@ -1,0 +1,122 @@
+// Plots: round ticks, curves where they belong, well-formed SVG.
+#include "src/output/plot.h"
+
+#include "tests/unit/output/xml.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ligament;
+using namespace ligament::program;
+
+namespace
+{
+TEST(Plot, TicksAreRoundAndCoverTheRange)
+{
+  for (const auto &[lower, upper] :
+       {std::pair(0., 1.), std::pair(-3.7e-9, 8.1e-9), std::pair(12., 12.7), std::pair(-5e6, 0.)})
+  {
+    const auto ticks = nice_ticks(lower, upper, 5);
+    ASSERT_GE(ticks.size(), 2u);
+    const double step = ticks[1] - ticks[0];
+    const double lead = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
+    EXPECT_LT(std::min({std::abs(lead - 1), std::abs(lead - 2), std::abs(lead - 5)}), 1e-6);
+    EXPECT_GE(ticks.front(), lower - 1e-6 * step);
+    EXPECT_LE(ticks.back(), upper + 1e-6 * step);
+    EXPECT_LT(ticks.front() - lower, step);
+    EXPECT_LT(upper - ticks.back(), step);
+  }
+  EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
+  EXPECT_EQ(tick_text(2, 1), "2");
+}
+
+std::vector<std::array<double, 2>> path_points(const tests::Element &path)
+{
+  std::vector<std::array<double, 2>> points;
+  const std::string &d = path.attributes.at("d");
+  for (std::size_t at = 0; at < d.size();) {
+    std::size_t used;
+    const double x = std::stod(d.substr(at + 1), &used);
+    at += 1 + used;
+    const double y = std::stod(d.substr(at), &used);
+    at += used;
+    points.push_back({x, y});
+  }
+  return points;
+}
+
+tests::Element curve_of(const std::string &text)
+{
+  for (const auto &element : tests::parse_xml(text))
+    if (element.name == "path" && element.attributes.at("class") == "curve")
+      return element;
+  throw std::runtime_error("no curve");
+}
+
+TEST(Plot, StraightLineStaysStraight)
+{
+  Plot plot;
+  plot.title = "a < b & c";
+  plot.x = {"time", "s", false};
+  plot.y = {"stress", "Pa", false};
+  Series line{"", {}, {}};
+  for (int i = 0; i <= 10; ++i) {
+    line.x.push_back(1e-5 * i);
+    line.y.push_back(2e6 * i);
+  }
+  plot.series = {line};
+  const std::string text = svg(plot);
+  const auto points = path_points(curve_of(text));
+  ASSERT_EQ(points.size(), 11u);
+  const double dx = (points[10][0] - points[0][0]) / 10, dy = (points[10][1] - points[0][1]) / 10;
+  EXPECT_GT(dx, 0);
+  EXPECT_LT(dy, 0); // y points downwards on the screen
+  for (int i = 0; i <= 10; ++i) {
+    EXPECT_NEAR(points[i][0], points[0][0] + i * dx, 0.11); // coordinates have one decimal
+    EXPECT_NEAR(points[i][1], points[0][1] + i * dy, 0.11);
+  }
+  EXPECT_NE(text.find("stress (MPa)"), std::string::npos);
+  EXPECT_NE(text.find("time (µs)"), std::string::npos);
+  EXPECT_NE(text.find("a &lt; b &amp; c"), std::string::npos);
+}
+
+// A hundred thousand points between two spikes: few points in the file, both spikes kept.
+TEST(Plot, LongCurvesKeepTheirExtremes)
+{
+  Plot plot;
+  Series noise{"", {}, {}};
+  const int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    noise.x.push_back(i);
+    noise.y.push_back(i == n / 3 ? 1 : i == n / 2 ? -1 : 0);
+  }
+  plot.series = {noise};
+  const auto points = path_points(curve_of(svg(plot)));
+  EXPECT_LT(points.size(), std::size_t(10 * plot.width));
+  double top = HUGE_VAL, bottom = -HUGE_VAL;
+  for (const auto &p : points) {
+    top = std::min(top, p[1]);
+    bottom = std::max(bottom, p[1]);
+  }
+  const double zero = points.front()[1];
+  EXPECT_NEAR(zero - top, bottom - zero, 0.2);
+  EXPECT_GT(zero - top, 0.3 * plot.height);
+}
+
+TEST(Plot, EmptyConstantAndLogarithmicCurves)
+{
+  Plot plot;
+  EXPECT_NO_THROW(tests::parse_xml(svg(plot)));
+  plot.series = {{"constant", {0, 1, 2}, {3, 3, 3}}, {"with gaps", {0, NAN, 2}, {NAN, 1, 2}}};
+  const std::string text = svg(plot);
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  plot.x.logarithmic = plot.y.logarithmic = true;
+  plot.series = {{"powers", {0, 1e-3, 1e-2, 1e-1}, {1, 1, 100, 10000}}};
+  const auto points = path_points(curve_of(svg(plot)));
+  ASSERT_EQ(points.size(), 3u); // 0 has no logarithm
+  EXPECT_NEAR(points[1][0] - points[0][0], points[2][0] - points[1][0], 0.11);
+  EXPECT_NEAR(points[1][1] - points[0][1], points[2][1] - points[1][1], 0.11);
+}
+} // namespace

@@ -1,0 +1,82 @@
+// run.json: everything comes back, unknown figures are null, damage is refused.
+#include "src/output/run_record.h"
+
+#include "core/check.h"
+#include "core/files.h"
+#include "src/output/run_folder.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace ligament;
+using namespace ligament::program;
+
+namespace
+{
+TEST(RunRecord, ComesBackWhole)
+{
+  RunRecord r;
+  r.title = "Plate \"A\" \xe2\x88\x86";
+  r.status = "guard";
+  r.reason = "overlap strain";
+  r.kind = "coupled";
+  r.dimension = 3;
+  r.spacing = 1. / 3;
+  r.size = {0.1, 0.2, 0.3};
+  r.particles = 123456789012;
+  r.dt_critical = 5e-9;
+  r.step_ratio = 4;
+  r.steps = 40000;
+  r.timing = {{"forces", 1.5, 40000}, {"rest", 0.1, 0}};
+  r.skipped = {{"contact search", "nothing is broken"}};
+  r.peak_load = -1e5;
+  r.figures = {{"strength", {2.5e7, "Pa"}}, {"c", {0.82, ""}}};
+  r.pictures = {{"pictures/peak.png", "at the peak"}};
+  write_run_record("run.json", r);
+  const RunRecord back = read_run_record("run.json");
+  EXPECT_EQ(back.title, r.title);
+  EXPECT_EQ(back.status, r.status);
+  EXPECT_EQ(back.spacing, r.spacing);
+  EXPECT_EQ(back.size, r.size);
+  EXPECT_EQ(back.particles, r.particles);
+  EXPECT_EQ(back.dt_critical, r.dt_critical);
+  EXPECT_EQ(back.dt_far, std::nullopt);
+  EXPECT_EQ(back.peak_load, r.peak_load);
+  ASSERT_EQ(back.timing.size(), 2u);
+  EXPECT_EQ(back.timing[0].name, "forces");
+  EXPECT_EQ(back.timing[0].seconds, 1.5);
+  EXPECT_EQ(back.timing[0].calls, 40000);
+  EXPECT_EQ(back.skipped.at(0).why, "nothing is broken");
+  EXPECT_EQ(back.figures.at("strength").value, 2.5e7);
+  EXPECT_EQ(back.figures.at("strength").unit, "Pa");
+  EXPECT_EQ(back.pictures.at(0).file, "pictures/peak.png");
+
+  // Writing what was read gives the same bytes: no field is lost on either way.
+  write_run_record("again.json", back);
+  EXPECT_EQ(core::read_file("again.json"), core::read_file("run.json"));
+  const auto json = nlohmann::json::parse(core::read_file("run.json"));
+  EXPECT_TRUE(json.at("stiffness").is_null());
+}
+
+TEST(RunRecord, RefusesDamage)
+{
+  EXPECT_THROW(read_run_record("no_such.json"), core::InputError);
+  core::write_file("cut.json", "{\"title\": \"x\"");
+  EXPECT_THROW(read_run_record("cut.json"), core::InputError);
+  core::write_file("poor.json", "{\"title\": \"x\"}");
+  EXPECT_THROW(read_run_record("poor.json"), core::InputError);
+  EXPECT_THROW(write_run_record("/dev/full", {}), core::EnvironmentError);
+}
+
+TEST(RunFolder, IsMadeAndRecognised)
+{
+  const RunFolder folder{"some/new/folder"};
+  folder.create();
+  folder.create();
+  EXPECT_FALSE(folder.holds_a_run());
+  write_run_record(folder.record(), {});
+  EXPECT_TRUE(folder.holds_a_run());
+  core::write_file("a_file", "");
+  EXPECT_THROW(RunFolder{"a_file/folder"}.create(), core::EnvironmentError);
+}
+} // namespace

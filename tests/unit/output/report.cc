@@ -1,0 +1,58 @@
+// The report: one well-formed page with everything that the run knows.
+#include "src/output/report.h"
+
+#include "core/check.h"
+#include "src/output/canvas.h"
+#include "src/output/compare.h"
+#include "src/output/format.h"
+#include "src/output/verdict.h"
+#include "tests/unit/output/synthetic_run.h"
+#include "tests/unit/output/xml.h"
+
+#include <gtest/gtest.h>
+
+using namespace ligament;
+using namespace ligament::program;
+using ligament::tests::SyntheticRun;
+
+namespace
+{
+TEST(Report, HoldsEverythingInOneFile)
+{
+  const SyntheticRun run;
+  const RunFolder folder = run.write("reported");
+  RunRecord record = read_run_record(folder.record());
+  record.timing = {{"discrete forces", 3, 10}, {"rest", 1, 0}};
+  record.skipped = {{"contact search", "nothing <is> broken"}};
+  record.pictures = {{"pictures/peak.png", "At the peak"}, {"pictures/gone.png", "Lost"}};
+  write_run_record(folder.record(), record);
+  const std::string png = Canvas(8, 8, false).png();
+  core::write_file(folder.pictures() + "/peak.png", png);
+  core::write_file(folder.resolved_scene(), "{\"title\": \"a & b\"}");
+  SyntheticRun().write("report_reference");
+  compare("reported", "report_reference");
+
+  const std::string path = write_report("reported");
+  EXPECT_EQ(path, folder.report());
+  const std::string text = core::read_file(path);
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  for (const std::string &part :
+       {escape_xml(record.title), escape_xml(verdict(record)), escape_xml(headline(record)),
+        std::string("At the peak"), "data:image/png;base64," + base64(png.data(), png.size()),
+        std::string("external work"), std::string("discrete forces"),
+        std::string("nothing &lt;is&gt; broken"), std::string("a &amp; b"), std::string("1.2.3"),
+        std::string("reported against report_reference")})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_EQ(text.find("<script"), std::string::npos);
+  EXPECT_EQ(text.find("Lost"), std::string::npos);
+}
+
+TEST(Report, NeedsNoMoreThanTheRecord)
+{
+  const RunFolder folder{"bare"};
+  folder.create();
+  write_run_record(folder.record(), {});
+  EXPECT_NO_THROW(tests::parse_xml(core::read_file(write_report("bare"))));
+  EXPECT_THROW(write_report("no_run_here"), core::InputError);
+}
+} // namespace
