@@ -1,0 +1,206 @@
+#include "dem/toughness_calibration.h"
+
+#include "dem/many_body_force.h"
+
+#include <Eigen/SparseCholesky>
+
+namespace ligament::dem
+{
+namespace
+{
+constexpr double spacing = 1, modulus = 1; // c has no unit: any values do
+constexpr double k_one = 1e-6;             // K_I, small: the solve is linear
+
+/// Orientation of the lattice in axes where the crack grows along x and opens along y.
+Spin<2> in_crack_axes(const Spin<2> &orientation, const CrackAxes<2> &crack)
+{
+  return orientation - Spin<2>(std::atan2(crack.growth[1], crack.growth[0]));
+}
+Spin<3> in_crack_axes(const Spin<3> &orientation, const CrackAxes<3> &crack)
+{
+  Eigen::Matrix3d axes;
+  axes << crack.growth, crack.normal, crack.growth.cross(crack.normal);
+  const double angle = orientation.norm();
+  const Eigen::AngleAxisd lattice(angle, angle == 0 ? Vector<3>(Vector<3>::UnitX())
+                                                    : Vector<3>(orientation / angle));
+  const Eigen::AngleAxisd turned(axes.transpose() * lattice.toRotationMatrix());
+  return turned.angle() * turned.axis();
+}
+
+/// The square root field of mode I: displacements in m and the rotation about the crack front.
+struct NearField
+{
+  double shear_modulus, kappa;
+
+  Vector<3> operator()(double x, double y) const
+  {
+    const double r = std::hypot(x, y), t = std::atan2(y, x);
+    const double u =
+        k_one / (2 * shear_modulus) * std::sqrt(r / (2 * M_PI)) * (kappa - std::cos(t));
+    return {u * std::cos(t / 2), u * std::sin(t / 2),
+            -k_one * (kappa + 1) / (4 * shear_modulus * std::sqrt(2 * M_PI * r)) * std::sin(t / 2)};
+  }
+};
+
+/// Midway between the last cut and the first intact of the faces that the plane y = height crosses.
+template <int dim>
+Vector<2> tip_between_faces(const particles::Packing<dim> &packing, double height,
+                            double half_depth)
+{
+  double last = -1e300, first = 1e300;
+  Vector<2> last_place = Vector<2>::Zero(), first_place = Vector<2>::Zero();
+  for (const auto &face : packing.faces) {
+    const double y_i = packing.centre[1][face.i], y_j = packing.centre[1][face.j];
+    if ((y_i - height) * (y_j - height) > 0)
+      continue;
+    const Vector<dim> place = get(packing.centre, face.i) + face.lever_i;
+    if (dim == 3 && std::abs(place[dim - 1]) > half_depth)
+      continue;
+    if (face.cracked && place[0] > last)
+      last = place[0], last_place = place.template head<2>();
+    if (!face.cracked && place[0] < first)
+      first = place[0], first_place = place.template head<2>();
+  }
+  return (last_place + first_place) / 2;
+}
+} // namespace
+
+template <int dim>
+double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+                        const DemMaterial &material, const CrackAxes<dim> &crack,
+                        const Vector<2> &shift, double radius)
+{
+  const double half = radius + 4, depth = 2 * std::sqrt(2.);
+  particles::LatticeParameters<dim> lattice;
+  lattice.kind = kind;
+  lattice.spacing = spacing;
+  lattice.orientation = in_crack_axes(orientation, crack);
+  lattice.lower.setConstant(-half);
+  lattice.upper.setConstant(half);
+  if constexpr (dim == 2)
+    lattice.cracks = {{{-2 * half, shift[1]}, {shift[0], shift[1]}}};
+  else {
+    lattice.lower[2] = -depth / 2, lattice.upper[2] = depth / 2;
+    const double z = depth;
+    lattice.cracks = {{{-2 * half, shift[1], -z},
+                       {shift[0], shift[1], -z},
+                       {shift[0], shift[1], z},
+                       {-2 * half, shift[1], z}}};
+  }
+  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  const Vector<2> tip = tip_between_faces(packing, shift[1], depth / 4);
+
+  DemMaterial scaled = material;
+  scaled.youngs_modulus = modulus, scaled.density = 1;
+  // 3D: plane strain between two smooth walls.
+  std::vector<core::BoundaryLoad<dim>> walls;
+  if constexpr (dim == 3)
+    for (const int boundary : {4, 5}) {
+      core::BoundaryLoad<3> wall;
+      wall.boundary = boundary;
+      wall.kind = core::BoundaryLoad<3>::Kind::displacement;
+      wall.value[2] = 0;
+      walls.push_back(wall);
+    }
+  const ManyBodyForce<dim> force(packing, scaled, walls);
+
+  const double nu = material.poissons_ratio;
+  const bool plane_stress = dim == 2 && material.plane == PlaneMode::stress;
+  const NearField field{scaled.shear_modulus(), plane_stress ? (3 - nu) / (1 + nu) : 3 - 4 * nu};
+
+  // Outside the radius the particles follow the field; inside they are unknowns.
+  constexpr int dofs = n_particle_dofs<dim>;
+  const int n = packing.size();
+  std::vector<int> unknown(n, -1);
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(dofs * n);
+  int n_unknown = 0;
+  for (int i = 0; i < n; ++i) {
+    const double x = packing.centre[0][i] - tip[0], y = packing.centre[1][i] - tip[1];
+    if (std::hypot(x, y) < radius)
+      unknown[i] = n_unknown++;
+    else {
+      const Vector<3> u = field(x, y);
+      motion.segment<2>(dofs * i) = u.head<2>();
+      motion[dofs * i + dofs - 1] = u[2];
+    }
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
+  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+    if (std::none_of(term.members.begin(), term.members.end(),
+                     [&](int i) { return unknown[i] >= 0; }))
+      return;
+    const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
+    for (std::size_t a = 0; a < term.members.size(); ++a) {
+      const int row = unknown[term.members[a]];
+      if (row < 0)
+        continue;
+      for (std::size_t b = 0; b < term.members.size(); ++b) {
+        const int column = unknown[term.members[b]];
+        const auto block = k.block<dofs, dofs>(dofs * a, dofs * b);
+        if (column < 0)
+          right.segment<dofs>(dofs * row) -= block * motion.segment<dofs>(dofs * term.members[b]);
+        else if (column <= row)
+          for (int r = 0; r < dofs; ++r)
+            for (int c = 0; c < dofs; ++c)
+              entries.push_back({dofs * row + r, dofs * column + c, block(r, c)});
+      }
+    }
+  });
+  Eigen::SparseMatrix<double> matrix(right.size(), right.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
+  core::require<core::EnvironmentError>(solver.info() == Eigen::Success,
+                                        "the crack-tip solve for the toughness factor failed");
+  const Eigen::VectorXd solution = solver.solve(right);
+
+  particles::Particles<dim> state;
+  particles::fill_particles(packing, scaled.density, state);
+  std::vector<int> near;
+  for (int i = 0; i < n; ++i) {
+    if (unknown[i] >= 0)
+      motion.segment<dofs>(dofs * i) = solution.segment<dofs>(dofs * unknown[i]);
+    set(state.displacement, i, Vector<dim>(motion.segment<dim>(dofs * i)));
+    for (int c = 0; c < n_spins<dim>; ++c)
+      state.rotation[dim == 2 ? 0 : c + 1][i] =
+          (dim == 2 ? 1 : 0.5) * motion[dofs * i + dim + c]; // small angles
+    const Vector<dim> x = get(packing.centre, i);
+    if ((x.template head<2>() - tip).norm() < 4 && (dim == 2 || std::abs(x[dim - 1]) < depth / 4))
+      near.push_back(i);
+  }
+  return force.max_tension(state, near) * std::sqrt(spacing) / k_one;
+}
+
+template <int dim>
+double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
+                           const DemMaterial &material, const CrackAxes<dim> &crack)
+{
+  const double radius = dim == 2 ? 30 : 8;
+  particles::LatticeParameters<dim> lattice;
+  lattice.kind = kind;
+  lattice.spacing = 1;
+  lattice.orientation = in_crack_axes(orientation, crack);
+  lattice.lower.setConstant(-3);
+  lattice.upper.setConstant(3);
+  bool aligned = false;
+  for (const auto &direction : particles::make_lattice_packing<dim>(lattice).directions)
+    aligned = aligned || std::abs(direction.normal[1]) < 1e-9;
+  if (aligned)
+    return crack_tip_factor<dim>(kind, orientation, material, crack, {0.1, 0.}, radius);
+  double largest = 0;
+  for (const double y : {0.05, 0.3, -0.3})
+    for (const double x : {0.1, 0.45})
+      largest = std::max(largest,
+                         crack_tip_factor<dim>(kind, orientation, material, crack, {x, y}, radius));
+  return largest;
+}
+
+template double crack_tip_factor<2>(particles::LatticeKind, const Spin<2> &, const DemMaterial &,
+                                    const CrackAxes<2> &, const Vector<2> &, double);
+template double crack_tip_factor<3>(particles::LatticeKind, const Spin<3> &, const DemMaterial &,
+                                    const CrackAxes<3> &, const Vector<2> &, double);
+template double calibrate_toughness<2>(particles::LatticeKind, const Spin<2> &, const DemMaterial &,
+                                       const CrackAxes<2> &);
+template double calibrate_toughness<3>(particles::LatticeKind, const Spin<3> &, const DemMaterial &,
+                                       const CrackAxes<3> &);
+} // namespace ligament::dem
