@@ -139,6 +139,15 @@ void FemSolver<dim>::hand_to_masters(std::vector<double> &values) const
 }
 
 template <int dim>
+void FemSolver<dim>::scale_velocities(double factor)
+{
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < mesh_.n_nodes(); ++i)
+      if (!held_[c][i])
+        velocity[c][i] *= factor;
+}
+
+template <int dim>
 void FemSolver<dim>::distribute()
 {
   for (auto *field : {&displacement, &velocity})

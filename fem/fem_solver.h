@@ -52,6 +52,9 @@ public:
   /// u += dt v of all nodes that are not released; then all hanging nodes follow.
   void drift(double dt);
 
+  /// Velocities of all nodes times factor, except held components, which move as prescribed.
+  void scale_velocities(double factor);
+
   /// Hanging nodes take displacement and velocity of their masters.
   void distribute();
 
