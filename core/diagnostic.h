@@ -16,7 +16,9 @@ struct Diagnostic
     warning
   };
   Place place;
-  std::string key;     // JSON pointer of the key it is about, such as /coupling/overlap_cells
+  /// JSON pointer of the key it is about, such as /coupling/overlap_cells; where it was misspelt,
+  /// of the one that is probably meant.
+  std::string key;
   std::string message; // one line
   std::string reason;  // may be empty
   std::string remedy;  // may be empty

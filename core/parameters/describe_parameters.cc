@@ -230,7 +230,7 @@ Json section_schema(const ParameterSection &section)
     if (!p.unit_name.empty())
       text += " [" + p.unit_name + "]";
     if (const std::string value = default_text(p); !value.empty())
-      text += p.necessity == Necessity::optional ? "; default " + value : "; " + value;
+      text += (value.compare(0, 8, "required") == 0 ? "; " : "; default ") + value;
     property["description"] = text;
     properties[p.key] = property;
     if (p.must_be_given(0))

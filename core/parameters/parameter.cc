@@ -117,8 +117,14 @@ std::string Parameter::type(int dimension) const
                             : "a number (2D) or a list of 3 numbers (3D)" + unit_text;
   case Kind::points:
     return "a list of points, each " + components;
-  case Kind::section:
-    return absent_word.empty() ? "an object {..}" : "an object {..} or \"" + absent_word + "\"";
+  case Kind::section: {
+    std::vector<std::string> words;
+    if (!section->shorthand().empty())
+      words = section->find(section->shorthand())->choices;
+    if (!absent_word.empty())
+      words.push_back(absent_word);
+    return "an object {..}" + (words.empty() ? "" : " or " + listed(words));
+  }
   case Kind::list:
     return "a list of objects [{..}, ..]";
   }

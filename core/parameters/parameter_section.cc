@@ -84,7 +84,7 @@ bool ParameterSection::must_be_given(int dimension) const
   for (const Parameter &p : parameters_)
     if (p.must_be_given(dimension))
       return true;
-  return false;
+  return required_;
 }
 
 std::vector<std::string> ParameterSection::keys(int dimension) const

@@ -77,13 +77,16 @@ public:
     return p;
   }
 
+  /// The input must have this group even though none of its keys is required.
+  void set_required() { required_ = true; }
+
   /// A bare word in place of this group stands for {key: word}.
   void set_shorthand(const std::string &key) { shorthand_ = key; }
   const std::string &shorthand() const { return shorthand_; }
 
   const std::deque<Parameter> &parameters() const { return parameters_; }
   const Parameter *find(const std::string &key) const;
-  /// True when some key of this group, or of one inside it, has no default.
+  /// True when this group was declared so, or some key of it or of a group inside has no default.
   bool must_be_given(int dimension) const;
   /// All keys that may be written in this dimension (0: any).
   std::vector<std::string> keys(int dimension) const;
@@ -94,5 +97,6 @@ private:
 
   std::deque<Parameter> parameters_; // references stay valid while the table grows
   std::string shorthand_;
+  bool required_ = false;
 };
 } // namespace ligament::core

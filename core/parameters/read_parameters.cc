@@ -98,7 +98,7 @@ private:
     const std::string meant = nearest_word(member.key, keys);
     const std::string home = meant.empty() ? home_of(root_, member.key, "") : "";
     const bool root_key = meant.empty() && home.empty() && root_.find(member.key);
-    error(member.place, path + "/" + member.key,
+    error(member.place, path + "/" + (meant.empty() ? member.key : meant),
           fmt::format("unknown key \"{}\" in {}{}", member.key, shown(path),
                       did_you_mean(member.key, keys)),
           home.empty() && !root_key ? "only known keys are read, a misspelt one would be lost"

@@ -36,31 +36,26 @@ Box box_of(const Specimen &specimen)
 /// Both models must be able to exist: the keys that are needed only then.
 void check_models(const Scene &scene, Findings &f)
 {
-  if (!f.given(zone_key))
-    f.error(
-        zone_key, "missing key \"discrete_zone\" in /",
-        "it says where the body is made of discrete elements",
-        "add \"discrete_zone\": {\"region\": .., \"packing\": .., \"spacing\": ..}, or \"none\"");
-  if (!f.sound({zone_key}) || !f.sound({far_key}))
+  if (!f.given(zone_key) || !f.sound({zone_key + "/extent"}))
     return;
   const bool no_far = !scene.far_field.has_value();
   if (scene.zone.extent == Extent::none) {
-    if (no_far)
+    if (no_far && f.sound({far_key}))
       f.error(far_key, "neither \"discrete_zone\" nor \"far_field\" is there",
               "a scene needs at least one of the two models", "give one of them");
     return;
   }
-  if (scene.zone.extent == Extent::box && no_far)
+  if (scene.zone.extent == Extent::box && no_far && f.sound({far_key}))
     f.error(far_key, "missing key \"far_field\" in /",
             "the discrete zone is a part of the specimen, the rest needs finite elements",
             "add \"far_field\": {\"cell_size\": ..}, or \"far_field\": \"none\" for the pure "
             "discrete reference");
-  if (scene.zone.extent == Extent::box && !f.given(region_key))
+  if (scene.zone.extent == Extent::box && !f.given(region_key) && f.sound({region_key}))
     f.error(region_key, "missing key \"region\" in /discrete_zone",
             "it says which part of the specimen is discrete",
             "add \"region\": {\"lower\": [..], \"upper\": [..]}, or \"extent\": \"all\"");
   for (const std::string key : {"packing", "spacing"})
-    if (!f.given(zone_key + "/" + key))
+    if (!f.given(zone_key + "/" + key) && f.sound({zone_key + "/" + key}))
       f.error(zone_key + "/" + key, fmt::format("missing key \"{}\" in /discrete_zone", key),
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }

@@ -63,6 +63,7 @@ void declare_zone(Section &s, DiscreteZone &z)
   s.add("spacing", z.spacing, "distance d of nearest neighbours").in("m").above(0).required_unless("extent is none");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").as_rotation();
   s.set_shorthand("extent");
+  s.set_required();
 }
 
 void declare_far_field(Section &s, FarField &f)
@@ -126,7 +127,7 @@ void declare_scene(Section &s, Scene &scene)
   declare_specimen(s.section("specimen", "the body"), scene.specimen);
   declare_material(s.section("material", "what it is made of"), scene.material);
   declare_zone(s.section("discrete_zone", "where the body may break"), scene.zone);
-  s.section("far_field", scene.far_field, "none", "finite elements around the discrete zone; none: the pure discrete reference of the scene", declare_far_field);
+  s.section("far_field", scene.far_field, "none", "finite elements around the discrete zone; none: the pure discrete reference of the scene", declare_far_field).required_unless("extent is all");
   declare_coupling(s.section("coupling", "the overlap of the two models"), scene.coupling);
   declare_damping(s.section("damping", "losses without physical meaning, for quasi-static scenes"), scene.damping);
   s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);

@@ -1,0 +1,126 @@
+// The program as users start it: exit codes, what is printed where, and that it answers at once.
+#include "core/version.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <sys/wait.h>
+
+namespace
+{
+const std::string program = LIGAMENT_PROGRAM;
+const std::string plate = LIGAMENT_SOURCE_DIR "/tests/support/scenes/plate.json";
+
+struct Outcome
+{
+  int code;
+  std::string text; // standard output
+  double seconds;
+};
+
+Outcome start(const std::string &arguments, const std::string &environment = "")
+{
+  const auto begin = std::chrono::steady_clock::now();
+  Outcome outcome{};
+  FILE *pipe =
+      popen((environment + " " + program + " " + arguments + " 2> stderr.txt").c_str(), "r");
+  std::array<char, 4096> buffer;
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.text.append(buffer.data(), n);
+  outcome.code = WEXITSTATUS(pclose(pipe));
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return outcome;
+}
+
+std::string errors()
+{
+  std::string text(std::filesystem::file_size("stderr.txt"), ' ');
+  FILE *file = std::fopen("stderr.txt", "r");
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  std::fclose(file);
+  return text;
+}
+
+bool has(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+} // namespace
+
+TEST(Launcher, HelpVersionAndExplain)
+{
+  EXPECT_EQ(start("--help").code, 0);
+  for (const char *command : {"run", "check", "compare", "explain", "report", "verify"}) {
+    EXPECT_TRUE(has(start("--help").text, command));
+    EXPECT_EQ(start(std::string(command) + " --help").code, 0);
+  }
+  const Outcome version = start("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_TRUE(has(version.text, ligament::core::version()));
+  const Outcome explain = start("explain overlap_cells");
+  EXPECT_EQ(explain.code, 0);
+  EXPECT_TRUE(has(explain.text, "default  3"));
+}
+
+TEST(Launcher, MistakesOnTheCommandLineAreWrongInput)
+{
+  EXPECT_EQ(start("").code, 2);
+  EXPECT_EQ(start("fly").code, 2);
+  EXPECT_EQ(start("run").code, 2);
+  EXPECT_EQ(start("run a.json --sett /a=1").code, 2);
+  EXPECT_EQ(start("explain raduis").code, 2);
+  EXPECT_TRUE(has(errors(), "did you mean \"radius\"?"));
+  EXPECT_TRUE(has(start("run --json").text, "{\"errors\""));
+}
+
+TEST(Launcher, WrongScenesArePrintedWithAllErrors)
+{
+  const std::string wrong = " " + plate + " --set /coupling/overlap_cells=1 --set /time/duration=0";
+  for (const std::string command : {"run", "check"}) {
+    const Outcome outcome = start(command + wrong + " --json");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_TRUE(has(errors(), "--set /coupling/overlap_cells: error: ")) << errors();
+    EXPECT_TRUE(has(errors(), "--set /time/duration: error: ")) << errors();
+    const std::size_t last_line = outcome.text.rfind('\n', outcome.text.size() - 2) + 1;
+    EXPECT_TRUE(has(outcome.text.substr(last_line), "\"errors\":[{")) << outcome.text;
+  }
+}
+
+TEST(Launcher, SeveralRanksAreRefused)
+{
+  EXPECT_EQ(start("run " + plate + " -n 2").code, 2);
+  EXPECT_TRUE(has(errors(), "several ranks are not supported yet"));
+  EXPECT_EQ(start("run " + plate + " -n 0").code, 2);
+  EXPECT_EQ(start("check " + plate, "OMPI_COMM_WORLD_SIZE=2").code, 2);
+  EXPECT_TRUE(has(errors(), "several ranks are not supported yet"));
+}
+
+// The copy stands in a folder without a solver.
+TEST(Launcher, MissingSolverIsAMatterOfTheEnvironment)
+{
+  std::filesystem::copy_file(program, "ligament_alone",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(WEXITSTATUS(std::system(("./ligament_alone run " + plate + " 2> stderr.txt").c_str())),
+            4);
+  EXPECT_TRUE(has(errors(), "ligament-solver"));
+}
+
+// A tenth of a second is what people feel as at once; deal.II alone takes five times that to load.
+TEST(Launcher, AnswersAtOnce)
+{
+  for (const std::string &arguments :
+       {std::string("--help"), std::string("explain"), "run " + plate + " --set /dimension=4"})
+  {
+    double fastest = 1;
+    for (int k = 0; k < 5; ++k)
+      fastest = std::min(fastest, start(arguments).seconds);
+    EXPECT_LT(fastest, 0.1) << arguments;
+  }
+}

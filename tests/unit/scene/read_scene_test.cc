@@ -1,0 +1,186 @@
+#include "src/scene/read_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ligament;
+using namespace ligament::program;
+using Extent = DiscreteZone::Extent;
+
+namespace
+{
+const std::string plate = LIGAMENT_SOURCE_DIR "/tests/support/scenes/plate.json";
+const std::string bar = LIGAMENT_SOURCE_DIR "/tests/support/scenes/bar.json";
+
+std::string all(const ReadResult &result)
+{
+  std::string text;
+  for (const core::Diagnostic &d : result.errors)
+    text += to_string(d) + "\n";
+  return text;
+}
+
+Scene good(const std::string &file, const std::vector<std::string> &overrides = {})
+{
+  const ReadResult result = read_scene(file, overrides);
+  EXPECT_EQ(all(result), "");
+  return result.scene.value_or(Scene());
+}
+} // namespace
+
+TEST(ReadScene, CoupledPlate)
+{
+  const Scene s = good(plate);
+  EXPECT_EQ(s.dimension, 2);
+  EXPECT_EQ(s.plane, PlaneMode::strain);
+  EXPECT_EQ(s.specimen.size, (Point{0.08, 0.16, 0}));
+  ASSERT_EQ(s.specimen.cracks.size(), 1u);
+  EXPECT_EQ(s.specimen.cracks[0].points[1], (Point{0.008, 0, 0}));
+  EXPECT_EQ(s.specimen.holes[0].radius, 0.002);
+  EXPECT_EQ(s.specimen.notches[0].upper, (Point{-0.035, 0.001, 0}));
+  EXPECT_EQ(s.material.youngs_modulus, 72e9);
+  EXPECT_EQ(s.material.fracture.toughness.value(), 0.75e6);
+  EXPECT_FALSE(s.material.fracture.strength);
+  EXPECT_EQ(s.zone.extent, Extent::box);
+  EXPECT_EQ(s.zone.lower[1], -0.03);
+  EXPECT_LT(s.zone.lower[0], -0.04); // reaches beyond the side, and is finite
+  EXPECT_TRUE(std::isfinite(s.zone.lower[0]) && std::isfinite(s.zone.upper[0]));
+  EXPECT_GT(s.zone.upper[0], 0.04);
+  EXPECT_DOUBLE_EQ(s.zone.orientation[0], std::acos(-1.0) / 12);
+  EXPECT_EQ(s.far_field.value().levels, 2);
+  EXPECT_EQ(s.coupling.step_ratio, 2);
+  ASSERT_EQ(s.loads.size(), 2u);
+  EXPECT_EQ(s.loads[1].kind, "velocity");
+  EXPECT_FALSE(s.loads[1].value[0]);
+  EXPECT_EQ(s.loads[1].value[1].value(), -0.01);
+  EXPECT_EQ(s.loads[1].ramp, 0.0002);
+  EXPECT_EQ(s.time.stop_when, "specimen_broken");
+  EXPECT_EQ(s.output.field_interval, 1e-4);
+}
+
+TEST(ReadScene, CoupledBarIn3d)
+{
+  const Scene s = good(bar);
+  EXPECT_EQ(s.dimension, 3);
+  EXPECT_EQ(s.zone.packing, "fcc");
+  EXPECT_DOUBLE_EQ(s.zone.orientation[2], std::acos(-1.0) / 4);
+  EXPECT_EQ(s.loads[1].kind, "displacement");
+  EXPECT_EQ(s.loads[1].value[2].value(), 0);
+  EXPECT_EQ(s.coupling.gap_filter, 4); // a default
+  EXPECT_TRUE(std::isinf(s.output.field_interval));
+}
+
+TEST(ReadScene, FarFieldNoneIsThePureDiscreteTwin)
+{
+  for (const std::string &file : {plate, bar}) {
+    const Scene s = good(file, {"/far_field=none"});
+    EXPECT_EQ(s.zone.extent, Extent::all);
+    EXPECT_FALSE(s.far_field);
+    EXPECT_EQ(s.zone.spacing, good(file).zone.spacing);
+    for (int c = 0; c < s.dimension; ++c) {
+      EXPECT_LT(s.zone.lower[c], -s.specimen.size[c] / 2);
+      EXPECT_GT(s.zone.upper[c], s.specimen.size[c] / 2);
+    }
+  }
+}
+
+// A word for the zone leaves its other keys: packing and spacing are needed by the twin.
+TEST(ReadScene, ZoneAllIsTheSameTwin)
+{
+  const Scene s = good(plate, {"/discrete_zone=all"});
+  EXPECT_EQ(s.zone.extent, Extent::all);
+  EXPECT_EQ(s.zone.spacing, 0.0005);
+  EXPECT_FALSE(s.far_field);
+}
+
+TEST(ReadScene, ZoneNoneIsPureFiniteElements)
+{
+  const ReadResult result = read_scene(plate, {"/discrete_zone=none"});
+  EXPECT_EQ(all(result), "");
+  EXPECT_EQ(result.scene.value().zone.extent, Extent::none);
+  EXPECT_EQ(result.scene.value().far_field.value().cell_size, 0.002);
+  ASSERT_EQ(result.warnings.size(), 1u); // the cuts are left out
+  EXPECT_EQ(good(bar, {"/discrete_zone=none"}).zone.extent, Extent::none);
+  // No packing is needed where no particle is.
+  EXPECT_EQ(good(plate, {R"(/discrete_zone={"extent": "none"})"}).zone.spacing, 0);
+}
+
+TEST(ReadScene, NoCheckOfTheOverlapWithoutOverlap)
+{
+  good(plate, {"/far_field=none", "/specimen/cracks/0/points/1/1=60 mm"});
+  good(plate, {"/far_field=none", "/discrete_zone/spacing=1 mm",
+               "/discrete_zone/region/upper/1=90 mm", "/discrete_zone/region/lower/1=-90 mm"});
+  good(plate, {"/far_field=none", "/loads/0/boundary=left"});
+}
+
+// The overlap of a zone at a loaded side does not touch that side when it lies across it.
+TEST(ReadScene, ZoneMayReachALoadedSideThatTheOverlapDoesNotTouch)
+{
+  const Scene s = good(plate, {"/discrete_zone/region/lower/1=null"});
+  EXPECT_LT(s.zone.lower[1], -0.08);
+}
+
+TEST(ReadScene, ResolvedEchoReadsBackToItself)
+{
+  const std::vector<std::vector<std::string>> variants = {{},
+                                                          {"/far_field=none"},
+                                                          {"/discrete_zone=none"},
+                                                          {"/discrete_zone=all"},
+                                                          {R"(/discrete_zone={"extent": "none"})"},
+                                                          {"/output/field_interval=never"}};
+  for (const std::string &file : {plate, bar})
+    for (const auto &overrides : variants) {
+      const ReadResult first = read_scene(file, overrides);
+      ASSERT_TRUE(first.scene) << all(first);
+      const ReadResult second = parse_scene(first.resolved.dump(2), "echo");
+      ASSERT_TRUE(second.scene) << all(second);
+      EXPECT_EQ(second.resolved.dump(), first.resolved.dump());
+      EXPECT_EQ(second.scene->zone.lower, first.scene->zone.lower);
+      EXPECT_EQ(second.scene->zone.upper, first.scene->zone.upper);
+      EXPECT_EQ(second.scene->far_field.has_value(), first.scene->far_field.has_value());
+    }
+}
+
+TEST(ReadScene, ErrorsStandInTheOrderOfTheFileAndOverridesLast)
+{
+  const ReadResult result =
+      parse_scene("{\"time\": {},\n\"title\": 1,\n\"speciman\": {}}", "s.json", {"/dimension=5"});
+  ASSERT_GE(result.errors.size(), 5u);
+  for (std::size_t k = 1; k + 1 < result.errors.size(); ++k)
+    EXPECT_LE(result.errors[k - 1].place.line, result.errors[k].place.line);
+  EXPECT_EQ(to_string(result.errors.back().place), "--set /dimension");
+  EXPECT_FALSE(result.scene);
+  EXPECT_TRUE(result.resolved.is_null());
+}
+
+TEST(ReadScene, RatioBeyondTheRecommendedIsAWarning)
+{
+  const ReadResult result = read_scene(plate, {"/far_field/cell_size=1.1 mm"});
+  EXPECT_EQ(all(result), "");
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.warnings[0].key, "/far_field/cell_size");
+}
+
+TEST(ReadScene, FileThatIsNotThere)
+{
+  const ReadResult result = read_scene("no_such_scene.json");
+  ASSERT_EQ(result.errors.size(), 1u);
+  EXPECT_EQ(to_string(result.errors[0].place), "no_such_scene.json");
+}
+
+TEST(ReadScene, NoBeginningOfASceneDoesHarm)
+{
+  const std::string text =
+      R"({"dimension": 3, "specimen": {"size": ["1 m", 2, null]}, "loads": [{}],
+    "discrete_zone": {"region": {"lower": [null]}}, "far_field": {"levels": 1e9}, "time": [1]})";
+  for (std::size_t n = 0; n <= text.size(); ++n)
+    EXPECT_FALSE(parse_scene(text.substr(0, n), "t").errors.empty());
+}
+
+TEST(Explain, KnowsTheKeysOfTheScene)
+{
+  EXPECT_NE(explain("/coupling/overlap_cells").find("default  3"), std::string::npos);
+  EXPECT_NE(explain("toughness").find("Pa*m^0.5"), std::string::npos);
+  EXPECT_NE(explain("").find("/loads/*/ramp"), std::string::npos);
+}
