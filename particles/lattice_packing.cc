@@ -1,14 +1,11 @@
 #include "particles/lattice_packing.h"
 
 #include "core/check.h"
-#include "particles/lattice.h"
-#include "particles/specimen_shape.h"
-#include "particles/voronoi_cell.h"
+#include "particles/clipped_cell.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 namespace ligament::particles
 {
@@ -27,29 +24,6 @@ LatticeKind lattice_kind(const std::string &name)
 
 namespace
 {
-// Ids of the planes that bound a cell: a lattice neighbour (its place in Lattice::reachable), a
-// side of the specimen, the start cube, or a side of a void.
-constexpr int side_id = -10, start_id = -1, first_void_id = -100;
-
-/// What is left of one face of a cell that is not a whole lattice cell.
-template <int dim>
-struct FacePart
-{
-  int id;
-  Vector<dim> normal; // unit, out of the cell
-  double distance;    // from the centre to the plane
-  double area;
-  Vector<dim> moment; // area times centroid, about the centre
-};
-
-template <int dim>
-struct IrregularCell
-{
-  double volume = 0;
-  std::vector<FacePart<dim>> parts;
-  Vector<dim> lower = Vector<dim>::Constant(1e300), upper = -lower; // about the centre
-};
-
 /// A line of lattice points along the close-packed direction, and the numbers of its particles.
 template <int dim>
 struct Row
@@ -72,16 +46,7 @@ private:
   void place_particles();
   void join_faces();
 
-  bool is_kept(const Index &k) const
-  {
-    return shape_.distance(lattice_.position(k)) >= (0.25 - 1e-9) * lattice_.spacing;
-  }
   bool has_all_neighbours(const Index &k) const;
-  IrregularCell<dim> irregular_cell(const Index &k, const Vector<dim> &x) const;
-  void add_parts(const VoronoiCell<dim> &cell, double sign, const Vector<dim> &x,
-                 IrregularCell<dim> &result) const;
-  void subtract_voids(const VoronoiCell<dim> &cell, std::size_t first, double sign,
-                      const Vector<dim> &x, IrregularCell<dim> &result) const;
   bool is_in_zone(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper) const;
   int particle_at(const Index &k) const;
   bool is_whole(int i) const { return irregular_of_[i] < 0; }
@@ -99,7 +64,7 @@ private:
   std::vector<Row<dim>> rows_;
   Index first_row_, n_rows_; // component 0 unused
   std::vector<int> irregular_of_;
-  std::vector<IrregularCell<dim>> irregular_;
+  std::vector<ClippedCell<dim>> irregular_;
   Packing<dim> packing_;
 };
 
@@ -172,94 +137,12 @@ void Packer<dim>::lay_out_rows()
 template <int dim>
 bool Packer<dim>::has_all_neighbours(const Index &k) const
 {
+  const double d = lattice_.spacing;
   for (const LatticeNeighbour<dim> &n : lattice_.forward)
-    if (!is_kept(k + n.offset) || !is_kept(k - n.offset))
+    if (!is_kept(shape_, lattice_.position(k + n.offset), d) ||
+        !is_kept(shape_, lattice_.position(k - n.offset), d))
       return false;
   return true;
-}
-
-/// Adds sign times the faces and the volume of a part of a cell.
-template <int dim>
-void Packer<dim>::add_parts(const VoronoiCell<dim> &cell, double sign, const Vector<dim> &x,
-                            IrregularCell<dim> &result) const
-{
-  for (const auto &face : cell.faces()) {
-    auto part = std::find_if(result.parts.begin(), result.parts.end(),
-                             [&](const auto &p) { return p.id == face.id; });
-    if (part == result.parts.end())
-      part =
-          result.parts.insert(part, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero()});
-    part->area += sign * face.area;
-    part->moment += sign * face.area * face.centroid;
-    result.volume += sign * face.area * face.distance / dim;
-  }
-  // Corners inside a void bound nothing.
-  for (const Vector<dim> &corner : cell.vertices()) {
-    const Vector<dim> y = x + corner;
-    if (std::none_of(shape_.voids.begin(), shape_.voids.end(),
-                     [&](const auto &v) { return v.contains(y, tolerance_); }))
-    {
-      result.lower = result.lower.cwiseMin(corner);
-      result.upper = result.upper.cwiseMax(corner);
-    }
-  }
-}
-
-/// Takes the union of the voids away by inclusion and exclusion: every set of voids, from number
-/// `first` on, that meets in the cell.
-template <int dim>
-void Packer<dim>::subtract_voids(const VoronoiCell<dim> &cell, std::size_t first, double sign,
-                                 const Vector<dim> &x, IrregularCell<dim> &result) const
-{
-  int id = first_void_id;
-  for (std::size_t v = 0; v < shape_.voids.size(); id -= int(shape_.voids[v++].sides.size())) {
-    // The polygon of a hole may reach a little out of its circle.
-    const double reach = cell.max_radius() + 0.1 * lattice_.spacing;
-    if (v < first || shape_.voids[v].distance(x) > reach)
-      continue;
-    VoronoiCell<dim> common = cell;
-    int side_number = id;
-    for (const HalfSpace<dim> &side : shape_.voids[v].sides)
-      common.clip(side.normal, side.offset - side.normal.dot(x), side_number--);
-    if (common.is_empty())
-      continue;
-    add_parts(common, -sign, x, result);
-    subtract_voids(common, v + 1, -sign, x, result);
-  }
-}
-
-template <int dim>
-IrregularCell<dim> Packer<dim>::irregular_cell(const Index &k, const Vector<dim> &x) const
-{
-  const double d = lattice_.spacing;
-  VoronoiCell<dim> cell(4 * d, start_id, 1e-13 * d);
-  for (int a = 0; a < dim; ++a) {
-    cell.clip(-Vector<dim>::Unit(a), x[a] - shape_.lower[a], side_id - 2 * a);
-    cell.clip(Vector<dim>::Unit(a), shape_.upper[a] - x[a], side_id - 2 * a - 1);
-  }
-  for (std::size_t n = 0; n < lattice_.reachable.size(); ++n) {
-    const LatticeNeighbour<dim> &other = lattice_.reachable[n];
-    if (other.distance / 2 > cell.max_radius())
-      break;
-    if (cell.is_cut_by(other.direction, other.distance / 2) && is_kept(k + other.offset))
-      cell.clip(other.direction, other.distance / 2, int(n));
-  }
-  IrregularCell<dim> result;
-  add_parts(cell, 1, x, result);
-  subtract_voids(cell, 0, 1, x, result);
-
-  const double least = 1e-12 * lattice_.face_area;
-  auto &parts = result.parts;
-  parts.erase(std::remove_if(parts.begin(), parts.end(),
-                             [&](const auto &part) { return std::abs(part.area) < least; }),
-              parts.end());
-  for (FacePart<dim> &part : parts) {
-    if (part.id == start_id)
-      throw std::logic_error("a Voronoi cell of the packing is open");
-    if (part.id <= first_void_id) // subtracted: area and moment are negative, the normal leads out
-      part = {part.id, -part.normal, -part.distance, -part.area, -part.moment};
-  }
-  return result;
 }
 
 template <int dim>
@@ -288,9 +171,9 @@ void Packer<dim>::place_particles()
       if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
         continue;
       const double distance = shape_.distance(x);
-      if (distance < (0.25 - 1e-9) * d)
+      if (distance < clearance * d)
         continue;
-      bool whole = distance > 1.25 * d;
+      bool whole = distance > (clearance + 1) * d;
       if (!whole && has_all_neighbours(k)) {
         whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
                 ((shape_.upper - x - extent).array() > -1e-12 * d).all();
@@ -303,7 +186,7 @@ void Packer<dim>::place_particles()
         irregular_of_.push_back(-1);
         packing_.volume.push_back(lattice_.cell_volume * thickness_);
       } else {
-        IrregularCell<dim> cell = irregular_cell(k, x);
+        ClippedCell<dim> cell(lattice_, shape_, k);
         if (!is_in_zone(x, cell.lower, cell.upper))
           continue;
         irregular_of_.push_back(int(irregular_.size()));
@@ -360,15 +243,14 @@ template <int dim>
 void Packer<dim>::add_irregular_faces(int i, const Index &k)
 {
   const std::size_t first_face = packing_.faces.size();
-  for (const FacePart<dim> &part : irregular_[irregular_of_[i]].parts) {
+  for (const auto &part : irregular_[irregular_of_[i]].parts) {
     const Vector<dim> lever = part.moment / part.area;
-    if (part.id < 0) {
-      const int boundary = part.id <= first_void_id ? inner_surface<dim> : side_id - part.id;
+    if (part.neighbour < 0) {
       packing_.boundary_faces.push_back(
-          {i, part.normal, part.area * thickness_, part.distance, lever, boundary});
+          {i, part.normal, part.area * thickness_, part.distance, lever, part.boundary});
       continue;
     }
-    const LatticeNeighbour<dim> &n = lattice_.reachable[part.id];
+    const LatticeNeighbour<dim> &n = lattice_.reachable[part.neighbour];
     const int j = particle_at(k + n.offset);
     if (j <= i || is_whole(j)) // those of whole cells are lattice faces
       continue;

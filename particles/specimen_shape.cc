@@ -58,6 +58,24 @@ bool Void<dim>::contains(const Vector<dim> &x, double tolerance) const
 }
 
 template <int dim>
+bool Void<dim>::hides(const Vector<dim> &a, const Vector<dim> &b, double depth) const
+{
+  double begin = 0, end = 1; // of the part a + s (b - a) inside all sides
+  for (const HalfSpace<dim> &side : sides) {
+    const double excess_a = side.normal.dot(a) - side.offset + depth;
+    const double excess_b = side.normal.dot(b) - side.offset + depth;
+    if (excess_a > 0 && excess_b > 0)
+      return false;
+    const double crossing = excess_a / (excess_a - excess_b);
+    if (excess_a > 0)
+      begin = std::max(begin, crossing);
+    else if (excess_b > 0)
+      end = std::min(end, crossing);
+  }
+  return begin < end;
+}
+
+template <int dim>
 CrackPlane<dim>::CrackPlane(const CrackPoints<dim> &points, double tolerance)
     : tolerance_(tolerance)
 {

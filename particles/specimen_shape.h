@@ -27,6 +27,8 @@ public:
   double distance(const Vector<dim> &x) const;
   /// Inside the polygon or box by more than the tolerance.
   bool contains(const Vector<dim> &x, double tolerance) const;
+  /// Does the segment a - b run through it deeper than `depth`?
+  bool hides(const Vector<dim> &a, const Vector<dim> &b, double depth) const;
 
   std::vector<HalfSpace<dim>> sides; // outward normals; the void is their intersection
 
