@@ -63,7 +63,8 @@ public:
       const std::vector<std::string> keys = section.keys(0);
       return error(fmt::format("unknown key \"{}\" in {}{}", parts_[k], path(k),
                                did_you_mean(parts_[k], keys)),
-                   "the path must name a key of the scene", "the keys here are " + listed(keys));
+                   "the path must name a key of the scene",
+                   "the keys here are " + listed(keys, "and"));
     }
     const bool last = k + 1 == parts_.size();
     if (!last && !p->section && p->kind != Kind::vector && p->kind != Kind::rotation &&

@@ -103,7 +103,7 @@ private:
                       did_you_mean(member.key, keys)),
           home.empty() && !root_key ? "only known keys are read, a misspelt one would be lost"
                                     : "this key belongs to " + shown(home),
-          meant.empty() ? "the keys here are " + listed(keys) : "write \"" + meant + "\"");
+          meant.empty() ? "the keys here are " + listed(keys, "and") : "write \"" + meant + "\"");
     return meant;
   }
 

@@ -23,6 +23,23 @@ int edit_distance(std::string_view a, std::string_view b)
   return last[b.size()];
 }
 
+namespace
+{
+/// "overlap_width" and "overlap_cells" are relatives.
+std::string only_relative(std::string_view word, const std::vector<std::string> &known)
+{
+  const std::size_t length = word.find('_') + 1; // 0 without an underscore
+  if (length < 5)
+    return "";
+  const auto is_relative = [&](const std::string &candidate) {
+    return candidate.compare(0, length, word, 0, length) == 0;
+  };
+  const auto first = std::find_if(known.begin(), known.end(), is_relative);
+  const bool only = std::count_if(known.begin(), known.end(), is_relative) == 1;
+  return only ? *first : "";
+}
+} // namespace
+
 std::string nearest_word(std::string_view word, const std::vector<std::string> &known)
 {
   std::string nearest;
@@ -36,7 +53,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string> &
       nearest = candidate;
     }
   }
-  return nearest;
+  return nearest.empty() ? only_relative(word, known) : nearest;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string> &known)
@@ -45,11 +62,14 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string> &
   return nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?";
 }
 
-std::string listed(const std::vector<std::string> &words)
+std::string listed(const std::vector<std::string> &words, const std::string &conjunction)
 {
   std::string text;
   for (std::size_t k = 0; k < words.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + ("\"" + words[k] + "\"");
+    text += (k == 0                  ? std::string()
+             : k + 1 == words.size() ? " " + conjunction + " "
+                                     : ", ") +
+            ("\"" + words[k] + "\"");
   return text;
 }
 } // namespace ligament::core

@@ -23,6 +23,8 @@ TEST(Spelling, NearestWordIsNearOrNothing)
   EXPECT_EQ(nearest_word("overlap", words), "overlap_width"); // a beginning
   EXPECT_EQ(nearest_word("slver", words), "solver");
   EXPECT_EQ(nearest_word("temperature", words), "");
+  EXPECT_EQ(nearest_word("cell_width", {"levels", "cell_size"}), "cell_size"); // a relative
+  EXPECT_EQ(nearest_word("overlap_temperature", words), "");                   // of two
   EXPECT_EQ(did_you_mean("temperature", words), "");
   EXPECT_EQ(did_you_mean("slver", words), ", did you mean \"solver\"?");
 }
