@@ -1,5 +1,6 @@
 #include "core/check.h"
 #include "fem/mesh.h"
+#include "fem/sectioned_axis.h"
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -11,102 +12,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 
 namespace ligament::fem
 {
 namespace
 {
-/// Distances in finest cells, so that all decisions are made in whole numbers.
-using Index = std::int64_t;
-
-/// One direction of the specimen, cut where the inner box begins and ends. Each section carries
-/// whole base cells; node positions count finest cells from the lower end.
-class Axis
-{
-public:
-  Axis(double lower, double upper, double inner_lower, double inner_upper, double base_size,
-       int levels)
-      : base_(Index(1) << levels)
-  {
-    const double margin = 1e-9 * (upper - lower);
-    std::vector<double> ends{lower};
-    if (inner_lower > lower + margin && inner_lower < upper - margin)
-      ends.push_back(inner_lower);
-    if (inner_upper > lower + margin && inner_upper < upper - margin)
-      ends.push_back(inner_upper);
-    ends.push_back(upper);
-    for (std::size_t s = 0; s + 1 < ends.size(); ++s) {
-      const double length = ends[s + 1] - ends[s];
-      const double middle = ends[s] + length / 2;
-      const bool inner = middle > inner_lower && middle < inner_upper;
-      const Index n = base_ * std::max<Index>(1, std::llround(length / base_size));
-      sections_.push_back({ends[s], ends[s + 1], n_, n, inner});
-      n_ += n;
-    }
-    inner_begin_ = inner_end_ = -1;
-    for (const Section &s : sections_)
-      if (s.inner) {
-        inner_begin_ = s.begin;
-        inner_end_ = s.begin + s.n;
-      }
-  }
-
-  struct Section
-  {
-    double lower, upper; // m
-    Index begin, n;      // finest cells
-    bool inner;          // inside the left-out box, as far as this direction is concerned
-  };
-
-  Index n() const { return n_; }
-  const std::vector<Section> &sections() const { return sections_; }
-  bool meets_inner_box() const { return inner_begin_ >= 0; }
-  bool leaves_room() const { return inner_end_ - inner_begin_ < n_; }
-
-  double position(Index i) const
-  {
-    const Section &s = section([&](const Section &c) { return i <= c.begin + c.n; });
-    if (i == s.begin + s.n)
-      return s.upper;
-    return s.lower + (s.upper - s.lower) * double(i - s.begin) / double(s.n);
-  }
-
-  Index index(double x) const
-  {
-    const Section &s = section([&](const Section &c) { return x <= c.upper; });
-    return s.begin + std::llround((x - s.lower) / (s.upper - s.lower) * double(s.n));
-  }
-
-  /// Size of a finest cell that begins at i, in m.
-  double finest_size(Index i) const
-  {
-    const Section &s = section([&](const Section &c) { return i < c.begin + c.n; });
-    return (s.upper - s.lower) / double(s.n);
-  }
-
-  bool in_inner_box(Index i, Index n) const { return i >= inner_begin_ && i + n <= inner_end_; }
-
-  /// Distance of the interval [i, i + n] from the inner box.
-  Index distance(Index i, Index n) const
-  {
-    return std::max({Index(0), inner_begin_ - (i + n), i - inner_end_});
-  }
-
-private:
-  template <typename Condition>
-  const Section &section(Condition condition) const
-  {
-    const auto s = std::find_if(sections_.begin(), sections_.end(), condition);
-    return s == sections_.end() ? sections_.back() : *s;
-  }
-
-  Index base_, n_ = 0, inner_begin_, inner_end_;
-  std::vector<Section> sections_;
-};
-
-using Grid = std::vector<Axis>; // one per direction
+using Index = SectionedAxis::Index;
+using Grid = std::vector<SectionedAxis>; // one per direction
 
 template <int dim>
 using Lattice = std::array<Index, dim>;

@@ -54,8 +54,13 @@ struct Mesh
   int n_cells() const { return int(cells.size()); }
 };
 
-/// Builds the mesh with deal.II (local refinement, hanging nodes). Throws core::InputError with
-/// reason and remedy when a section of the far field is thinner than one of its largest cells.
+/// Builds the mesh with deal.II (local refinement, hanging nodes). Every section beside or between
+/// the faces of the inner box is filled with whole cells, so sizes differ a little from the ones
+/// asked for, within 3/4 and 3/2 in a section of one large cell. There are no hanging nodes within
+/// `fine_cells` cells of the inner box, its border included. Without inner box all cells have size
+/// h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError with reason and
+/// remedy when a section of the far field is thinner than 3/4 of its largest cells, when the inner
+/// box fills the specimen or lies outside, or when parameters are out of range.
 template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters);
 

@@ -306,6 +306,12 @@ void check_held_components_follow_their_load()
   }
   EXPECT_GT(n_held[0], 0);
   EXPECT_GT(n_held[1], 0);
+
+  const auto before = solver.velocity;
+  solver.scale_velocities(0.5);
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < solver.mesh().n_nodes(); ++i)
+      EXPECT_EQ(solver.velocity[c][i], (solver.is_held(i, c) ? 1 : 0.5) * before[c][i]);
 }
 } // namespace
 
