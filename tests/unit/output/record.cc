@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+
 using namespace ligament;
 using namespace ligament::program;
 
@@ -70,6 +72,7 @@ TEST(RunRecord, RefusesDamage)
 
 TEST(RunFolder, IsMadeAndRecognised)
 {
+  std::filesystem::remove_all("some");
   const RunFolder folder{"some/new/folder"};
   folder.create();
   folder.create();

@@ -112,7 +112,8 @@ private:
   static std::vector<double> values(const std::string &bytes)
   {
     std::vector<T> typed(bytes.size() / sizeof(T));
-    std::memcpy(typed.data(), bytes.data(), bytes.size());
+    if (!typed.empty())
+      std::memcpy(typed.data(), bytes.data(), bytes.size());
     return {typed.begin(), typed.end()};
   }
 
