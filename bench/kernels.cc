@@ -25,13 +25,11 @@ double rate(int particles, const std::function<void()> &step)
 {
   double best = 0;
   step();
-  for (int run = 0; run < 7; ++run)
-  {
+  for (int run = 0; run < 7; ++run) {
     const double start = seconds_now();
     int steps = 0;
     double seconds = 0;
-    while (seconds < 0.1)
-    {
+    while (seconds < 0.1) {
       step();
       ++steps;
       seconds = seconds_now() - start;
@@ -57,15 +55,13 @@ void measure(const std::string &name, particles::LatticeKind kind, double spacin
   const int n = p.size();
   // A smooth motion with spins; far below the strength, so that nothing breaks.
   for (int i = 0; i < n; ++i)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       p.displacement[c][i] = 1e-4 * std::sin(3 * p.reference[(c + 1) % dim][i]);
       p.rotation[dim == 2 ? 0 : c + 1][i] = 1e-5 * std::cos(2 * p.reference[c][i]);
     }
   const oracle::ManyBodyOracle<dim> oracle(packing, 1, 0.25);
   const double reference = rate(n, [&] { oracle.compute(p); });
-  const auto print = [&](const std::string &what, double value)
-  {
+  const auto print = [&](const std::string &what, double value) {
     fmt::print("{{\"name\": \"{} {}, {} particles\", \"value\": {:.2f}, \"unit\": \"1e6 "
                "particle-steps/s\", \"reference\": {:.3f}, \"ratio\": {:.1f}}}\n",
                name, what, n, value, reference, value / reference);

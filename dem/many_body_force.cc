@@ -152,6 +152,9 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
 template <int dim>
 void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
+  if (time != time_)
+    last_time_ = time_;
+  time_ = time;
   surface_.set_time(time);
   elastic_forces(p, surface_, strength(), work_);
   if (!contacts_.all().empty()) {

@@ -88,13 +88,19 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   elastic_forces(p, surface_, 0., work_);
   contacts_.add_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
-  const auto mean = [](auto &now, const auto &before) {
+  // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
+  // the mean force leaves as it is.
+  const double dt = time_ - last_time_;
+  const auto mean = [&](auto &now, const auto &before, const std::vector<double> &inverse) {
     for (std::size_t c = 0; c < now.size(); ++c)
-      for (std::size_t i = 0; i < now[c].size(); ++i)
+      for (std::size_t i = 0; i < now[c].size(); ++i) {
+        breaking_step_error_ +=
+            dt * dt / 8 * inverse[i] * (now[c][i] - before[c][i]) * (now[c][i] + before[c][i]);
         now[c][i] = 0.5 * (now[c][i] + before[c][i]);
+      }
   };
-  mean(p.force, force_before);
-  mean(p.torque, torque_before);
+  mean(p.force, force_before, p.inverse_mass);
+  mean(p.torque, torque_before, p.inverse_inertia);
 }
 
 template void ManyBodyForce<2>::set_strength(double);

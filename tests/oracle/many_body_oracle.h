@@ -32,8 +32,7 @@ public:
     std::vector<double> phi(n, dim == 2 && plane_ == PlaneMode::strain ? 1. : 0.), theta(n, 0.),
         lambda(n);
     std::vector<Matrix> turn;
-    for (int i = 0; i < n; ++i)
-    {
+    for (int i = 0; i < n; ++i) {
       turn.push_back(rotation(p, i));
       for (auto &a : p.force)
         a[i] = 0;
@@ -41,45 +40,38 @@ public:
         a[i] = 0;
     }
     const double share = 3 * nu_ / (1 + nu_);
-    for_bonds(
-        [&](const Face &f)
-        {
-          const double s_r = f.area / (f.q_i + f.q_j);
-          const Vector<dim> du = relative(f, turn, p);
-          phi[f.i] += f.area * f.q_i / packing_.volume[f.i];
-          phi[f.j] += f.area * f.q_j / packing_.volume[f.j];
-          theta[f.i] += s_r * (turn[f.i] * f.lever_i).dot(du) / packing_.volume[f.i];
-          theta[f.j] -= s_r * (turn[f.j] * f.lever_j).dot(du) / packing_.volume[f.j];
-        });
+    for_bonds([&](const Face &f) {
+      const double s_r = f.area / (f.q_i + f.q_j);
+      const Vector<dim> du = relative(f, turn, p);
+      phi[f.i] += f.area * f.q_i / packing_.volume[f.i];
+      phi[f.j] += f.area * f.q_j / packing_.volume[f.j];
+      theta[f.i] += s_r * (turn[f.i] * f.lever_i).dot(du) / packing_.volume[f.i];
+      theta[f.j] -= s_r * (turn[f.j] * f.lever_j).dot(du) / packing_.volume[f.j];
+    });
     double energy = 0;
-    for (int i = 0; i < n; ++i)
-    {
+    for (int i = 0; i < n; ++i) {
       lambda[i] = 2 * g_ * share / (3 - share * phi[i]);
       energy += 0.5 * lambda[i] * packing_.volume[i] * theta[i] * theta[i];
     }
-    for_bonds(
-        [&](const Face &f)
-        {
-          const double r = f.q_i + f.q_j;
-          const Vector<dim> du = relative(f, turn, p);
-          const Vector<dim> a_i = turn[f.i] * f.lever_i, a_j = turn[f.j] * f.lever_j;
-          const double p_i = lambda[f.i] * theta[f.i], p_j = lambda[f.j] * theta[f.j];
-          const Vector<dim> t = (2 * g_ * du + p_i * a_i - p_j * a_j) / r;
-          for (int c = 0; c < dim; ++c)
-          {
-            p.force[c][f.i] += f.area * t[c];
-            p.force[c][f.j] -= f.area * t[c];
-          }
-          const auto bend = bending(f, p, turn, energy);
-          const auto t_i = turning(a_i, f.area * t - f.area / r * p_i * du),
-                     t_j = turning(a_j, f.area * t - f.area / r * p_j * du);
-          for (int c = 0; c < n_spins<dim>; ++c)
-          {
-            p.torque[c][f.i] += t_i[c] + bend[c];
-            p.torque[c][f.j] -= t_j[c] + bend[c];
-          }
-          energy += g_ * f.area / r * du.squaredNorm();
-        });
+    for_bonds([&](const Face &f) {
+      const double r = f.q_i + f.q_j;
+      const Vector<dim> du = relative(f, turn, p);
+      const Vector<dim> a_i = turn[f.i] * f.lever_i, a_j = turn[f.j] * f.lever_j;
+      const double p_i = lambda[f.i] * theta[f.i], p_j = lambda[f.j] * theta[f.j];
+      const Vector<dim> t = (2 * g_ * du + p_i * a_i - p_j * a_j) / r;
+      for (int c = 0; c < dim; ++c) {
+        p.force[c][f.i] += f.area * t[c];
+        p.force[c][f.j] -= f.area * t[c];
+      }
+      const auto bend = bending(f, p, turn, energy);
+      const auto t_i = turning(a_i, f.area * t - f.area / r * p_i * du),
+                 t_j = turning(a_j, f.area * t - f.area / r * p_j * du);
+      for (int c = 0; c < n_spins<dim>; ++c) {
+        p.torque[c][f.i] += t_i[c] + bend[c];
+        p.torque[c][f.j] -= t_j[c] + bend[c];
+      }
+      energy += g_ * f.area / r * du.squaredNorm();
+    });
     return energy;
   }
 
@@ -109,8 +101,8 @@ private:
   static Vector<dim> relative(const Face &f, const std::vector<Matrix> &turn,
                               const particles::Particles<dim> &p)
   {
-    Vector<dim> du = (turn[f.j] - Matrix::Identity()) * f.lever_j -
-                     (turn[f.i] - Matrix::Identity()) * f.lever_i;
+    Vector<dim> du =
+        (turn[f.j] - Matrix::Identity()) * f.lever_j - (turn[f.i] - Matrix::Identity()) * f.lever_i;
     for (int c = 0; c < dim; ++c)
       du[c] += p.displacement[c][f.j] - p.displacement[c][f.i];
     return du;
@@ -127,16 +119,13 @@ private:
                     const std::vector<Matrix> &turn, double &energy) const
   {
     const double r = f.q_i + f.q_j;
-    if constexpr (dim == 2)
-    {
+    if constexpr (dim == 2) {
       const double t = packing_.thickness, inertia = std::pow(f.area, 3) / (12 * t * t);
       const double modulus = plane_ == PlaneMode::strain ? e_ / (1 - nu_ * nu_) : e_;
       const double k = modulus * inertia / r, angle = p.rotation[0][f.j] - p.rotation[0][f.i];
       energy += 0.5 * k * angle * angle;
       return Spin<2>(k * angle);
-    }
-    else
-    {
+    } else {
       const double inertia = f.area * f.area / (4 * M_PI);
       const Matrix nn = f.normal * f.normal.transpose();
       const Matrix k = e_ * inertia / r * (Matrix::Identity() - nn) + 2 * g_ * inertia / r * nn;

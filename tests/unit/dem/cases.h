@@ -23,8 +23,14 @@ using Cases =
                      Case<3, Kind::simple_cubic, false>, Case<3, Kind::simple_cubic, true>,
                      Case<3, Kind::fcc, false>, Case<3, Kind::fcc, true>>;
 
-inline void turn_lattice(Spin<2> &orientation) { orientation[0] = 0.3; }
-inline void turn_lattice(Spin<3> &orientation) { orientation = {0.3, -0.2, 0.5}; }
+inline void turn_lattice(Spin<2> &orientation)
+{
+  orientation[0] = 0.3;
+}
+inline void turn_lattice(Spin<3> &orientation)
+{
+  orientation = {0.3, -0.2, 0.5};
+}
 
 /// A box of about n spacings along each axis, commensurate with nothing.
 template <typename C>
@@ -36,8 +42,7 @@ particles::LatticeParameters<C::dim> box(double n)
   lattice.thickness = C::dim == 2 ? 0.3 : 1;
   if (C::turned)
     turn_lattice(lattice.orientation);
-  for (int c = 0; c < C::dim; ++c)
-  {
+  for (int c = 0; c < C::dim; ++c) {
     lattice.lower[c] = -0.5 * lattice.spacing * (n + 0.37 * c);
     lattice.upper[c] = -lattice.lower[c];
   }

@@ -36,15 +36,13 @@ TYPED_TEST(Elasticity, InnerCellsAnswerEveryUnitStrainByTheStiffness)
       if (depth[a] == 0)
         depth[b] = std::min(depth[b], 1);
   for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
-    for (const double nu : poissons_ratios)
-    {
+    for (const double nu : poissons_ratios) {
       DemMaterial material{7e10, nu, 2500, plane, 0};
       ManyBodyForce<dim> force(packing, material, {});
       Particles<dim> p;
       particles::fill_particles(packing, material.density, p);
       const auto c = force.elastic_constants().stiffness;
-      for (int k = 0; k < n_strains<dim>; ++k)
-      {
+      for (int k = 0; k < n_strains<dim>; ++k) {
         const Strain<dim> e = 1e-4 * Strain<dim>::Unit(k);
         for (int i = 0; i < p.size(); ++i)
           set(p.displacement, i, Vector<dim>(tensor<dim>(e) * get(p.reference, i)));
@@ -56,10 +54,8 @@ TYPED_TEST(Elasticity, InnerCellsAnswerEveryUnitStrainByTheStiffness)
         const double tolerance = 1e-12 * expected.norm() / (1 - 2 * std::max(nu, 0.));
         const double force_scale = expected.norm() * std::pow(lattice.spacing, dim - 1);
         int inner = 0;
-        for (int i = 0; i < p.size(); ++i)
-        {
-          if (depth[i] == 2)
-          {
+        for (int i = 0; i < p.size(); ++i) {
+          if (depth[i] == 2) {
             EXPECT_LT((get(stress, i) - expected).norm(), tolerance);
             EXPECT_LT(get(p.force, i).norm(), 1e-12 * force_scale / (1 - 2 * std::max(nu, 0.)));
             EXPECT_LT(get(p.torque, i).norm(),
@@ -83,15 +79,13 @@ TYPED_TEST(Elasticity, SpecimenPulledByWallsWithFreeSidesIsExact)
   // lost at this one, whose square vanishes.
   const double strain = 1e-14;
   std::vector<core::BoundaryLoad<dim>> loads(2);
-  for (int end = 0; end < 2; ++end)
-  {
+  for (int end = 0; end < 2; ++end) {
     loads[end].boundary = 2 + end;
     loads[end].kind = core::BoundaryLoad<dim>::Kind::displacement;
     loads[end].value[1] = strain * (end ? lattice.upper : lattice.lower)[1];
   }
   for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
-    for (const double nu : poissons_ratios)
-    {
+    for (const double nu : poissons_ratios) {
       DemMaterial material{7e10, nu, 2500, plane, 0};
       ManyBodyForce<dim> force(packing, material, loads);
       Particles<dim> p;
@@ -112,8 +106,7 @@ TYPED_TEST(Elasticity, SpecimenPulledByWallsWithFreeSidesIsExact)
       EXPECT_NEAR(force.reaction(1)[1], stress * area, 1e-12 * stress * area * amplified);
       EXPECT_NEAR(force.reaction(0)[1], -stress * area, 1e-12 * stress * area * amplified);
       const double scale = stress * std::pow(lattice.spacing, dim - 1) * lattice.thickness;
-      for (int i = 0; i < p.size(); ++i)
-      {
+      for (int i = 0; i < p.size(); ++i) {
         EXPECT_LT(get(p.force, i).norm(), 1e-12 * scale * amplified) << nu;
         EXPECT_LT(get(p.torque, i).norm(), 1e-12 * scale * lattice.spacing * amplified);
       }
@@ -134,8 +127,7 @@ TYPED_TEST(Elasticity, TractionOnTwoSidesGivesTheSameState)
   const auto packing = particles::make_lattice_packing<dim>(lattice);
   const double nu = 0.3, stress = 1e-3; // strains of 1e-14, see above
   std::vector<core::BoundaryLoad<dim>> loads(2);
-  for (int end = 0; end < 2; ++end)
-  {
+  for (int end = 0; end < 2; ++end) {
     loads[end].boundary = 2 + end;
     loads[end].kind = core::BoundaryLoad<dim>::Kind::traction;
     loads[end].value[1] = end ? stress : -stress;
@@ -151,8 +143,7 @@ TYPED_TEST(Elasticity, TractionOnTwoSidesGivesTheSameState)
       p.displacement[c][i] = strain * (c == 1 ? 1 : -lateral) * p.reference[c][i];
   force.compute(p, 0);
   const double scale = stress * std::pow(lattice.spacing, dim - 1) * lattice.thickness;
-  for (int i = 0; i < p.size(); ++i)
-  {
+  for (int i = 0; i < p.size(); ++i) {
     EXPECT_LT(get(p.force, i).norm(), 1e-12 * scale);
     EXPECT_LT(get(p.torque, i).norm(), 1e-12 * scale * lattice.spacing);
   }

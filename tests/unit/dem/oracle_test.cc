@@ -18,8 +18,7 @@ TYPED_TEST(AgainstOracle, SameForcesAndEnergyInRandomStatesWithBrokenFaces)
   for (auto &face : packing.faces) // leaves rows with every bond, and some with few
     face.cracked = packing.centre[1][face.i] > 0 && random() % 5 == 0;
   for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
-    for (const double nu : {-0.2, 0., 0.3, 0.45})
-    {
+    for (const double nu : {-0.2, 0., 0.3, 0.45}) {
       DemMaterial material{3., nu, 1, plane, 0};
       ManyBodyForce<dim> force(packing, material, {});
       const oracle::ManyBodyOracle<dim> oracle(packing, 3., nu, plane);
@@ -37,13 +36,11 @@ TYPED_TEST(AgainstOracle, SameForcesAndEnergyInRandomStatesWithBrokenFaces)
       const double energy = oracle.compute(q);
       EXPECT_NEAR(force.potential_energy(p), energy, 1e-12 * energy);
       double scale = 0, torque_scale = 0;
-      for (int i = 0; i < p.size(); ++i)
-      {
+      for (int i = 0; i < p.size(); ++i) {
         scale = std::max(scale, get(q.force, i).norm());
         torque_scale = std::max(torque_scale, get(q.torque, i).norm());
       }
-      for (int i = 0; i < p.size(); ++i)
-      {
+      for (int i = 0; i < p.size(); ++i) {
         ASSERT_LT((get(p.force, i) - get(q.force, i)).norm(), 1e-12 * scale);
         ASSERT_LT((get(p.torque, i) - get(q.torque, i)).norm(), 1e-12 * torque_scale);
       }
@@ -58,8 +55,7 @@ TEST(Sine, RoundOffForAnyAngle)
   angle.push_back(1e-9);
   std::vector<double> c(angle.size()), s(angle.size());
   cosine_minus_1_and_sine(angle.data(), c.data(), s.data(), int(angle.size()));
-  for (std::size_t i = 0; i < angle.size(); ++i)
-  {
+  for (std::size_t i = 0; i < angle.size(); ++i) {
     const double half = std::sin(angle[i] / 2);
     EXPECT_NEAR(s[i], std::sin(angle[i]), 4e-16) << angle[i];
     EXPECT_NEAR(c[i], -2 * half * half, 4e-16 + 4e-16 * half * half);

@@ -26,15 +26,13 @@ TYPED_TEST(StableStep, OnePercentBelowTheDenseEigenvalue)
   p.inverse_mass[3] = p.inverse_inertia[3] = 0; // held
   const int n = dofs * p.size();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
-  force.add_tangent(
-      [&](const particles::QuadraticTerm<dim> &term)
-      {
-        const Eigen::MatrixXd m = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
-        for (std::size_t a = 0; a < term.members.size(); ++a)
-          for (std::size_t b = 0; b < term.members.size(); ++b)
-            k.block<dofs, dofs>(dofs * term.members[a], dofs * term.members[b]) +=
-                m.block<dofs, dofs>(dofs * a, dofs * b);
-      });
+  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+    const Eigen::MatrixXd m = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
+    for (std::size_t a = 0; a < term.members.size(); ++a)
+      for (std::size_t b = 0; b < term.members.size(); ++b)
+        k.block<dofs, dofs>(dofs * term.members[a], dofs * term.members[b]) +=
+            m.block<dofs, dofs>(dofs * a, dofs * b);
+  });
   Eigen::VectorXd weight(n);
   for (int i = 0; i < p.size(); ++i)
     for (int c = 0; c < dofs; ++c)

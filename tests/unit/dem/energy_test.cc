@@ -1,0 +1,304 @@
+// The energy balance closes: free vibration, breaking bonds, contact, friction, walls, tractions.
+#include "particles/particle_solver.h"
+#include "tests/unit/dem/cases.h"
+
+namespace ligament::dem::testing
+{
+template <int dim>
+struct Run
+{
+  Run(const particles::Packing<dim> &packing, const DemMaterial &material,
+      const std::vector<core::BoundaryLoad<dim>> &loads, const FractureLaw &law = {})
+  {
+    Particles<dim> p;
+    particles::fill_particles(packing, material.density, p);
+    auto f = std::make_unique<ManyBodyForce<dim>>(packing, material, loads, law);
+    force = f.get();
+    solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
+    dt = force->stable_step(solver->state);
+    solver->compute_forces(0);
+  }
+  void step()
+  {
+    solver->kick(dt);
+    solver->drift(dt);
+    time += dt;
+    solver->compute_forces(time);
+  }
+  double mechanical() const { return solver->kinetic_energy(dt) + solver->potential_energy(); }
+  double residual() const
+  {
+    return mechanical() + force->fracture_energy() + force->breaking_step_error() +
+           force->frictional_work() - force->external_work();
+  }
+
+  ManyBodyForce<dim> *force;
+  std::unique_ptr<particles::ParticleSolver<dim>> solver;
+  double dt, time = 0;
+};
+
+template <typename C>
+struct Energy : ::testing::Test
+{
+};
+TYPED_TEST_SUITE(Energy, Cases);
+
+/// Largest deviation of the energy over the steps and its drift between first and last tenth, both
+/// relative.
+template <typename C>
+std::pair<double, double> vibrate(int steps, double spacings)
+{
+  constexpr int dim = C::dim;
+  const auto packing = particles::make_lattice_packing<dim>(box<C>(spacings));
+  DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
+  Run<dim> run(packing, material, {});
+  run.dt *= 0.5;
+  // A strain of 1e-3: the law is not linear there, and all modes take part.
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < run.solver->state.size(); ++i) {
+    for (auto &a : run.solver->state.velocity)
+      a[i] = 5 * uniform(random);
+    for (auto &a : run.solver->state.spin)
+      a[i] = 5 / packing.spacing * uniform(random);
+  }
+  const double start = run.mechanical();
+  double largest = 0, first = 0, last = 0;
+  for (int s = 0; s < steps; ++s) {
+    run.step();
+    const double error = run.mechanical() / start - 1;
+    largest = std::max(largest, std::abs(error));
+    (s < steps / 10 ? first : last) += s < steps / 10 || s >= steps - steps / 10 ? error : 0;
+  }
+  return {largest, (last - first) / (steps / 10)};
+}
+
+TYPED_TEST(Energy, FreeVibrationAtHalfTheCriticalStep)
+{
+  const auto [largest, drift] =
+      vibrate<TypeParam>(TypeParam::dim == 2 ? 10000 : 1000, TypeParam::dim == 2 ? 7 : 3);
+  // Leap-frog: the invariant fluctuates by the square of (omega dt)^2/8 times the nonlinearity.
+  EXPECT_LT(largest, 2e-3);
+  EXPECT_LT(std::abs(drift), 2e-4);
+}
+
+TYPED_TEST(Energy, SlowFreeVibrationOver1e5Steps)
+{
+  const auto [largest, drift] = vibrate<TypeParam>(100000, TypeParam::dim == 2 ? 7 : 3);
+  EXPECT_LT(largest, 2e-3);
+  EXPECT_LT(std::abs(drift), 1e-4);
+}
+
+/// A specimen torn apart by its two ends; the balance at the end and the number of broken bonds.
+template <typename C>
+std::array<double, 3> tear(double fraction)
+{
+  constexpr int dim = C::dim;
+  auto lattice = box<C>(dim == 2 ? 10 : 5);
+  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  DemMaterial material{7e10, 0.25, 2500, PlaneMode::strain, 0.3};
+  std::vector<core::BoundaryLoad<dim>> loads(3);
+  for (int end = 0; end < 2; ++end) {
+    loads[end].boundary = 2 + end;
+    for (int c = 0; c < dim; ++c)
+      loads[end].value[c] = c == 1 && end ? 20. : 0.;
+    loads[end].ramp.duration = 1e-5;
+  }
+  loads[2].boundary = 1;
+  loads[2].kind = core::BoundaryLoad<dim>::Kind::traction;
+  loads[2].value[0] = 2e7;
+  loads[2].ramp.duration = 3e-5;
+  Run<dim> run(packing, material, loads, {FractureLaw::Criterion::maximum_tension, 2e8});
+  run.dt *= fraction;
+  double largest = 0;
+  const int steps = int(6e-5 / run.dt);
+  for (int s = 0; s < steps; ++s) {
+    const long bonds = run.force->n_bonds();
+    run.step();
+    if (run.force->n_bonds() == bonds)
+      largest = std::max(largest, std::abs(run.residual()));
+  }
+  double booked = 0;
+  for (const auto &b : run.force->broken_bonds())
+    booked += b.energy;
+  EXPECT_NEAR(booked, run.force->fracture_energy(), 1e-12 * booked);
+  EXPECT_GT(run.force->n_contacts(), 0);
+  return {largest, run.force->fracture_energy(), double(run.force->broken_bonds().size())};
+}
+
+TYPED_TEST(Energy, BreakingClosesTheBalanceToSecondOrder)
+{
+  const auto coarse = tear<TypeParam>(0.4), fine = tear<TypeParam>(0.1);
+  EXPECT_GT(coarse[2], 8);
+  // What is left comes from contacts that close and slide: a kink costs second order.
+  EXPECT_LT(coarse[0], 5e-3 * coarse[1]);
+  EXPECT_LT(fine[0], 5e-4 * fine[1]);
+}
+
+/// Two whole hexagons or cubes across one face, cut.
+template <int dim>
+Packing<dim> two_particles(bool cracked)
+{
+  Packing<dim> p;
+  const double d = p.spacing = 0.01;
+  p.thickness = dim == 2 ? 0.3 : 1;
+  p.centre[0] = {0, d};
+  for (int c = 1; c < dim; ++c)
+    p.centre[c] = {0, 0};
+  p.volume.assign(2, std::pow(d, dim) * p.thickness);
+  p.global_id = {0, 1};
+  const Vector<dim> n = Vector<dim>::Unit(0);
+  p.faces.push_back({0, 1, n, std::pow(d, dim - 1) * p.thickness, d / 2, d / 2, d / 2 * n,
+                     -d / 2 * n, -1, cracked});
+  return p;
+}
+
+template <typename D>
+struct Touch : ::testing::Test
+{
+};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Touch, Dimensions);
+
+/// Two particles between walls, one of them thrown at the other: opens and closes for ever.
+template <int dim>
+void bounce(int openings)
+{
+  auto packing = two_particles<dim>(true);
+  const double d = packing.spacing;
+  for (int i = 0; i < 2; ++i) {
+    const Vector<dim> n = (i ? 1 : -1) * Vector<dim>::Unit(0);
+    packing.boundary_faces.push_back({i, n, packing.faces[0].area, d / 2, d / 2 * n, i});
+  }
+  std::vector<core::BoundaryLoad<dim>> loads(2);
+  for (int i = 0; i < 2; ++i)
+    loads[i].boundary = i, loads[i].value[0] = 0.;
+  DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
+  Run<dim> run(packing, material, loads);
+  run.dt *= 0.1;
+  run.solver->state.velocity[0] = {0, -3};
+  const double start = run.mechanical();
+  double first = 0, last = 0, largest = 0;
+  bool closed = false;
+  int count = 0, n_first = 0, n_last = 0;
+  while (count < openings) {
+    run.step();
+    const auto &u = run.solver->state.displacement[0];
+    const bool now = u[1] < u[0];
+    count += now != closed;
+    closed = now;
+    const double error = run.mechanical() / start - 1;
+    largest = std::max(largest, std::abs(error));
+    if (count < openings / 10)
+      first += error, ++n_first;
+    if (count >= openings - openings / 10)
+      last += error, ++n_last;
+  }
+  // The kink at the touch costs second order at each crossing, with either sign: no trend.
+  EXPECT_LT(largest, 0.01);
+  EXPECT_LT(std::abs(last / n_last - first / n_first), 0.002);
+}
+
+TYPED_TEST(Touch, OpensAndClosesWithoutTrend)
+{
+  bounce<TypeParam::value>(2000);
+}
+TYPED_TEST(Touch, SlowOpensAndCloses1e5Times)
+{
+  bounce<TypeParam::value>(100000);
+}
+
+TYPED_TEST(Touch, FrictionSticksAndSlidesAtTheCoefficient)
+{
+  constexpr int dim = TypeParam::value;
+  const auto packing = two_particles<dim>(true);
+  const double d = packing.spacing, area = packing.faces[0].area, mu = 0.4;
+  DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, mu};
+  ManyBodyForce<dim> force(packing, material, {});
+  Particles<dim> p;
+  particles::fill_particles(packing, material.density, p);
+  const double stiffness = 2 * material.shear_modulus() * area / d, overlap = 1e-4 * d;
+  p.displacement[0][1] = -overlap;
+  force.compute(p, 0);
+  EXPECT_NEAR(p.force[0][1], stiffness * overlap, 1e-9 * stiffness * overlap);
+  double booked = 0, before = 0;
+  for (int s = 1; s <= 100; ++s) {
+    const double slide = 1e-6 * s * d; // sticks up to mu overlap = 4e-5 d
+    p.displacement[1][1] = slide;
+    force.compute(p, 0);
+    force.compute(p, 0); // asking twice changes nothing
+    const double limit = mu * stiffness * overlap;
+    const double expected = std::min(stiffness * slide, limit);
+    // The line between the centres turns by slide / d <= 1e-4, the normal force with it: / mu.
+    EXPECT_NEAR(p.force[1][1], -expected, 4e-4 * limit) << s;
+    EXPECT_NEAR(p.torque[n_spins<dim> - 1][0], d / 2 * p.force[1][0], 4e-4 * limit * d);
+    booked += 0.5 * (expected + before) * 1e-6 * d;
+    before = expected;
+  }
+  // Work of the tangential force = friction + elastic slip.
+  const double elastic = 0.5 * stiffness * std::pow(mu * overlap, 2);
+  EXPECT_NEAR(force.frictional_work(), booked - elastic, 1e-3 * booked);
+  EXPECT_NEAR(force.potential_energy(p), elastic + 0.5 * stiffness * overlap * overlap,
+              2e-3 * stiffness * overlap * overlap);
+}
+
+TYPED_TEST(Touch, RollingTogetherIsNoSlip)
+{
+  constexpr int dim = TypeParam::value;
+  const auto packing = two_particles<dim>(true);
+  const double d = packing.spacing, overlap = 1e-4 * d;
+  DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 10};
+  ManyBodyForce<dim> force(packing, material, {});
+  Particles<dim> p;
+  particles::fill_particles(packing, material.density, p);
+  const double stiffness = 2 * material.shear_modulus() * packing.faces[0].area / d;
+  // The increment's error is up to d angle^3 / 8: in all d (pi/2)^3 / 8 / steps^2 = 5e-9 d of slip.
+  const int steps = 10000;
+  for (int s = 0; s <= steps; ++s) {
+    const double angle = M_PI / 2 * s / steps;
+    p.displacement[0][1] = (d - overlap) * std::cos(angle) - d;
+    p.displacement[1][1] = (d - overlap) * std::sin(angle);
+    for (int i = 0; i < 2; ++i)
+      if (s > 0)
+        turn_by<dim>(p, i, M_PI / 2 / steps * Spin<dim>::Unit(n_spins<dim> - 1));
+    force.compute(p, 0);
+  }
+  EXPECT_NEAR(p.force[0][1], 0, 6e-9 * stiffness * d);
+  EXPECT_NEAR(p.force[1][1], stiffness * overlap, 6e-9 * stiffness * d);
+}
+
+TYPED_TEST(Touch, StrangersMeetAndRepel)
+{
+  // Two pairs; the second one travels and comes to touch a particle it never neighboured.
+  constexpr int dim = TypeParam::value;
+  auto packing = two_particles<dim>(false);
+  const double d = packing.spacing;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < 2; ++i)
+      packing.centre[c].push_back(packing.centre[c][i] + (c == 1 ? 1.6 * d : 0));
+  packing.volume.resize(4, packing.volume[0]);
+  packing.global_id = {0, 1, 2, 3};
+  auto second = packing.faces[0];
+  second.i = 2, second.j = 3, second.cracked = true;
+  packing.faces.push_back(second);
+  for (int i = 0; i < 4; ++i)
+    packing.boundary_faces.push_back({i, Vector<dim>::Unit(1), packing.faces[0].area, d / 2,
+                                      Vector<dim>(d / 2 * Vector<dim>::Unit(1)), 3});
+  DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
+  ManyBodyForce<dim> force(packing, material, {});
+  Particles<dim> p;
+  particles::fill_particles(packing, material.density, p);
+  force.compute(p, 0);
+  EXPECT_EQ(force.n_contacts(), 1);
+  const int steps = 70;
+  for (int s = 1; s <= steps; ++s) {
+    p.displacement[1][2] = -0.01 * d * s;
+    force.compute(p, 0);
+  }
+  // 2 has come to 0.9 d of 0: the penalty of the mean face.
+  const double stiffness = 2 * material.shear_modulus() * packing.faces[0].area / d;
+  EXPECT_NEAR(p.force[1][0], -stiffness * 0.1 * d, 1e-9 * stiffness * d);
+  EXPECT_NEAR(p.force[1][2], stiffness * 0.1 * d, 1e-9 * stiffness * d);
+  EXPECT_GT(force.n_contacts(), 1);
+}
+} // namespace ligament::dem::testing
