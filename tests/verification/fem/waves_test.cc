@@ -127,6 +127,8 @@ void check_mode_of_a_graded_strip()
     MeshParameters<dim> p = band<dim>();
     p.lower[dim - 1] = p.inner_lower[dim - 1] - 1; // nothing below: only the upper strip counts
     p.inner_lower[dim - 1] = p.lower[dim - 1] - 1;
+    for (int k = 0; k + 1 < dim; ++k)
+      p.upper[k] = p.lower[k] + 0.8;
     p.cell_size = 0.1 / refinement;
     p.fine_cells = 6 * refinement - 1;
     p.cells_per_level = refinement;
