@@ -100,7 +100,7 @@ struct Input
 const char *const full = R"({"name": "van", "mode": "fast",
   "body": {"seats": 2, "mass": "1.5 t", "load": "2 kN"},
   "interval": "2 h", "turn": "90 deg", "push": [null, "3 N"],
-  "wheels": [{"radius": "30 cm"}, {"radius": 0.25, "axis": [1, 0]}], "brake": {"force": 5}})";
+  "wheels": [{"radius": 0.25, "axis": [1, 0]}, {"radius": "30 cm"}], "brake": {"force": 5}})";
 } // namespace
 
 TEST(Parameters, EveryKindOfValueIsRead)
@@ -117,9 +117,9 @@ TEST(Parameters, EveryKindOfValueIsRead)
   EXPECT_FALSE(in.car.push[0]);
   EXPECT_EQ(in.car.push[1].value(), 3);
   ASSERT_EQ(in.car.wheels.size(), 2u);
-  EXPECT_EQ(in.car.wheels[0].radius, 0.3);
-  EXPECT_EQ(in.car.wheels[0].axis, (Point{0, 0, 1})); // its default
-  EXPECT_EQ(in.car.wheels[1].axis, (Point{1, 0, 0})); // not that of its predecessor
+  EXPECT_EQ(in.car.wheels[0].axis, (Point{1, 0, 0}));
+  EXPECT_EQ(in.car.wheels[1].radius, 0.3);
+  EXPECT_EQ(in.car.wheels[1].axis, (Point{0, 0, 1})); // its default, not that of its predecessor
   EXPECT_EQ(in.car.brake.value().force, 5);
 }
 
@@ -140,7 +140,7 @@ TEST(Parameters, EchoReadsBackToItself)
   const Input second(text);
   EXPECT_EQ(second.all(), "");
   EXPECT_EQ(echo(second.table, 2).dump(), text);
-  EXPECT_EQ(second.car.wheels[1].radius, 0.25);
+  EXPECT_EQ(second.car.wheels[1].radius, 0.3);
   EXPECT_EQ(text.find("open"), std::string::npos); // a key of 3D only
 
   const Input defaults(R"({"body": {"mass": 1}})");
