@@ -14,10 +14,10 @@ using core::require;
 
 // Gauss points and weights on [0, 1]; four points integrate the cubic weight times the quadratic
 // strain products exactly where s is linear.
-constexpr std::array<double, 4> gauss_point = {0.069431844202973712, 0.33000947820757187,
-                                               0.66999052179242813, 0.93056815579702629};
-constexpr std::array<double, 4> gauss_weight = {0.17392742256872693, 0.32607257743127307,
-                                                0.32607257743127307, 0.17392742256872693};
+constexpr double gauss_point[4] = {0.069431844202973712, 0.33000947820757187,
+                                   0.66999052179242813, 0.93056815579702629};
+constexpr double gauss_weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                    0.17392742256872693};
 
 template <int dim, typename Visit>
 void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &size, Visit &&visit)

@@ -1,6 +1,7 @@
 // What the time loop asks of whatever joins the two halves.
 #pragma once
 
+#include "core/timers.h"
 #include "fem/fem_solver.h"
 #include "particles/particle_solver.h"
 
@@ -42,6 +43,9 @@ template <int dim>
 class Coupler
 {
 public:
+  /// Charges its work to the sections "discrete forces", "discrete motion", "far field" and
+  /// "coupling" of the timers.
+  explicit Coupler(core::Timers &timers);
   virtual ~Coupler() = default;
 
   /// Positions of both halves to the end of the step.
@@ -50,24 +54,37 @@ public:
   virtual void compute_forces(Bodies<dim> &bodies, const StepTime &step) = 0;
   /// Velocities of both halves from these forces.
   virtual void kick(Bodies<dim> &bodies, const StepTime &step) = 0;
-  /// Multiplies all velocities (mass damping; 0 in kinetic damping).
-  virtual void scale_velocities(Bodies<dim> &bodies, double factor) = 0;
+  /// Multiplies all velocities that no load prescribes (mass damping; 0 in kinetic damping), after
+  /// kick; returns the energy in J that this takes (theory.md eq. (E3)).
+  virtual double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) = 0;
   virtual CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const = 0;
 
   /// Steps between two actions of the far field: positions agree everywhere, and observers look, at
   /// multiples of it.
   virtual int step_ratio() const { return 1; }
+
+protected:
+  core::Timers &timers_;
+  const int forces_, motion_, far_, coupling_; // sections
 };
+
+/// Energy in J that multiplying velocities by `factor` takes: `still` is 1/2 v M v and `moving`
+/// 1/2 v M v + 1/2 dt v f of these velocities, f the forces that last acted (theory.md eq. (E3)).
+inline double scaling_loss(double still, double moving, double factor)
+{
+  return (1 - factor * factor) * still - (1 - factor) * (moving - still);
+}
 
 /// One half alone: the same loop without an overlap.
 template <int dim>
 class NullCoupler : public Coupler<dim>
 {
 public:
+  using Coupler<dim>::Coupler;
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
   void kick(Bodies<dim> &bodies, const StepTime &step) override;
-  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 };
 } // namespace ligament::coupling

@@ -12,8 +12,9 @@ namespace ligament::coupling
 {
 template <int dim>
 FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters &overlap,
-                                    const FineScaleSplitParameters &parameters, double dt)
-    : parameters_(parameters),
+                                    const FineScaleSplitParameters &parameters, double dt,
+                                    core::Timers &timers)
+    : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
       projector_(overlap_, bodies.zone->state, parameters.solver),
       mass_solver_(make_linear_solver(parameters.solver))
@@ -117,36 +118,42 @@ void FineScaleSplit<dim>::write_velocities(Bodies<dim> &bodies)
   auto &far = *bodies.far;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
-    {
       far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
-      far.displacement[c][overlap_.near_nodes[i]] = displacement_(i, c);
-    }
 }
 
 template <int dim>
 void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
-  bodies.zone->drift(step.dt);
-  bodies.zone->update_ghosts();
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->drift(step.dt);
+    bodies.zone->update_ghosts();
+  }
   displacement_ += step.dt * velocity_;
   // The far field moves in one go, just before it acts again: it is needed nowhere in between.
   if ((step.step + 1) % parameters_.step_ratio == 0)
   {
+    const auto timing = this->timers_.scope(this->far_);
     auto &far = *bodies.far;
-    far.drift(parameters_.step_ratio * step.dt);
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < overlap_.n_nodes(); ++i)
         far.displacement[c][overlap_.near_nodes[i]] = displacement_(i, c);
-    far.distribute();
+    far.drift(parameters_.step_ratio * step.dt);
   }
 }
 
 template <int dim>
 void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &step)
 {
-  bodies.zone->compute_forces(step.time);
+  {
+    const auto timing = this->timers_.scope(this->forces_);
+    bodies.zone->compute_forces(step.time);
+  }
   if (is_far_step(step))
+  {
+    const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
+  }
 }
 
 template <int dim>
@@ -184,102 +191,15 @@ Eigen::MatrixXd FineScaleSplit<dim>::far_force(const Bodies<dim> &bodies) const
 }
 
 template <int dim>
-double FineScaleSplit<dim>::coarse_kinetic(const Eigen::MatrixXd &a, const Eigen::MatrixXd &b) const
+double FineScaleSplit<dim>::coarse_kinetic(const Eigen::MatrixXd &force, double dt) const
 {
-  return 0.5 * a.cwiseProduct(mass_ * b).sum();
+  return 0.5 * velocity_.cwiseProduct(mass_ * velocity_ + dt * force).sum();
 }
 
 template <int dim>
-void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
+double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) const
 {
-  const double dt = step.dt;
-  auto &zone = bodies.zone->state;
-  Eigen::MatrixXd force = near_force(bodies);
-  if (is_far_step(step))
-  {
-    // Impulse of the far field over m steps (r-RESPA): its own nodes and the border it shares.
-    bodies.far->kick(parameters_.step_ratio * dt, step.time);
-    force += parameters_.step_ratio * far_force(bodies);
-  }
-  Eigen::MatrixXd change = dt * force;
-  mass_solver_->solve(change);
-  velocity_ += change;
-  if (filter_.rows() > 0)
-  {
-    const Eigen::MatrixXd momentum = filter_ * velocity_;
-    change = momentum;
-    mass_solver_->solve(change);
-    // Loss of the leap-frog's invariant: kinetic energy before and after, and the work that the
-    // force no longer does on the way to the next position.
-    gap_filter_energy_ += momentum.cwiseProduct(velocity_).sum() -
-                          0.5 * momentum.cwiseProduct(change).sum() -
-                          0.5 * dt * force.cwiseProduct(change).sum();
-    velocity_ -= change;
-  }
-
-  const auto &free = projector_.free_members();
-  for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
-    {
-      const int i = overlap_.members[free[k]].particle;
-      fluctuation_[c][k] += dt * zone.force[c][i] * zone.inverse_mass[i];
-    }
-  projector_.project(fluctuation_);
-  if (parameters_.fine_damper > 0)
-  {
-    const Components<dim> before = fluctuation_;
-    for (int c = 0; c < dim; ++c)
-      for (std::size_t k = 0; k < free.size(); ++k)
-        fluctuation_[c][k] -= damping_[k] * fluctuation_[c][k];
-    projector_.project(fluctuation_);
-    for (int c = 0; c < dim; ++c)
-      for (std::size_t k = 0; k < free.size(); ++k)
-      {
-        const int i = overlap_.members[free[k]].particle;
-        const double v0 = before[c][k], v1 = fluctuation_[c][k];
-        fine_damper_energy_ +=
-            0.5 * (v0 - v1) * (zone.mass[i] * (v0 + v1) - dt * zone.force[c][i]);
-      }
-  }
-  bodies.zone->kick(dt);
-  write_velocities(bodies);
-}
-
-template <int dim>
-void FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
-{
-  const auto scale = [factor](auto &components) {
-    for (auto &array : components)
-      for (double &v : array)
-        v *= factor;
-  };
-  scale(bodies.zone->state.velocity);
-  scale(bodies.zone->state.spin);
-  scale(bodies.far->velocity);
-  scale(fluctuation_);
-  velocity_ *= factor;
-}
-
-template <int dim>
-CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepTime &step) const
-{
-  const double dt = step.dt;
   const auto &zone = bodies.zone->state;
-  CoupledEnergy e;
-  e.fine_damper = fine_damper_energy_;
-  e.gap_filter = gap_filter_energy_;
-  e.potential_discrete = bodies.zone->potential_energy();
-  e.potential_far = bodies.far->potential_energy();
-  e.kinetic_far = bodies.far->kinetic_energy(parameters_.step_ratio * dt);
-
-  const Eigen::Map<const Eigen::VectorXd> u(displacement_.data(), displacement_.size());
-  e.blended = 0.5 * u.dot(stiffness_ * u);
-  Eigen::MatrixXd force = near_force(bodies);
-  if (is_far_step(step))
-    force += parameters_.step_ratio * far_force(bodies);
-  e.kinetic_far += coarse_kinetic(velocity_, velocity_) + 0.5 * dt * velocity_.cwiseProduct(force).sum();
-
-  // Kinetic energy of the discrete side: fluctuations in the overlap, everything elsewhere.
   double sum = 0;
   const auto &free = projector_.free_members();
   for (int c = 0; c < dim; ++c)
@@ -298,7 +218,121 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
       for (int c = 0; c < n_spins<dim>; ++c)
         sum += zone.spin[c][i] * (zone.inertia[i] * zone.spin[c][i] + dt * zone.torque[c][i]);
   }
-  e.kinetic_discrete = sum / 2;
+  return sum / 2;
+}
+
+template <int dim>
+void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
+{
+  if (is_far_step(step))
+  {
+    const auto timing = this->timers_.scope(this->far_);
+    bodies.far->kick(parameters_.step_ratio * step.dt, step.time);
+  }
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->kick(step.dt);
+  }
+  const auto timing = this->timers_.scope(this->coupling_);
+  kick_coarse(bodies, step);
+  kick_fine(bodies, step);
+  write_velocities(bodies);
+}
+
+// V += dt M_c^-1 F, then the gap-band filter.
+template <int dim>
+void FineScaleSplit<dim>::kick_coarse(const Bodies<dim> &bodies, const StepTime &step)
+{
+  force_ = near_force(bodies);
+  if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
+    force_ += parameters_.step_ratio * far_force(bodies);
+  Eigen::MatrixXd change = step.dt * force_;
+  mass_solver_->solve(change);
+  velocity_ += change;
+  if (filter_.rows() == 0)
+    return;
+  const Eigen::MatrixXd momentum = filter_ * velocity_;
+  change = momentum;
+  mass_solver_->solve(change);
+  // Kinetic energy before and after, and the work that the force no longer does on the way to the
+  // next position (theory.md eq. (E3)).
+  gap_filter_energy_ += momentum.cwiseProduct(velocity_).sum() -
+                        0.5 * momentum.cwiseProduct(change).sum() -
+                        0.5 * step.dt * force_.cwiseProduct(change).sum();
+  velocity_ -= change;
+}
+
+// w += dt Q f/m, then the fluctuation damper between two projections.
+template <int dim>
+void FineScaleSplit<dim>::kick_fine(const Bodies<dim> &bodies, const StepTime &step)
+{
+  const auto &zone = bodies.zone->state;
+  const auto &free = projector_.free_members();
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t k = 0; k < free.size(); ++k)
+    {
+      const int i = overlap_.members[free[k]].particle;
+      fluctuation_[c][k] += step.dt * zone.force[c][i] * zone.inverse_mass[i];
+    }
+  projector_.project(fluctuation_);
+  if (parameters_.fine_damper == 0)
+    return;
+  undamped_ = fluctuation_;
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t k = 0; k < free.size(); ++k)
+      fluctuation_[c][k] -= damping_[k] * fluctuation_[c][k];
+  projector_.project(fluctuation_);
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t k = 0; k < free.size(); ++k)
+    {
+      const int i = overlap_.members[free[k]].particle;
+      const double v0 = undamped_[c][k], v1 = fluctuation_[c][k];
+      fine_damper_energy_ +=
+          0.5 * (v0 - v1) * (zone.mass[i] * (v0 + v1) - step.dt * zone.force[c][i]);
+    }
+}
+
+template <int dim>
+double FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step,
+                                             double factor)
+{
+  const auto timing = this->timers_.scope(this->coupling_);
+  double loss = scaling_loss(fine_kinetic(bodies, 0), fine_kinetic(bodies, step.dt), factor) +
+                scaling_loss(coarse_kinetic(force_, 0), coarse_kinetic(force_, step.dt), factor);
+  bodies.zone->scale_velocities(factor);
+  for (auto &w : fluctuation_)
+    for (double &v : w)
+      v *= factor;
+  velocity_ *= factor;
+  if (is_far_step(step))
+  {
+    // The far field keeps its velocities for m steps: it takes their damping at once.
+    auto &far = *bodies.far;
+    const double whole = std::pow(factor, parameters_.step_ratio);
+    loss += scaling_loss(far.kinetic_energy(0),
+                         far.kinetic_energy(parameters_.step_ratio * step.dt), whole);
+    far.scale_velocities(whole);
+  }
+  write_velocities(bodies);
+  return loss;
+}
+
+template <int dim>
+CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepTime &step) const
+{
+  CoupledEnergy e;
+  e.fine_damper = fine_damper_energy_;
+  e.gap_filter = gap_filter_energy_;
+  e.potential_discrete = bodies.zone->potential_energy();
+  e.potential_far = bodies.far->potential_energy();
+  const Eigen::Map<const Eigen::VectorXd> u(displacement_.data(), displacement_.size());
+  e.blended = 0.5 * u.dot(stiffness_ * u);
+  Eigen::MatrixXd force = near_force(bodies);
+  if (is_far_step(step))
+    force += parameters_.step_ratio * far_force(bodies);
+  e.kinetic_far = bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) +
+                  coarse_kinetic(force, step.dt);
+  e.kinetic_discrete = fine_kinetic(bodies, step.dt);
   return e;
 }
 

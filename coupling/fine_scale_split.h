@@ -35,12 +35,12 @@ class FineScaleSplit : public Coupler<dim>
 public:
   /// Takes the overlap's and the transition's cells over from the far field. dt in s.
   FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters &overlap,
-                 const FineScaleSplitParameters &parameters, double dt);
+                 const FineScaleSplitParameters &parameters, double dt, core::Timers &timers);
 
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
   void kick(Bodies<dim> &bodies, const StepTime &step) override;
-  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
   int step_ratio() const override { return parameters_.step_ratio; }
 
@@ -57,11 +57,16 @@ public:
 
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
+  void kick_coarse(const Bodies<dim> &bodies, const StepTime &step);
+  void kick_fine(const Bodies<dim> &bodies, const StepTime &step);
   void write_velocities(Bodies<dim> &bodies);
   /// Force on the near nodes from the near cells and the particles, without the far field's.
   Eigen::MatrixXd near_force(const Bodies<dim> &bodies) const;
   Eigen::MatrixXd far_force(const Bodies<dim> &bodies) const;
-  double coarse_kinetic(const Eigen::MatrixXd &a, const Eigen::MatrixXd &b) const;
+  /// 1/2 v M v + 1/2 dt v f of what the coupler moves and of the rest of the zone: of V, and of w
+  /// with all spins and velocities outside. `force` acts on the near nodes.
+  double coarse_kinetic(const Eigen::MatrixXd &force, double dt) const;
+  double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
 
   FineScaleSplitParameters parameters_;
   Overlap<dim> overlap_;
@@ -75,7 +80,8 @@ private:
   std::vector<double> damping_; // 1 - exp(-c_f dt) of the free members
 
   Eigen::MatrixXd displacement_, velocity_; // U, V of the near nodes: n_nodes x dim
-  Components<dim> fluctuation_;             // w of the free members, m/s
+  Components<dim> fluctuation_, undamped_;  // w of the free members, m/s
+  Eigen::MatrixXd force_;                   // on the near nodes at the last kick, N
   double fine_damper_energy_ = 0, gap_filter_energy_ = 0;
 };
 } // namespace ligament::coupling

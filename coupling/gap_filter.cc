@@ -20,7 +20,8 @@ Eigen::SparseMatrix<double> make_gap_filter(const Overlap<dim> &overlap, double 
   for (int axis = 0; axis < dim; ++axis)
   {
     // Neighbours along the axis, below and above.
-    std::array<std::vector<int>, 2> next = {std::vector<int>(n, -1), std::vector<int>(n, -1)};
+    std::array<std::vector<int>, 2> next;
+    next.fill(std::vector<int>(n, -1));
     for (const auto &cell : overlap.cells)
       for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
         if (!((a >> axis) & 1))

@@ -3,50 +3,76 @@
 namespace ligament::coupling
 {
 template <int dim>
+Coupler<dim>::Coupler(core::Timers &timers)
+    : timers_(timers), forces_(timers.section("discrete forces")),
+      motion_(timers.section("discrete motion")), far_(timers.section("far field")),
+      coupling_(timers.section("coupling"))
+{
+}
+
+template <int dim>
 void NullCoupler<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
   if (bodies.zone)
   {
+    const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->drift(step.dt);
     bodies.zone->update_ghosts();
   }
   if (bodies.far)
+  {
+    const auto timing = this->timers_.scope(this->far_);
     bodies.far->drift(step.dt);
+  }
 }
 
 template <int dim>
 void NullCoupler<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &step)
 {
   if (bodies.zone)
+  {
+    const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
+  }
   if (bodies.far)
+  {
+    const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
+  }
 }
 
 template <int dim>
 void NullCoupler<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
   if (bodies.zone)
+  {
+    const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->kick(step.dt);
+  }
   if (bodies.far)
+  {
+    const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(step.dt, step.time);
+  }
 }
 
 template <int dim>
-void NullCoupler<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
+double NullCoupler<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
 {
-  const auto scale = [factor](auto &components) {
-    for (auto &array : components)
-      for (double &v : array)
-        v *= factor;
-  };
+  double loss = 0;
   if (bodies.zone)
   {
-    scale(bodies.zone->state.velocity);
-    scale(bodies.zone->state.spin);
+    auto &zone = *bodies.zone;
+    loss += scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor);
+    zone.scale_velocities(factor);
   }
   if (bodies.far)
-    scale(bodies.far->velocity);
+  {
+    auto &far = *bodies.far;
+    loss += scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
+    far.scale_velocities(factor);
+  }
+  return loss;
 }
 
 template <int dim>
@@ -66,6 +92,8 @@ CoupledEnergy NullCoupler<dim>::energy(const Bodies<dim> &bodies, const StepTime
   return e;
 }
 
+template class Coupler<2>;
+template class Coupler<3>;
 template class NullCoupler<2>;
 template class NullCoupler<3>;
 } // namespace ligament::coupling

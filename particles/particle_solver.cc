@@ -94,6 +94,17 @@ double ParticleSolver<dim>::kinetic_energy(double dt) const
   return sum / 2;
 }
 
+template <int dim>
+void ParticleSolver<dim>::scale_velocities(double factor)
+{
+  for (auto &array : state.velocity)
+    for (double &v : array)
+      v *= factor;
+  for (auto &array : state.spin)
+    for (double &w : array)
+      w *= factor;
+}
+
 template class ParticleSolver<2>;
 template class ParticleSolver<3>;
 } // namespace ligament::particles

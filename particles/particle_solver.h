@@ -31,6 +31,9 @@ public:
   /// invariant at the time of the present forces, in J; call before kick(dt).
   double kinetic_energy(double dt) const;
 
+  /// Velocities and spins of all particles times factor.
+  void scale_velocities(double factor);
+
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
 };

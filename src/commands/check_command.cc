@@ -1,0 +1,196 @@
+#include "src/commands/commands.h"
+
+#include "src/output/picture.h"
+#include "src/simulation/body_fields.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace ligament::program
+{
+namespace
+{
+/// Present resident memory of this process, in bytes.
+double resident_bytes()
+{
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * 4096;
+}
+
+struct Prediction
+{
+  double seconds_per_step = 0; // of the whole body
+  double discrete_share = 0;   // of it, particles alone
+};
+
+/// Steps the body at rest for a moment: the same work per step as in the run.
+template <int dim>
+Prediction time_steps(CoupledBody<dim> &body, core::Timers &timers)
+{
+  using Clock = std::chrono::steady_clock;
+  auto bodies = body.bodies();
+  coupling::StepTime step;
+  step.dt = body.dt;
+  const auto advance = [&](int n) {
+    for (int i = 0; i < n; ++i, ++step.step)
+    {
+      body.coupler->compute_forces(bodies, step);
+      body.coupler->kick(bodies, step);
+      body.coupler->drift(bodies, step);
+    }
+  };
+  const auto discrete_seconds = [&] {
+    double sum = 0;
+    for (const auto &row : timers.rows())
+      if (row.name == "discrete forces" || row.name == "discrete motion")
+        sum += row.seconds;
+    return sum;
+  };
+  const int block = 4 * body.coupler->step_ratio();
+  advance(block); // caches
+  const double discrete_before = discrete_seconds();
+  const auto start = Clock::now();
+  long n = 0;
+  double seconds = 0;
+  while (seconds < 0.5)
+  {
+    advance(block);
+    n += block;
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  return {seconds / n, (discrete_seconds() - discrete_before) / seconds};
+}
+
+std::string duration_text(double seconds)
+{
+  if (seconds < 120)
+    return fmt::format("{:.0f} s", seconds);
+  if (seconds < 7200)
+    return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+template <int dim>
+void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &file)
+{
+  FieldView view;
+  view.field = "displacement";
+  view.magnify = 0;
+  view.title = scene.title;
+  if (scene.zone.extent == DiscreteZone::Extent::box)
+  {
+    std::array<double, 6> box = {};
+    for (int c = 0; c < dim; ++c)
+    {
+      box[c] = std::max(scene.zone.lower[c], body.lower[c]);
+      box[3 + c] = std::min(scene.zone.upper[c], body.upper[c]);
+    }
+    view.boxes.push_back(box);
+  }
+  auto picture = picture_of(particle_fields(body), cell_fields(body), {}, dim, body.spacing / 2, view);
+  picture.value_label.clear();
+  for (auto &scatter : picture.scatters)
+    scatter.values.clear();
+  for (auto &quads : picture.quads)
+    quads.values.clear();
+  for (const auto &load : scene.loads)
+  {
+    Label label;
+    const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
+    const int boundary =
+        int(std::find(names.begin(), names.end(), load.boundary) - names.begin());
+    label.position = {0, 0, 0};
+    label.position[boundary / 2] =
+        (boundary % 2 ? 0.94 : -0.94) * scene.specimen.size[boundary / 2] / 2;
+    label.text = load.boundary + ": " + load.kind;
+    picture.labels.push_back(label);
+  }
+  for (const auto &crack : scene.specimen.cracks)
+    if (dim == 2)
+    {
+      Segments segments;
+      for (const auto &point : crack.points)
+        segments.points.insert(segments.points.end(), {point[0], point[1], 0.});
+      picture.segments.push_back(segments);
+    }
+  write_picture(file, picture);
+}
+
+template <int dim>
+int check(const CommandLine &line, const ReadResult &input)
+{
+  const Scene &scene = *input.scene;
+  core::Log log;
+  core::Timers timers;
+  const double memory_before = resident_bytes();
+  auto body = make_body<dim>(scene, log, timers);
+  if (line.draw)
+  {
+    const std::string folder = output_folder(line);
+    std::filesystem::create_directories(folder);
+    const std::string file = folder + "/check.png";
+    draw(body, scene, file);
+    fmt::print("picture: {}\n", file);
+  }
+  const auto prediction = time_steps(body, timers);
+  const double memory = resident_bytes() - memory_before;
+  const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
+  const double seconds = steps * prediction.seconds_per_step;
+  const int particles = body.zone ? body.zone->state.n_owned : 0;
+  const int cells = body.far ? body.far->mesh().n_cells() : 0;
+  const int overlap = body.split ? body.split->report().overlap_particles : 0;
+  const double critical = body.zone ? body.dt_zone : body.dt_far;
+
+  fmt::print("{}\n", scene.title);
+  fmt::print("  particles            {:>12}\n", particles);
+  fmt::print("  cells                {:>12}\n", cells);
+  fmt::print("  overlap particles    {:>12}\n", overlap);
+  fmt::print("  pure discrete model  {:>12} particles\n", body.equivalent_particles);
+  fmt::print("  step                 {:>12.4g} s ({:.2f} of the stable one)\n", body.dt,
+             body.dt / critical);
+  if (body.split)
+    fmt::print("  far field            {:>12} steps of the zone per step; {:.4g} s is stable\n",
+               body.coupler->step_ratio(), body.dt_far);
+  fmt::print("  steps                {:>12}\n", steps);
+  fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
+  fmt::print("  predicted time       {:>12}\n", duration_text(seconds));
+  double saving = 0;
+  if (body.split)
+  {
+    saving = prediction.discrete_share * double(body.equivalent_particles) / particles;
+    fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements\n", saving);
+    fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n",
+               body.split->report().patch_residual);
+  }
+  for (const auto &part : body.skipped)
+    fmt::print("  not needed: {} ({})\n", part.what, part.why);
+  if (line.json)
+  {
+    nlohmann::ordered_json json = {{"particles", particles},
+                                   {"cells", cells},
+                                   {"overlap_particles", overlap},
+                                   {"equivalent_particles", body.equivalent_particles},
+                                   {"dt", body.dt},
+                                   {"dt_critical", critical},
+                                   {"steps", steps},
+                                   {"memory_bytes", memory},
+                                   {"predicted_seconds", seconds},
+                                   {"predicted_saving", saving},
+                                   {"errors", nlohmann::json::array()}};
+    fmt::print("{}\n", json.dump());
+  }
+  return 0;
+}
+} // namespace
+
+int check_command(const CommandLine &line, const ReadResult &input)
+{
+  return input.scene->dimension == 2 ? check<2>(line, input) : check<3>(line, input);
+}
+} // namespace ligament::program

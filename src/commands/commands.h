@@ -1,0 +1,21 @@
+// The commands that compute: what each prints, writes and returns as exit code.
+#pragma once
+
+#include "src/launcher/command_line.h"
+#include "src/scene/read_scene.h"
+
+namespace ligament::program
+{
+/// Runs the scene into the output folder (default: <scene's name>-out) and writes the report.
+/// 0 done, 3 stopped by a guard.
+int run_command(const CommandLine &line, const ReadResult &input);
+
+/// Builds everything, steps for a moment to predict the run, prints the pre-flight card.
+int check_command(const CommandLine &line, const ReadResult &input);
+
+/// Runs verification cases and prints their figures beside "must" and "aim"; 0 when all pass.
+int verify_command(const CommandLine &line);
+
+/// Folder for the outputs of a scene file: --output, or the folder's name with "-out".
+std::string output_folder(const CommandLine &line);
+} // namespace ligament::program

@@ -1,0 +1,28 @@
+// The present state of a body as the output sees it: fields, snapshots, broken faces.
+#pragma once
+
+#include "src/output/fields.h"
+#include "src/output/snapshot.h"
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+/// Displacement, velocity, stress of all particles; empty without a zone.
+template <int dim>
+ParticleFields particle_fields(const CoupledBody<dim> &body);
+
+/// The same on the nodes of the far field (stress: mean of the cells around); empty without one.
+template <int dim>
+CellFields cell_fields(const CoupledBody<dim> &body);
+
+template <int dim>
+Snapshot snapshot(const CoupledBody<dim> &body, double time);
+
+/// All faces broken so far, in the order of breaking.
+template <int dim>
+std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body);
+
+/// Area of the broken faces seen along the axis over the thickness: m in 2D, m^2 in 3D.
+template <int dim>
+double crack_length(const CoupledBody<dim> &body, int axis);
+} // namespace ligament::program

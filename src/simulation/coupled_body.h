@@ -1,0 +1,54 @@
+// From a scene to the objects that move: the one set-up that run, check and verify share.
+#pragma once
+
+#include "core/log.h"
+#include "coupling/fine_scale_split.h"
+#include "dem/many_body_force.h"
+#include "particles/packing.h"
+#include "src/output/run_record.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// The two halves, what joins them, and the figures of the set-up. Missing halves are null.
+template <int dim>
+struct CoupledBody
+{
+  std::unique_ptr<particles::ParticleSolver<dim>> zone;
+  std::unique_ptr<fem::FemSolver<dim>> far;
+  std::unique_ptr<coupling::Coupler<dim>> coupler;
+  std::vector<core::BoundaryLoad<dim>> loads;
+
+  dem::ManyBodyForce<dim> *force = nullptr;          // of the zone
+  coupling::FineScaleSplit<dim> *split = nullptr;    // the coupler, when it is one
+
+  Vector<dim> lower, upper;             // m, specimen
+  double thickness = 1;                 // m, 2D
+  PlaneMode plane = PlaneMode::strain;  // 2D
+  double poissons_ratio = 0;
+  double spacing = 0;                   // m, d
+  double dt = 0;                        // s
+  double dt_zone = 0;                   // s, stable step of the discrete side
+  double dt_far = 0;                    // s, of the far field's own cells
+  std::int64_t equivalent_particles = 0; // of the pure discrete model
+  std::int64_t n_cracked_faces = 0;     // cut by initial cracks
+  std::map<std::string, Figure> figures;
+  std::vector<SkippedPart> skipped;
+
+  coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
+};
+
+/// Throws core::InputError where the scene can't be built: reason and remedy in the message.
+template <int dim>
+CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers);
+
+/// The first `dim` components.
+template <int dim>
+Vector<dim> to_vector(const Point &p)
+{
+  Vector<dim> v;
+  for (int c = 0; c < dim; ++c)
+    v[c] = p[c];
+  return v;
+}
+} // namespace ligament::program

@@ -1,0 +1,34 @@
+// Damping of the whole body for quasi-static loading, with the energy that it takes.
+#pragma once
+
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+/// Local: a force of the given fraction of each force component, against its velocity. Mass:
+/// velocities decay at the given rate. Kinetic: velocities vanish at peaks of the kinetic energy.
+template <int dim>
+class BodyDamping
+{
+public:
+  explicit BodyDamping(const Damping &parameters) : parameters_(parameters) {}
+
+  /// Between forces and kick.
+  void before_kick(CoupledBody<dim> &body, const coupling::StepTime &step);
+  /// Between kick and drift.
+  void after_kick(CoupledBody<dim> &body, const coupling::StepTime &step);
+
+  /// J, so far.
+  double energy() const { return energy_; }
+
+private:
+  void add_local_forces(CoupledBody<dim> &body, bool far_acts);
+  double local_power(const CoupledBody<dim> &body) const;
+
+  Damping parameters_;
+  double energy_ = 0;
+  double last_kinetic_ = 0;
+  Components<dim> zone_force_, far_force_; // N, of local damping
+  Components<n_spins<dim>> zone_torque_;   // N m
+};
+} // namespace ligament::program

@@ -1,0 +1,41 @@
+#include "src/simulation/energy_ledger.h"
+
+namespace ligament::program
+{
+std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
+{
+  return {{"kinetic_discrete", body.kinetic_discrete},
+          {"potential_discrete", body.potential_discrete},
+          {"kinetic_far", body.kinetic_far},
+          {"potential_far", body.potential_far},
+          {"blended", body.blended},
+          {"fracture", fracture},
+          {"friction", friction},
+          {"damper_fine", body.fine_damper},
+          {"damper_gap", body.gap_filter},
+          {"damping", damping},
+          {"external_work", external_work},
+          {"residual", residual()}};
+}
+
+template <int dim>
+EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                         double damping)
+{
+  EnergyLedger ledger;
+  ledger.body = body.coupler->energy(body.bodies(), step);
+  ledger.damping = damping;
+  if (body.force)
+  {
+    ledger.fracture = body.force->fracture_energy();
+    ledger.friction = body.force->frictional_work();
+    ledger.external_work += body.force->external_work();
+  }
+  if (body.far)
+    ledger.external_work += body.far->external_work();
+  return ledger;
+}
+
+template EnergyLedger read_ledger(const CoupledBody<2> &, const coupling::StepTime &, double);
+template EnergyLedger read_ledger(const CoupledBody<3> &, const coupling::StepTime &, double);
+} // namespace ligament::program

@@ -1,0 +1,37 @@
+// Where every joule is: all channels of the energy balance of a run.
+#pragma once
+
+#include "src/simulation/coupled_body.h"
+
+#include <string>
+#include <utility>
+
+namespace ligament::program
+{
+/// Energies in J at one time (theory.md, "Energy ledger"). The residual is what the channels do not
+/// explain: zero to round-off for a linear body, of second order in the step otherwise.
+struct EnergyLedger
+{
+  coupling::CoupledEnergy body;
+  double fracture = 0;
+  double friction = 0;
+  double damping = 0;
+  double external_work = 0;
+
+  double kinetic() const { return body.kinetic_discrete + body.kinetic_far; }
+  double potential() const { return body.potential_discrete + body.potential_far + body.blended; }
+  double residual() const
+  {
+    return kinetic() + potential() + body.fine_damper + body.gap_filter + fracture + friction +
+           damping - external_work;
+  }
+  /// Name of the history column and value of every channel.
+  std::vector<std::pair<std::string, double>> channels() const;
+};
+
+/// Valid between the forces and the kick of a step in which the far field acts. `damping` in J is
+/// what the caller's damping has taken.
+template <int dim>
+EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                         double damping);
+} // namespace ligament::program

@@ -1,0 +1,213 @@
+#include "src/simulation/recorder.h"
+
+#include "src/output/broken_bonds.h"
+#include "src/output/curve.h"
+#include "src/output/picture.h"
+#include "src/simulation/connectivity.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+// Guards look this often, in steps of the far field.
+constexpr long guard_interval = 50;
+
+// Overlap bonds must not break: the run is trusted up to half their strength.
+constexpr double guarded_share = 0.5;
+} // namespace
+
+template <int dim>
+Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
+                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps)
+    : scene_(scene), folder_(folder), log_(log), timers_(timers),
+      section_(timers.section("output")), machine_(body),
+      history_(folder.history(), history_columns(dim)),
+      progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
+      n_steps_(n_steps), history_interval_(scene.output.history_interval > 0
+                                               ? scene.output.history_interval
+                                               : scene.time.duration / 2000)
+{
+  if (body.split && body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
+    for (const auto &m : body.split->overlap().members)
+      guarded_.push_back(m.particle);
+}
+
+template <int dim>
+std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
+                                           const coupling::StepTime &step, double damping)
+{
+  const long far_step = step.step / body.coupler->step_ratio();
+  const bool guard = far_step % guard_interval == 0;
+  const bool history = step.time >= next_history_ - 1e-9 * history_interval_;
+  const bool fields = step.time >= next_fields_;
+  const bool progress = far_step % 20 == 0 && progress_.is_due();
+  if (!guard && !history && !fields && !progress)
+    return {};
+  const auto timing = timers_.scope(section_);
+  if (history)
+  {
+    record_history(body, step, damping);
+    if (!std::isfinite(residual_.back()))
+      return Stop{true, fmt::format("the energies are no longer finite at {:.4g} s: the run is "
+                                    "unstable; lower /time/step_fraction or the load's rate",
+                                    step.time)};
+  }
+  if (fields)
+    record_fields(body, step);
+  if (progress)
+    progress_.print(progress_state(body, step, read_ledger(body, step, damping)));
+  if (guard)
+    return check_guards(body, step);
+  return {};
+}
+
+template <int dim>
+void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                                   double damping)
+{
+  next_history_ += history_interval_;
+  const Reading r = machine_.read(body, step.time);
+  const EnergyLedger ledger = read_ledger(body, step, damping);
+  history_.set("time", step.time);
+  history_.set("step", double(step.step));
+  history_.set("load", r.load);
+  history_.set("stress", r.stress);
+  history_.set("displacement", r.displacement);
+  history_.set("strain", r.strain);
+  for (const auto &[name, value] : ledger.channels())
+    history_.set(name, value);
+  history_.set("broken_bonds", body.force ? double(body.force->broken_bonds().size()) : 0);
+  history_.set("crack_length", crack_length(body, machine_.axis()));
+  history_.end_row();
+
+  time_.push_back(step.time);
+  load_.push_back(r.load);
+  stress_.push_back(r.stress);
+  strain_.push_back(r.strain);
+  residual_.push_back(ledger.residual());
+  work_.push_back(ledger.external_work);
+  // The state at the peak is known to be that only later: keep copies on the way up.
+  if (std::abs(r.load) > 1.001 * std::abs(peak_copied_))
+  {
+    peak_copied_ = r.load;
+    peak_snapshot_ = snapshot(body, step.time);
+    peak_particles_ = particle_fields(body);
+    peak_cells_ = cell_fields(body);
+    peak_broken_ = body.force ? body.force->broken_bonds().size() : 0;
+  }
+}
+
+template <int dim>
+void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step)
+{
+  next_fields_ += scene_.output.field_interval;
+  fields_.write(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
+}
+
+template <int dim>
+std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
+                                                const coupling::StepTime &step)
+{
+  if (body.force && !guarded_.empty() && !warned_)
+  {
+    const double tension = body.force->max_tension(body.zone->state, guarded_);
+    const double strength = body.force->fracture().strength;
+    if (tension > guarded_share * strength)
+    {
+      warned_ = true;
+      const std::string reason =
+          fmt::format("at {:.4g} s the tension in the overlap is {:.0f} % of the strength: fracture "
+                      "comes near it; make /discrete_zone/region larger",
+                      step.time, 100 * tension / strength);
+      log_.warning(reason);
+      if (scene_.coupling.guard == "stop")
+        return Stop{true, reason};
+    }
+  }
+  if (scene_.time.stop_when == "specimen_broken" && body.force)
+  {
+    const std::size_t n_broken = body.force->broken_bonds().size();
+    if (n_broken != broken_before_)
+    {
+      broken_before_ = n_broken;
+      if (is_broken_across(body, machine_.axis()))
+        return Stop{false, fmt::format("specimen broken at {:.4g} s", step.time)};
+    }
+  }
+  return {};
+}
+
+template <int dim>
+ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
+                                            const coupling::StepTime &step,
+                                            const EnergyLedger &ledger) const
+{
+  ProgressState state;
+  state.step = step.step;
+  state.n_steps = n_steps_;
+  state.time = step.time;
+  state.kinetic = ledger.kinetic();
+  state.potential = ledger.potential();
+  state.external_work = ledger.external_work;
+  state.residual = ledger.residual();
+  state.broken_bonds = body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
+  state.crack_length = crack_length(body, machine_.axis());
+  return state;
+}
+
+template <int dim>
+void Recorder<dim>::draw(const std::string &name, const std::string &caption,
+                         const ParticleFields &particles, const CellFields &cells,
+                         const std::vector<BrokenBond> &bonds, RunRecord &record)
+{
+  FieldView view;
+  view.field = "stress";
+  view.component = machine_.has_load() ? machine_.axis() : -1;
+  view.title = caption;
+  const std::string file = "pictures/" + name + ".png";
+  write_picture(folder_.path + "/" + file,
+                picture_of(particles, cells, bonds, dim, scene_.zone.spacing / 2, view));
+  record.pictures.push_back({file, caption});
+}
+
+template <int dim>
+void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                           double damping, RunRecord &record)
+{
+  const auto timing = timers_.scope(section_);
+  record_history(body, step, damping);
+  history_.flush();
+  progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
+  const auto bonds = broken_bonds(body);
+  const auto particles = particle_fields(body);
+  const auto cells = cell_fields(body);
+  if (std::isfinite(scene_.output.field_interval))
+    fields_.write(step.time, particles, cells, bonds);
+  write_broken_bonds(folder_.broken_bonds(), bonds, dim);
+  if (body.zone)
+    write_snapshot(folder_.end_snapshot(), snapshot(body, step.time));
+
+  if (const auto peak = peak_index(load_))
+  {
+    record.peak_load = load_[*peak];
+    record.peak_stress = stress_[*peak];
+    record.peak_time = time_[*peak];
+    if (body.zone && peak_snapshot_)
+      write_snapshot(folder_.peak_snapshot(), *peak_snapshot_);
+    const std::vector<BrokenBond> at_peak(bonds.begin(), bonds.begin() + peak_broken_);
+    draw("peak", "Stress near the peak load", peak_particles_, peak_cells_, at_peak, record);
+  }
+  draw("end", "Stress at the end", particles, cells, bonds, record);
+  record.stiffness = fit_stiffness(strain_, stress_);
+  record.broken_bonds = std::int64_t(bonds.size());
+  record.crack_length = crack_length(body, machine_.axis());
+  record.energy_residual = relative_residual(residual_, work_);
+}
+
+template class Recorder<2>;
+template class Recorder<3>;
+} // namespace ligament::program

@@ -1,0 +1,71 @@
+// The observers of a run: history, fields, peak, progress line, guards and the end of the scene.
+#pragma once
+
+#include "src/output/history.h"
+#include "src/output/progress.h"
+#include "src/output/run_folder.h"
+#include "src/output/vtk.h"
+#include "src/simulation/body_fields.h"
+#include "src/simulation/energy_ledger.h"
+#include "src/simulation/test_machine.h"
+
+namespace ligament::program
+{
+/// Why a run ends before its last step.
+struct Stop
+{
+  bool by_guard;
+  std::string reason;
+};
+
+/// Everything that looks at the body between forces and kick, each part with its own trigger. Only
+/// called in steps in which both models stand at the same time.
+template <int dim>
+class Recorder
+{
+public:
+  Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
+           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps);
+
+  /// Looks at the present state; empty while the run goes on. `damping` in J so far.
+  std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                              double damping);
+
+  /// Last row, last fields, pictures, tables; completes the record.
+  void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
+              RunRecord &record);
+
+private:
+  void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
+  void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
+            const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
+  std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                               const EnergyLedger &ledger) const;
+
+  const Scene &scene_;
+  RunFolder folder_;
+  core::Log &log_;
+  core::Timers &timers_;
+  const int section_;
+  TestMachine<dim> machine_;
+  HistoryWriter history_;
+  Progress progress_;
+  FieldSeries fields_;
+  long n_steps_;
+  double history_interval_;
+  double next_history_ = 0, next_fields_ = 0; // s
+  std::size_t broken_before_ = 0;             // at the last check of connectivity
+  std::vector<int> guarded_;                  // overlap particles
+  bool warned_ = false;
+
+  // What the record needs from the history.
+  std::vector<double> load_, stress_, strain_, time_, residual_, work_;
+  double peak_copied_ = 0; // N, load of the copies below
+  std::optional<Snapshot> peak_snapshot_;
+  ParticleFields peak_particles_;
+  CellFields peak_cells_;
+  std::size_t peak_broken_ = 0;
+};
+} // namespace ligament::program

@@ -1,0 +1,117 @@
+#include "src/simulation/simulation.h"
+
+#include "core/version.h"
+#include "src/output/verdict.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+
+namespace ligament::program
+{
+template <int dim>
+Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress)
+    : scene_(scene), folder_(folder), log_(folder.log()),
+      body_(make_body<dim>(scene_, log_, timers_)), damping_(scene_.damping), clock_(clock_of()),
+      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps)
+{
+}
+
+template <int dim>
+Clock Simulation<dim>::clock_of() const
+{
+  Clock clock;
+  clock.now.dt = body_.dt;
+  // Whole far-field steps: both models end at the same time.
+  const int ratio = body_.coupler->step_ratio();
+  clock.n_steps = ratio * std::lround(std::ceil(scene_.time.duration / (ratio * body_.dt)));
+  return clock;
+}
+
+template <int dim>
+std::optional<Stop> Simulation<dim>::loop()
+{
+  auto bodies = body_.bodies();
+  auto &coupler = *body_.coupler;
+  coupler.compute_forces(bodies, clock_.now);
+  while (!clock_.is_at_end())
+  {
+    if (clock_.now.step % coupler.step_ratio() == 0)
+      if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
+        return stop;
+    damping_.before_kick(body_, clock_.now);
+    coupler.kick(bodies, clock_.now); // velocities, one body in the overlap
+    damping_.after_kick(body_, clock_.now);
+    coupler.drift(bodies, clock_.now); // positions
+    clock_.advance();
+    coupler.compute_forces(bodies, clock_.now);
+  }
+  return {};
+}
+
+template <int dim>
+RunRecord Simulation<dim>::make_record() const
+{
+  RunRecord r;
+  r.title = scene_.title;
+  r.version = core::version();
+  r.commit = core::commit();
+  r.started = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
+  r.kind = !body_.far ? "pure_dem" : !body_.zone ? "pure_fem" : "coupled";
+  r.dimension = dim;
+  if (dim == 2)
+    r.plane = scene_.plane == PlaneMode::strain ? "strain" : "stress";
+  r.spacing = body_.spacing;
+  for (int c = 0; c < dim; ++c)
+    r.size.push_back(scene_.specimen.size[c]);
+  r.thickness = body_.thickness;
+  r.particles = body_.zone ? body_.zone->state.n_owned : 0;
+  r.cells = body_.far ? body_.far->mesh().n_cells() : 0;
+  r.overlap_particles = body_.split ? body_.split->report().overlap_particles : 0;
+  r.equivalent_particles = body_.equivalent_particles;
+  r.dt = body_.dt;
+  if (body_.zone)
+    r.dt_critical = body_.dt_zone;
+  if (body_.far)
+    r.dt_far = body_.dt_far;
+  r.step_ratio = body_.coupler->step_ratio();
+  r.figures = body_.figures;
+  r.skipped = body_.skipped;
+  return r;
+}
+
+template <int dim>
+RunRecord Simulation<dim>::run()
+{
+  RunRecord record = make_record();
+  record.setup_seconds = timers_.total();
+  write_run_record(folder_.record(), record);
+  for (const auto &part : body_.skipped)
+    log_.info("not needed: {} ({})", part.what, part.why);
+
+  const auto stop = loop();
+  record.status = stop && stop->by_guard ? "guard" : "done";
+  record.reason = stop ? stop->reason : "end of the scene's duration";
+  record.steps = clock_.now.step;
+  record.simulated_time = clock_.now.time;
+  record.wall_seconds = timers_.total() - record.setup_seconds;
+  recorder_.finish(body_, clock_.now, damping_.energy(), record);
+  record.timing = timers_.rows();
+  double discrete = 0;
+  for (const auto &row : record.timing)
+    if (row.name == "discrete forces" || row.name == "discrete motion")
+      discrete += row.seconds;
+  if (body_.zone)
+    record.discrete_seconds = discrete;
+  record.verdict = verdict(record);
+  write_run_record(folder_.record(), record);
+  log_.info("{} after {} steps: {}", record.status, record.steps, record.reason);
+  log_.info("{}", record.verdict);
+  return record;
+}
+
+template class Simulation<2>;
+template class Simulation<3>;
+} // namespace ligament::program

@@ -1,0 +1,52 @@
+// One run: the time loop, and who watches it.
+#pragma once
+
+#include "core/timers.h"
+#include "src/output/run_folder.h"
+#include "src/simulation/damping.h"
+#include "src/simulation/energy_ledger.h"
+#include "src/simulation/recorder.h"
+
+namespace ligament::program
+{
+/// Steps of a run and where it stands.
+struct Clock
+{
+  coupling::StepTime now;
+  long n_steps = 0;
+
+  bool is_at_end() const { return now.step >= n_steps; }
+  void advance()
+  {
+    ++now.step;
+    now.time = double(now.step) * now.dt;
+  }
+};
+
+template <int dim>
+class Simulation
+{
+public:
+  /// Builds the body (core::InputError when that can't be done) and opens the output folder.
+  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
+
+  /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
+  /// the record (status "guard"), not an exception.
+  RunRecord run();
+
+private:
+  Clock clock_of() const;
+  RunRecord make_record() const;
+  /// The time loop; the reason when it ends early.
+  std::optional<Stop> loop();
+
+  const Scene scene_;
+  RunFolder folder_;
+  core::Log log_;
+  core::Timers timers_;
+  CoupledBody<dim> body_;
+  BodyDamping<dim> damping_;
+  Clock clock_;
+  Recorder<dim> recorder_;
+};
+} // namespace ligament::program

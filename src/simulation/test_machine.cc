@@ -1,0 +1,90 @@
+#include "src/simulation/test_machine.h"
+
+#include <cmath>
+
+namespace ligament::program
+{
+template <int dim>
+TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
+{
+  double largest = 0;
+  for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
+    for (int c = 0; c < dim; ++c)
+      if (body.loads[l].value[c] && std::abs(*body.loads[l].value[c]) > largest)
+      {
+        largest = std::abs(*body.loads[l].value[c]);
+        load_ = int(l);
+        component_ = c;
+      }
+  if (load_ < 0)
+    return;
+  axis_ = body.loads[load_].boundary / 2;
+  sign_ = body.loads[load_].boundary % 2 ? 1 : -1;
+  const Vector<dim> size = body.upper - body.lower;
+  size_ = size[axis_];
+  area_ = size.prod() / size_ * body.thickness;
+}
+
+template <int dim>
+double TestMachine<dim>::side_displacement(const CoupledBody<dim> &body, int side,
+                                           double time) const
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  const int boundary = 2 * axis_ + side;
+  for (const auto &load : body.loads)
+    if (load.boundary == boundary && load.value[component_] && load.kind != Kind::traction)
+      return load.displacement(component_, time);
+  return mean_displacement(body, boundary, component_);
+}
+
+template <int dim>
+Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
+{
+  Reading r;
+  if (load_ < 0)
+    return r;
+  if (body.force)
+    r.load += sign_ * body.force->reaction(load_)[component_];
+  if (body.far)
+    r.load += sign_ * body.far->reaction(load_)[component_];
+  r.stress = r.load / area_;
+  r.displacement = side_displacement(body, 1, time) - side_displacement(body, 0, time);
+  r.strain = r.displacement / size_;
+  return r;
+}
+
+template <int dim>
+double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
+{
+  const int axis = boundary / 2;
+  const double place = boundary % 2 ? body.upper[axis] : body.lower[axis];
+  double sum = 0;
+  long n = 0;
+  if (body.far)
+  {
+    const auto &mesh = body.far->mesh();
+    for (int i = 0; i < mesh.n_nodes(); ++i)
+      if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place))
+      {
+        sum += body.far->displacement[component][i];
+        ++n;
+      }
+  }
+  else
+  {
+    const auto &state = body.zone->state;
+    for (int i = 0; i < state.n_owned; ++i)
+      if (std::abs(state.reference[axis][i] - place) < body.spacing)
+      {
+        sum += state.displacement[component][i];
+        ++n;
+      }
+  }
+  return n ? sum / n : 0;
+}
+
+template class TestMachine<2>;
+template class TestMachine<3>;
+template double mean_displacement(const CoupledBody<2> &, int, int);
+template double mean_displacement(const CoupledBody<3> &, int, int);
+} // namespace ligament::program

@@ -1,0 +1,43 @@
+// What a testing machine would read: load, stress, displacement and strain of the specimen.
+#pragma once
+
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+struct Reading
+{
+  double load = 0;         // N
+  double stress = 0;       // Pa, load over the area of the side
+  double displacement = 0; // m, elongation between the two sides of the axis
+  double strain = 0;       // elongation over the specimen's size
+};
+
+/// Reads the first load that has a component: its largest one is the axis of the test.
+template <int dim>
+class TestMachine
+{
+public:
+  explicit TestMachine(const CoupledBody<dim> &body);
+
+  Reading read(const CoupledBody<dim> &body, double time) const;
+
+  bool has_load() const { return load_ >= 0; }
+  /// Component of the measured force, 0 for x.
+  int component() const { return component_; }
+  /// Axis of the loaded side.
+  int axis() const { return axis_; }
+
+private:
+  double side_displacement(const CoupledBody<dim> &body, int side, double time) const;
+
+  int load_ = -1; // index of the load that is read
+  int component_ = 0, axis_ = 0;
+  double sign_ = 1; // tension on the upper side is positive
+  double area_ = 1, size_ = 1;
+};
+
+/// Mean of a displacement component over the particles or nodes on a side of the specimen, in m.
+template <int dim>
+double mean_displacement(const CoupledBody<dim> &body, int boundary, int component);
+} // namespace ligament::program

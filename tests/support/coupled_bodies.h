@@ -1,0 +1,108 @@
+// Small coupled bodies for tests: a band whose overlap ends at free edges, a closed ring.
+#pragma once
+
+#include "coupling/fine_scale_split.h"
+#include "dem/many_body_force.h"
+#include "particles/lattice_packing.h"
+
+#include <cmath>
+#include <random>
+
+namespace ligament::tests
+{
+template <int dim>
+struct CoupledBodies
+{
+  std::unique_ptr<particles::ParticleSolver<dim>> zone;
+  std::unique_ptr<fem::FemSolver<dim>> far;
+  std::unique_ptr<coupling::FineScaleSplit<dim>> split;
+  std::unique_ptr<core::Timers> timers = std::make_unique<core::Timers>();
+  double dt = 0; // s, 0.9 of the plain discrete step unless asked otherwise
+  double dt_zone = 0;
+  double spacing = 1;
+
+  coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
+};
+
+/// Everything in units of the spacing d = 1, E = 1, rho = 1.
+template <int dim>
+struct CoupledBodiesParameters
+{
+  dem::DemMaterial material;
+  particles::LatticeKind kind =
+      dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  Spin<dim> orientation = Spin<dim>::Zero();
+  Vector<dim> size;               // specimen, centred at the origin
+  Vector<dim> zone_size;          // beyond the specimen: not coupled there
+  double cell_size = 4.1;         // h/d, incommensurate with the packing
+  int overlap_cells = 3;
+  int transition_cells = 6;
+  int levels = 0;
+  coupling::FineScaleSplitParameters split;
+  double step_fraction = 0.9;
+};
+
+template <int dim>
+CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
+{
+  CoupledBodies<dim> body;
+  particles::LatticeParameters<dim> lattice;
+  lattice.kind = p.kind;
+  lattice.spacing = 1;
+  lattice.orientation = p.orientation;
+  lattice.upper = p.size / 2;
+  lattice.lower = -lattice.upper;
+  fem::MeshParameters<dim> mesh;
+  mesh.lower = lattice.lower;
+  mesh.upper = lattice.upper;
+  mesh.cell_size = p.cell_size;
+  mesh.levels = p.levels;
+  mesh.fine_cells = p.overlap_cells + p.transition_cells + 2;
+  mesh.inner_upper = mesh.upper + Vector<dim>::Ones();
+  mesh.inner_lower = -mesh.inner_upper;
+  coupling::OverlapParameters overlap;
+  overlap.length = p.overlap_cells * p.cell_size;
+  overlap.spacing = 1;
+  overlap.transition_cells = p.transition_cells;
+  for (int c = 0; c < dim; ++c)
+    if (p.zone_size[c] < p.size[c])
+    {
+      const double edge = p.zone_size[c] / 2;
+      lattice.zone_lower[c] = -edge;
+      lattice.zone_upper[c] = edge;
+      overlap.sides.push_back({c, false, -edge});
+      overlap.sides.push_back({c, true, edge});
+      mesh.inner_lower[c] = -edge + overlap.length;
+      mesh.inner_upper[c] = edge - overlap.length;
+    }
+  auto packing = particles::make_lattice_packing<dim>(lattice);
+  particles::Particles<dim> state;
+  particles::fill_particles(packing, p.material.density, state);
+  body.zone = std::make_unique<particles::ParticleSolver<dim>>(
+      std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(
+                            std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>()));
+  fem::Body<dim> material;
+  material.stiffness = p.material.template elastic_constants<dim>().stiffness;
+  material.density = p.material.density;
+  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material,
+                                                   std::vector<core::BoundaryLoad<dim>>());
+  body.dt_zone = body.zone->force->stable_step(body.zone->state);
+  body.dt = p.step_fraction * body.dt_zone;
+  auto bodies = body.bodies();
+  body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
+                                                                *body.timers);
+  return body;
+}
+
+/// One step of the time loop, theory.md "One step".
+template <int dim>
+void advance(CoupledBodies<dim> &body, coupling::StepTime &time)
+{
+  auto bodies = body.bodies();
+  body.split->compute_forces(bodies, time);
+  body.split->kick(bodies, time);
+  body.split->drift(bodies, time);
+  ++time.step;
+  time.time += time.dt;
+}
+} // namespace ligament::tests

@@ -1,0 +1,133 @@
+// The coupler's set-up and step on small bodies.
+#include "tests/support/coupled_bodies.h"
+
+#include <gtest/gtest.h>
+
+namespace ligament
+{
+namespace
+{
+using namespace tests;
+
+template <int dim>
+CoupledBodiesParameters<dim> band(double nu)
+{
+  CoupledBodiesParameters<dim> p;
+  p.material.poissons_ratio = nu;
+  if constexpr (dim == 2)
+  {
+    p.size = {61, 140};
+    p.zone_size = {100, 50};
+  }
+  else
+  {
+    p.size = {13, 11, 90};
+    p.zone_size = {100, 100, 34};
+    p.cell_size = 3.1;
+  }
+  return p;
+}
+
+TEST(FineScaleSplit, PatchFitOfABandThatEndsAtFreeEdges)
+{
+  for (const double nu : {0., 0.22, 0.45})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
+    {
+      auto p = band<2>(nu);
+      p.material.plane = plane;
+      const auto body = make_coupled_bodies(p);
+      const auto &report = body.split->report();
+      EXPECT_LT(report.patch_residual, 1e-12) << "nu " << nu;
+      EXPECT_LT(report.patch_modulus, 0.02);
+    }
+}
+
+TEST(FineScaleSplit, PatchFitOfABandIn3D)
+{
+  for (const double nu : {0., 0.3})
+  {
+    const auto body = make_coupled_bodies(band<3>(nu));
+    const auto &report = body.split->report();
+    printf("3D nu %g before %g after %g modulus %g overlap %d pad %d\n", nu, report.patch_residual_before, report.patch_residual, report.patch_modulus, report.overlap_particles, report.pad_particles);
+    EXPECT_LT(report.patch_residual, 1e-12) << "nu " << nu;
+    EXPECT_LT(report.patch_modulus, 0.02);
+  }
+}
+
+TEST(FineScaleSplit, PatchFitOfAClosedRing)
+{
+  for (const double nu : {0., 0.22, 0.45})
+  {
+    auto p = band<2>(nu);
+    p.size = {150, 140};
+    p.zone_size = {51, 47};
+    const auto body = make_coupled_bodies(p);
+    const auto &report = body.split->report();
+    printf("ring nu %g before %g after %g modulus %g\n", nu, report.patch_residual_before, report.patch_residual, report.patch_modulus);
+    EXPECT_LT(report.patch_residual, 1e-12) << "nu " << nu;
+    EXPECT_LT(report.patch_modulus, 0.02);
+  }
+}
+
+// A step operator that isn't symmetric pumps energy: noise tells, a patch test doesn't.
+template <int dim>
+double drift_of_noise(CoupledBodiesParameters<dim> p, int n_steps)
+{
+  p.split.fine_damper = 0;
+  p.split.gap_filter = 0;
+  auto body = make_coupled_bodies(p);
+  auto bodies = body.bodies();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1e-6, 1e-6);
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < body.zone->state.n_owned; ++i)
+      body.zone->state.velocity[c][i] = uniform(random);
+  for (int c = 0; c < dim; ++c)
+    for (double &v : body.far->velocity[c])
+      v = uniform(random);
+  body.far->distribute();
+  body.split->take_velocities(bodies);
+  coupling::StepTime time;
+  time.dt = body.dt;
+  std::vector<double> block(10, 0.);
+  const int per_block = n_steps / 10, sample = p.split.step_ratio * 10;
+  for (int b = 0; b < 10; ++b)
+  {
+    int n = 0;
+    for (int k = 0; k < per_block; ++k)
+    {
+      body.split->compute_forces(bodies, time);
+      if (time.step % sample == 0)
+      {
+        const auto e = body.split->energy(bodies, time);
+        block[b] += e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
+        ++n;
+      }
+      body.split->kick(bodies, time);
+      body.split->drift(bodies, time);
+      ++time.step;
+      time.time += time.dt;
+    }
+    block[b] /= n;
+    printf("block %d %.15g\n", b, block[b]);
+  }
+  return (block[9] - block[0]) / block[0];
+}
+
+TEST(FineScaleSplit, NoiseKeepsItsEnergy)
+{
+  auto p = band<2>(0.22);
+  p.size = {31, 120};
+  p.zone_size = {100, 34};
+  EXPECT_LT(std::abs(drift_of_noise(p, 2000)), 1e-8);
+}
+
+TEST(SlowFineScaleSplit, NoiseKeepsItsEnergy)
+{
+  auto p = band<2>(0.22);
+  p.size = {31, 120};
+  p.zone_size = {100, 34};
+  EXPECT_LT(std::abs(drift_of_noise(p, 100000)), 1e-8);
+}
+} // namespace
+} // namespace ligament
