@@ -85,7 +85,9 @@ struct LatticeParameters
 /// Centres within 1e-9 d of the plane of the crack count as lying on its positive side: left of the
 /// segment (2D), where the points turn counter-clockwise (3D).
 ///
-/// Throws core::InputError for impossible parameters, holes in 3D, and an empty zone.
+/// Throws core::InputError for impossible parameters, holes in 3D, an empty zone, and material
+/// beside a void so thin that it holds no particles of its own (walls from 1.4 d on are never
+/// refused).
 template <int dim>
 Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters);
 } // namespace ligament::particles
