@@ -86,7 +86,7 @@ struct LatticeParameters
 /// segment (2D), where the points turn counter-clockwise (3D).
 ///
 /// Throws core::InputError for impossible parameters, holes in 3D, an empty zone, and material
-/// beside a void so thin that it holds no particles of its own (walls from 1.4 d on are never
+/// beside a void so thin that it holds no particles of its own (a wall of 1.5 d is never
 /// refused).
 template <int dim>
 Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters);
