@@ -20,9 +20,8 @@ struct Bond
 template <int dim>
 struct BondMotion
 {
-  Vector<dim> a_i, a_j;   // m, present levers
-  Vector<dim> du;         // m, Du of theory.md eq. (D8b)
-  Vector<dim> normal_sum; // turned normals of both sides added: the present face normal's direction
+  Vector<dim> a_i, a_j; // m, present levers
+  Vector<dim> du;       // m, Du of theory.md eq. (D8b)
 
   BondMotion(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j,
              const Vector<dim> &u_i, const Vector<dim> &u_j)
@@ -32,9 +31,15 @@ struct BondMotion
     a_i = bond.lever_i + change_i;
     a_j = bond.lever_j + change_j;
     du = (u_j - u_i) + (change_j - change_i);
-    normal_sum = 2 * bond.normal + turn_i.change(bond.normal) + turn_j.change(bond.normal);
   }
 };
+
+/// Unit normal of the face at present: the mean of the two sides' turned normals.
+template <int dim>
+Vector<dim> present_normal(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j)
+{
+  return (2 * bond.normal + turn_i.change(bond.normal) + turn_j.change(bond.normal)).normalized();
+}
 
 /// Torque of bending and twist on i, minus that on j (N m, space axes), theory.md eq. (D4): minus
 /// the exact gradient of bending_energy.
@@ -57,8 +62,8 @@ inline Turn<3> relative_turn(const Turn<3> &i, const Turn<3> &j)
 
 inline Spin<3> bending_torque(const Bond<3> &bond, const particles::Particles<3> &p)
 {
-  const Turn<3> turn_i = Turn<3>::of(p, bond.i);
-  const Turn<3> rel = relative_turn(turn_i, Turn<3>::of(p, bond.j));
+  const Turn<3> turn_i = Turn<3>::of(p, bond.i),
+                rel = relative_turn(turn_i, Turn<3>::of(p, bond.j));
   const Vector<3> kv =
       bond.bending * rel.v + (bond.twist - bond.bending) * bond.normal.dot(rel.v) * bond.normal;
   const Vector<3> body = 2 * (rel.w * kv + rel.v.cross(kv));

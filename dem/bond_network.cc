@@ -2,6 +2,29 @@
 
 namespace ligament::dem
 {
+namespace
+{
+/// The lattice direction of a face, or -1. Faces of clipped cells count as well when they
+/// themselves are whole: volumes are kept per particle anyway.
+template <int dim>
+int lattice_direction(const particles::Face<dim> &face, const particles::Packing<dim> &packing)
+{
+  if (face.direction >= 0)
+    return face.direction;
+  constexpr double round_off = 1e-12;
+  for (std::size_t k = 0; k < packing.directions.size(); ++k) {
+    const auto &d = packing.directions[k];
+    const double half = d.distance / 2, tolerance = round_off * half;
+    const Vector<dim> n = (face.normal.dot(d.normal) > 0 ? 1 : -1) * d.normal;
+    if ((face.lever_i - half * n).norm() < tolerance &&
+        (face.lever_j + half * n).norm() < tolerance && std::abs(face.q_i - half) < tolerance &&
+        std::abs(face.q_j - half) < tolerance && std::abs(face.area - d.area) < round_off * d.area)
+      return int(k);
+  }
+  return -1;
+}
+} // namespace
+
 template <int dim>
 Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const DemMaterial &material,
                                       double thickness)
@@ -36,7 +59,7 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemM
     if (face.cracked)
       continue;
     ++n_bonds_;
-    const int k = face.direction;
+    const int k = lattice_direction(face, packing);
     if (k < 0) {
       irregular_.push_back(make_bond(face, material, packing.thickness));
       continue;

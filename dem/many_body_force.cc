@@ -94,6 +94,14 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
 }
 
 template <int dim>
+double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
+                                   const std::vector<double> &pressure) const
+{
+  const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
+  return bond_force(b, motion(b, p), pressure).dot(normal) / b.area;
+}
+
+template <int dim>
 void ManyBodyForce<dim>::dilatation(const Particles &p, const SurfaceLoads<dim> &surface,
                                     Workspace &work) const
 {
@@ -134,8 +142,8 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
   kernel_.forces(a, bonds_.segments(), strength, work.exceeded_rows);
   const std::vector<double> &pressure = work.pressure;
   bonds_.for_each_irregular([&](BondId id, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
-                            get(p.displacement, b.j));
+    const Turn<dim> turn_i = turn(p, work, b.i), turn_j = turn(p, work, b.j);
+    const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
     const double s_r = b.area / b.distance;
     const Vector<dim> f = bond_force(b, m, pressure);
     const Spin<dim> bend = bending_torque(b, p);
@@ -143,7 +151,7 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     add(p.force, b.j, Vector<dim>(-f));
     add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure[b.i] * m.du) + bend));
     add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure[b.j] * m.du) - bend));
-    if (strength > 0 && f.dot(m.normal_sum.normalized()) >= strength * b.area)
+    if (strength > 0 && f.dot(present_normal(b, turn_i, turn_j)) >= strength * b.area)
       work.exceeded.push_back(id);
   });
   surface.add_forces(p, pressure);

@@ -104,6 +104,10 @@ private:
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
 
+  /// Traction along the present normal of the face, in Pa.
+  double tension(const Bond<dim> &bond, const Particles &particles,
+                 const std::vector<double> &pressure) const;
+
   /// Overwrites pressure and, in 2D, the cosines and sines.
   void dilatation(const Particles &particles, const SurfaceLoads<dim> &surface,
                   Workspace &work) const;

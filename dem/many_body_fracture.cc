@@ -25,11 +25,7 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   for (const RowRange &range : work_.exceeded_rows)
     for (int i = range.begin; i < range.end; ++i)
       bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-        if (id.direction < 0 || b.i != i)
-          return;
-        const auto m = motion(b, p);
-        const Vector<dim> f = bond_force(b, m, work_.pressure);
-        if (f.dot(m.normal_sum.normalized()) >= strength() * b.area)
+        if (id.direction >= 0 && b.i == i && tension(b, p, work_.pressure) >= strength())
           found.push_back(id);
       });
   const auto ids = [&](const BondId &id) {

@@ -166,9 +166,7 @@ double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::ve
   double largest = 0;
   for (const int i : of)
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-      const auto m = motion(b, particles);
-      largest = std::max(largest,
-                         bond_force(b, m, work.pressure).dot(m.normal_sum.normalized()) / b.area);
+      largest = std::max(largest, tension(b, particles, work.pressure));
     });
   return largest;
 }
