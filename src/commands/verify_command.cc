@@ -1,11 +1,66 @@
 #include "src/commands/commands.h"
+#include "src/verification/cases.h"
 
-#include "core/check.h"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <limits>
 
 namespace ligament::program
 {
-int verify_command(const CommandLine &)
+namespace
 {
-  throw core::InputError("no case");
+/// A case that can't be computed fails with one figure that is not a number.
+std::vector<Result> run_case(const Case &c)
+{
+  try {
+    return c.run();
+  } catch (const std::exception &error) {
+    fmt::print("  {}: {}\n", c.name, error.what());
+    return {{c.name, std::numeric_limits<double>::quiet_NaN(), 0, {}}};
+  }
+}
+
+void print(const Result &result)
+{
+  const char *sign = result.bound == Result::Bound::at_most ? "<=" : ">=";
+  fmt::print("  {:<44} {:>12.4g} {} {:<9.4g} {:<9} {}\n", result.name, result.value, sign,
+             result.must, result.aim ? fmt::format("{:.4g}", *result.aim) : "-",
+             result.passed() ? "passed" : "FAILED");
+}
+} // namespace
+
+int verify_command(const CommandLine &line)
+{
+  const auto cases = select_cases(line.verify_case, line.full);
+  nlohmann::ordered_json json = {{"cases", nlohmann::json::array()}};
+  int n = 0, n_failed = 0;
+  fmt::print("  {:<44} {:>12}    {:<9} {:<9}\n", "figure", "value", "must", "aim");
+  for (const auto &c : cases) {
+    fmt::print("{}: {}\n", c.name, c.text);
+    const auto start = std::chrono::steady_clock::now();
+    for (const auto &result : run_case(c)) {
+      print(result);
+      ++n;
+      n_failed += !result.passed();
+      json["cases"].push_back({{"name", result.name},
+                               {"value", result.value},
+                               {"must", result.must},
+                               {"aim", nullptr},
+                               {"passed", result.passed()}});
+      if (result.aim)
+        json["cases"].back()["aim"] = *result.aim;
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    fmt::print("  {:.1f} s\n", seconds.count());
+    std::fflush(stdout);
+  }
+  const std::string verdict = n_failed == 0 ? fmt::format("all {} figures hold", n)
+                                            : fmt::format("{} of {} figures fail", n_failed, n);
+  fmt::print("{}\n", verdict);
+  if (line.json)
+    fmt::print("{}\n", json.dump());
+  return n_failed == 0 ? 0 : 3;
 }
 } // namespace ligament::program

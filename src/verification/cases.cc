@@ -1,0 +1,39 @@
+#include "src/verification/cases.h"
+
+#include "core/check.h"
+
+namespace ligament::program
+{
+std::vector<Case> all_cases()
+{
+  std::vector<Case> cases;
+  const auto add = [&](std::vector<Case> more) {
+    cases.insert(cases.end(), more.begin(), more.end());
+  };
+  add(static_cases());
+  add(dynamic_cases());
+  return cases;
+}
+
+std::vector<Case> select_cases(const std::string &name, bool full)
+{
+  std::vector<Case> selected;
+  std::string names;
+  bool is_only_slow = false;
+  for (const auto &c : all_cases()) {
+    names += (names.empty() ? "" : ", ") + c.name;
+    if (c.name == name)
+      return {c};
+    if (c.name.compare(0, name.size(), name) != 0)
+      continue;
+    if (full || !c.slow)
+      selected.push_back(c);
+    else
+      is_only_slow = true;
+  }
+  core::require(!selected.empty() || !is_only_slow,
+                "the cases beginning with \"" + name + "\" are slow; add --full");
+  core::require(!selected.empty(), "no case \"" + name + "\"; there are " + names);
+  return selected;
+}
+} // namespace ligament::program

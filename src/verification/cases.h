@@ -1,0 +1,50 @@
+// The built-in verification cases: what they are called, what they measure, what must hold.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ligament::program
+{
+/// One measured figure beside its bound. How each is defined and computed: docs/verification.md.
+struct Result
+{
+  enum class Bound
+  {
+    at_most,
+    at_least
+  };
+
+  std::string name; // "<case>/<what>"
+  double value;
+  double must;
+  std::optional<double> aim;
+  Bound bound = Bound::at_most;
+
+  /// "must" holds; a value that is not a number fails.
+  bool passed() const { return bound == Bound::at_most ? value <= must : value >= must; }
+};
+
+struct Case
+{
+  std::string name; // also the first part of the names of its figures
+  std::string text; // one line
+  bool slow;        // runs with --full, or when it is asked for by its whole name
+  std::function<std::vector<Result>()> run;
+};
+
+/// Moduli, patch test, rotation.
+std::vector<Case> static_cases();
+/// Drift of noise, decay with dampers, critical step.
+std::vector<Case> dynamic_cases();
+
+/// All cases in the order in which they are printed.
+std::vector<Case> all_cases();
+
+/// The cases that `name` asks for: all when it is empty, else the case of that name, else those
+/// whose names begin with it; slow ones when `full`, or when the whole name is given. Throws
+/// core::InputError with the list of cases when there is none.
+std::vector<Case> select_cases(const std::string &name, bool full);
+} // namespace ligament::program
