@@ -158,7 +158,7 @@ void check_rigid_motion()
 template <int dim>
 void check_against_naive_sum()
 {
-  for (const auto &p : graded_meshes<dim>()) {
+  for (const auto &p : {band<dim>(), incommensurate(ring<dim>())}) {
     auto solver = unloaded(p);
     set_random(solver);
     solver.compute_forces(0);

@@ -160,6 +160,7 @@ TEST(Mesh, knows_all_hanging_nodes)
 {
   check_hanging_nodes_are_complete(ring<2>());
   auto p = ring<3>();
+  p.cell_size = 0.2;
   p.levels = 1;
   p.fine_cells = 0;
   check_hanging_nodes_are_complete(p);
