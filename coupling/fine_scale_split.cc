@@ -1,10 +1,9 @@
 #include "coupling/fine_scale_split.h"
 
 #include "core/check.h"
+#include "coupling/gap_filter.h"
 
 #include <fmt/format.h>
-
-#include "coupling/gap_filter.h"
 
 #include <cmath>
 
@@ -16,10 +15,12 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                                     core::Timers &timers)
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
-      projector_(overlap_, bodies.zone->state, parameters.solver),
+      transfer_(overlap_, bodies.zone->state),
+      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver),
       mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
+  const int n = overlap_.n_nodes();
   const auto operators =
       make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body());
   stiffness_ = operators.stiffness;
@@ -36,14 +37,14 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                               "keep the overlap away from corners, holes and loads",
                               fit.residual));
   }
+  stiffness_blocks_ = std::make_unique<BlockMatrix<dim>>(stiffness_);
 
   std::vector<int> released;
   for (const auto &cell : overlap_.cells)
     released.push_back(cell.cell);
   far.release_cells(released);
-  mass_ = operators.mass;
   std::vector<Eigen::Triplet<double>> far_mass;
-  for (int i = 0; i < overlap_.n_nodes(); ++i)
+  for (int i = 0; i < n; ++i)
   {
     far_mass.emplace_back(i, i, far.lumped_mass()[overlap_.near_nodes[i]]);
     for (int c = 0; c < dim; ++c)
@@ -51,30 +52,30 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                     "the overlap or its transition reaches a held side of the specimen; keep the "
                     "zone away from it or lower /coupling/transition_cells");
   }
-  Eigen::SparseMatrix<double> far_part(overlap_.n_nodes(), overlap_.n_nodes());
-  far_part.setFromTriplets(far_mass.begin(), far_mass.end());
-  mass_ += far_part;
-  mass_solver_->factorise(mass_);
+  Eigen::SparseMatrix<double> mass(n, n);
+  mass.setFromTriplets(far_mass.begin(), far_mass.end());
+  mass += operators.mass;
+  mass_solver_->factorise(mass);
+  mass_ = mass;
 
   const auto constants = bodies.zone->force->elastic_constants();
   if (parameters.gap_filter > 0)
     filter_ = make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p, dt,
                               operators.mass_bound);
-  for (const int i : projector_.free_members())
+  for (int k = 0; k < transfer_.size(); ++k)
   {
-    const double s = overlap_.members[i].position;
+    const double s = transfer_.position(k);
     const double rate =
         parameters.fine_damper * constants.wave_speed_p / overlap_.cell_size * (1 - s) * (1 - s);
     damping_.push_back(1 - std::exp(-rate * dt));
+    report_.pad_particles += transfer_.inverse_mass(k) == 0;
   }
-  displacement_ = Eigen::MatrixXd::Zero(overlap_.n_nodes(), dim);
-  velocity_ = displacement_;
+  displacement_ = velocity_ = force_ = change_ = Nodal<dim>::Zero(n, dim);
   for (auto &w : fluctuation_)
-    w.assign(projector_.free_members().size(), 0.);
-
-  report_.overlap_particles = int(overlap_.members.size());
-  report_.pad_particles = report_.overlap_particles - int(projector_.free_members().size());
-  report_.near_nodes = overlap_.n_nodes();
+    w.assign(transfer_.size(), 0.);
+  previous_ = fluctuation_;
+  report_.overlap_particles = transfer_.size();
+  report_.near_nodes = n;
   take_velocities(bodies);
 }
 
@@ -89,32 +90,19 @@ void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
-  const auto &free = projector_.free_members();
-  for (std::size_t k = 0; k < free.size(); ++k)
-  {
-    const auto &m = overlap_.members[free[k]];
-    set(fluctuation_, int(k), Vector<dim>(get(zone.velocity, m.particle) -
-                                          overlap_.interpolate(m, velocity_)));
-  }
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < transfer_.size(); ++k)
+      fluctuation_[c][k] =
+          transfer_.inverse_mass(k) > 0 ? zone.velocity[c][transfer_.particle(k)] : 0;
+  transfer_.subtract(velocity_, fluctuation_);
   projector_.project(fluctuation_);
   write_velocities(bodies);
 }
 
-// v = Phi V + w in the overlap; pads move and turn with the mesh.
 template <int dim>
 void FineScaleSplit<dim>::write_velocities(Bodies<dim> &bodies)
 {
-  auto &zone = bodies.zone->state;
-  for (const auto &m : overlap_.members)
-  {
-    set(zone.velocity, m.particle, overlap_.interpolate(m, velocity_));
-    if (m.pad)
-      set(zone.spin, m.particle, overlap_.interpolate_spin(m, velocity_));
-  }
-  const auto &free = projector_.free_members();
-  for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
-      zone.velocity[c][overlap_.members[free[k]].particle] += fluctuation_[c][k];
+  transfer_.write_velocities(velocity_, fluctuation_, bodies.zone->state);
   auto &far = *bodies.far;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
@@ -157,43 +145,23 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
 }
 
 template <int dim>
-Eigen::MatrixXd FineScaleSplit<dim>::near_force(const Bodies<dim> &bodies) const
+void FineScaleSplit<dim>::compute_near_force(const Bodies<dim> &bodies, const StepTime &step,
+                                             Nodal<dim> &force) const
 {
-  const int n = overlap_.n_nodes();
-  Eigen::MatrixXd force(n, dim);
-  Eigen::Map<Eigen::VectorXd>(force.data(), dim * n) =
-      -(stiffness_ * Eigen::Map<const Eigen::VectorXd>(displacement_.data(), dim * n));
-  const auto &zone = bodies.zone->state;
-  for (const auto &m : overlap_.members)
-  {
-    const Vector<dim> f = get(zone.force, m.particle);
-    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-      for (int c = 0; c < dim; ++c)
-        force(m.nodes[a], c) += m.value[a] * f[c];
-    if (m.pad)
-    {
-      const Spin<dim> torque = get(zone.torque, m.particle);
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-        force.row(m.nodes[a]) += torque.transpose() * Overlap<dim>::spin_block(m, a);
-    }
-  }
-  return force;
+  force.setZero(overlap_.n_nodes(), dim);
+  if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < overlap_.n_nodes(); ++i)
+        force(i, c) = parameters_.step_ratio * bodies.far->force[c][overlap_.near_nodes[i]];
+  stiffness_blocks_->subtract_product(displacement_, force);
+  transfer_.add_forces(bodies.zone->state, force);
 }
 
 template <int dim>
-Eigen::MatrixXd FineScaleSplit<dim>::far_force(const Bodies<dim> &bodies) const
+double FineScaleSplit<dim>::coarse_kinetic(const Nodal<dim> &force, double dt) const
 {
-  Eigen::MatrixXd force(overlap_.n_nodes(), dim);
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      force(i, c) = bodies.far->force[c][overlap_.near_nodes[i]];
-  return force;
-}
-
-template <int dim>
-double FineScaleSplit<dim>::coarse_kinetic(const Eigen::MatrixXd &force, double dt) const
-{
-  return 0.5 * velocity_.cwiseProduct(mass_ * velocity_ + dt * force).sum();
+  const Nodal<dim> momentum = mass_ * velocity_;
+  return 0.5 * velocity_.cwiseProduct(momentum + dt * force).sum();
 }
 
 template <int dim>
@@ -201,12 +169,11 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 {
   const auto &zone = bodies.zone->state;
   double sum = 0;
-  const auto &free = projector_.free_members();
   for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
+    for (int k = 0; k < transfer_.size(); ++k)
     {
-      const int i = overlap_.members[free[k]].particle;
-      sum += fluctuation_[c][k] * (zone.mass[i] * fluctuation_[c][k] + dt * zone.force[c][i]);
+      const double w = fluctuation_[c][k];
+      sum += w * (transfer_.mass(k) * w + dt * zone.force[c][transfer_.particle(k)]);
     }
   for (int i = 0; i < zone.n_owned; ++i)
   {
@@ -239,57 +206,51 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
   write_velocities(bodies);
 }
 
-// V += dt M_c^-1 F, then the gap-band filter.
+// V += M_c^-1 (dt F - D V): gap-band filter and force in one solve.
 template <int dim>
 void FineScaleSplit<dim>::kick_coarse(const Bodies<dim> &bodies, const StepTime &step)
 {
-  force_ = near_force(bodies);
-  if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
-    force_ += parameters_.step_ratio * far_force(bodies);
-  Eigen::MatrixXd change = step.dt * force_;
-  mass_solver_->solve(change);
-  velocity_ += change;
+  compute_near_force(bodies, step, force_);
+  change_ = step.dt * force_;
   if (filter_.rows() == 0)
+  {
+    mass_solver_->solve(change_.data(), dim);
+    velocity_ += change_;
     return;
-  const Eigen::MatrixXd momentum = filter_ * velocity_;
-  change = momentum;
-  mass_solver_->solve(change);
-  // Kinetic energy before and after, and the work that the force no longer does on the way to the
-  // next position (theory.md eq. (E3)).
-  gap_filter_energy_ += momentum.cwiseProduct(velocity_).sum() -
-                        0.5 * momentum.cwiseProduct(change).sum() -
-                        0.5 * step.dt * force_.cwiseProduct(change).sum();
-  velocity_ -= change;
+  }
+  const Nodal<dim> lost = filter_ * velocity_; // momentum
+  change_ -= lost;
+  mass_solver_->solve(change_.data(), dim);
+  // 1/2 (V - S V) M (V + V'), theory.md eq. (E3): V before, S V after the filter, V' after the kick.
+  gap_filter_energy_ += 0.5 * lost.cwiseProduct(2 * velocity_ + change_).sum();
+  velocity_ += change_;
 }
 
-// w += dt Q f/m, then the fluctuation damper between two projections.
+// w <- Q (exp(-c_f dt) w + dt f/m): fluctuation damper and force in one projection.
 template <int dim>
 void FineScaleSplit<dim>::kick_fine(const Bodies<dim> &bodies, const StepTime &step)
 {
   const auto &zone = bodies.zone->state;
-  const auto &free = projector_.free_members();
+  const bool damps = parameters_.fine_damper > 0;
+  if (damps)
+    previous_ = fluctuation_;
   for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
-    {
-      const int i = overlap_.members[free[k]].particle;
-      fluctuation_[c][k] += step.dt * zone.force[c][i] * zone.inverse_mass[i];
-    }
+  {
+    const double *f = zone.force[c].data();
+    for (int k = 0; k < transfer_.size(); ++k)
+      fluctuation_[c][k] += step.dt * f[transfer_.particle(k)] * transfer_.inverse_mass(k) -
+                            damping_[k] * fluctuation_[c][k];
+  }
   projector_.project(fluctuation_);
-  if (parameters_.fine_damper == 0)
+  if (!damps)
     return;
-  undamped_ = fluctuation_;
+  // (E3) again; Q is orthogonal in M, so the loss is a sum over members.
+  double sum = 0;
   for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
-      fluctuation_[c][k] -= damping_[k] * fluctuation_[c][k];
-  projector_.project(fluctuation_);
-  for (int c = 0; c < dim; ++c)
-    for (std::size_t k = 0; k < free.size(); ++k)
-    {
-      const int i = overlap_.members[free[k]].particle;
-      const double v0 = undamped_[c][k], v1 = fluctuation_[c][k];
-      fine_damper_energy_ +=
-          0.5 * (v0 - v1) * (zone.mass[i] * (v0 + v1) - step.dt * zone.force[c][i]);
-    }
+    for (int k = 0; k < transfer_.size(); ++k)
+      sum += damping_[k] * transfer_.mass(k) * previous_[c][k] *
+             (previous_[c][k] + fluctuation_[c][k]);
+  fine_damper_energy_ += sum / 2;
 }
 
 template <int dim>
@@ -325,11 +286,10 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   e.gap_filter = gap_filter_energy_;
   e.potential_discrete = bodies.zone->potential_energy();
   e.potential_far = bodies.far->potential_energy();
-  const Eigen::Map<const Eigen::VectorXd> u(displacement_.data(), displacement_.size());
-  e.blended = 0.5 * u.dot(stiffness_ * u);
-  Eigen::MatrixXd force = near_force(bodies);
-  if (is_far_step(step))
-    force += parameters_.step_ratio * far_force(bodies);
+  Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  stiffness_blocks_->subtract_product(displacement_, force);
+  e.blended = -0.5 * displacement_.cwiseProduct(force).sum();
+  compute_near_force(bodies, step, force);
   e.kinetic_far = bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) +
                   coarse_kinetic(force, step.dt);
   e.kinetic_discrete = fine_kinetic(bodies, step.dt);

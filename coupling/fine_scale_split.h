@@ -2,6 +2,7 @@
 // part of its motion, and only the coarse energy and mass are blended.
 #pragma once
 
+#include "coupling/block_matrix.h"
 #include "coupling/coupler.h"
 #include "coupling/fluctuation_projector.h"
 #include "coupling/patch_fit.h"
@@ -29,6 +30,8 @@ struct SplitReport
 };
 
 /// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
+///
+/// Both dampers act on the velocities before the kick, so that one solve serves damper and force.
 template <int dim>
 class FineScaleSplit : public Coupler<dim>
 {
@@ -53,35 +56,39 @@ public:
   /// Coarse stiffness K_near including the patch fit, N/m.
   const Eigen::SparseMatrix<double> &near_stiffness() const { return stiffness_; }
   /// Coarse mass M_c including the far field's share, kg.
-  const Eigen::SparseMatrix<double> &near_mass() const { return mass_; }
+  Eigen::SparseMatrix<double> near_mass() const { return mass_; }
 
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
   void kick_coarse(const Bodies<dim> &bodies, const StepTime &step);
   void kick_fine(const Bodies<dim> &bodies, const StepTime &step);
   void write_velocities(Bodies<dim> &bodies);
-  /// Force on the near nodes from the near cells and the particles, without the far field's.
-  Eigen::MatrixXd near_force(const Bodies<dim> &bodies) const;
-  Eigen::MatrixXd far_force(const Bodies<dim> &bodies) const;
+  /// Force on the near nodes at this step: near cells, particles, and in the steps in which it acts
+  /// the far field's impulse.
+  void compute_near_force(const Bodies<dim> &bodies, const StepTime &step,
+                          Nodal<dim> &force) const;
   /// 1/2 v M v + 1/2 dt v f of what the coupler moves and of the rest of the zone: of V, and of w
   /// with all spins and velocities outside. `force` acts on the near nodes.
-  double coarse_kinetic(const Eigen::MatrixXd &force, double dt) const;
+  double coarse_kinetic(const Nodal<dim> &force, double dt) const;
   double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
 
   FineScaleSplitParameters parameters_;
   Overlap<dim> overlap_;
+  Transfer<dim> transfer_;
   FluctuationProjector<dim> projector_;
   SplitReport report_;
 
-  Eigen::SparseMatrix<double> stiffness_; // rows are columns: symmetric
-  Eigen::SparseMatrix<double> mass_;
-  Eigen::SparseMatrix<double> filter_; // D
+  Eigen::SparseMatrix<double> stiffness_; // K_near
+  std::unique_ptr<BlockMatrix<dim>> stiffness_blocks_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_, filter_; // M_c, D
   std::unique_ptr<LinearSolver> mass_solver_;
-  std::vector<double> damping_; // 1 - exp(-c_f dt) of the free members
+  std::vector<double> damping_; // 1 - exp(-c_f dt) of the members
 
-  Eigen::MatrixXd displacement_, velocity_; // U, V of the near nodes: n_nodes x dim
-  Components<dim> fluctuation_, undamped_;  // w of the free members, m/s
-  Eigen::MatrixXd force_;                   // on the near nodes at the last kick, N
+  Nodal<dim> displacement_, velocity_; // U, V of the near nodes
+  Components<dim> fluctuation_;        // w of the members, m/s; zero for pads
+  Components<dim> previous_;           // w before the kick
+  Nodal<dim> force_;                   // on the near nodes at the last kick, N
+  Nodal<dim> change_;                  // of V
   double fine_damper_energy_ = 0, gap_filter_energy_ = 0;
 };
 } // namespace ligament::coupling

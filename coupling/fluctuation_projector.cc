@@ -57,9 +57,10 @@ std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
 
 template <int dim>
 FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
+                                                const Transfer<dim> &transfer,
                                                 const particles::Particles<dim> &particles,
                                                 const std::string &solver)
-    : solver_(make_linear_solver(solver))
+    : transfer_(transfer), solver_(make_linear_solver(solver))
 {
   const int n = overlap.n_nodes();
   // Nodes along the overlap's longest direction first: a narrow band.
@@ -81,18 +82,12 @@ FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
     rank[order[i]] = i;
 
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < overlap.members.size(); ++i)
-  {
-    const auto &m = overlap.members[i];
-    if (m.pad)
-      continue;
-    free_.push_back(int(i));
-    mass_.push_back(particles.mass[m.particle]);
-    for (int a = 0; a < n_cell_nodes; ++a)
-      for (int b = 0; b < n_cell_nodes; ++b)
-        entries.emplace_back(rank[m.nodes[a]], rank[m.nodes[b]],
-                             mass_.back() * m.value[a] * m.value[b]);
-  }
+  for (const auto &m : overlap.members)
+    if (!m.pad)
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
+          entries.emplace_back(rank[m.nodes[a]], rank[m.nodes[b]],
+                               particles.mass[m.particle] * m.value[a] * m.value[b]);
   Eigen::SparseMatrix<double> gram(n, n);
   gram.setFromTriplets(entries.begin(), entries.end());
   const std::vector<char> keep = independent_columns(gram);
@@ -100,58 +95,35 @@ FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
   std::vector<int> unknown(n, -1);
   for (int i = 0; i < n; ++i)
     if (keep[i])
-      unknown[i] = n_unknowns_++;
+    {
+      unknown[i] = int(nodes_.size());
+      nodes_.push_back(order[i]);
+    }
   std::vector<Eigen::Triplet<double>> kept;
   for (const auto &e : entries)
     if (keep[e.row()] && keep[e.col()])
       kept.emplace_back(unknown[e.row()], unknown[e.col()], e.value());
-  Eigen::SparseMatrix<double> system(n_unknowns_, n_unknowns_);
+  Eigen::SparseMatrix<double> system(nodes_.size(), nodes_.size());
   system.setFromTriplets(kept.begin(), kept.end());
   solver_->factorise(system);
-
-  for (const int i : free_)
-  {
-    const auto &m = overlap.members[i];
-    auto &nodes = nodes_.emplace_back();
-    auto &value = value_.emplace_back();
-    for (int a = 0; a < n_cell_nodes; ++a)
-    {
-      const int u = unknown[rank[m.nodes[a]]];
-      nodes[a] = u < 0 ? n_unknowns_ : u; // left-out ones share a row that is always zero
-      value[a] = m.value[a];
-    }
-  }
+  unknowns_.resize(dim * nodes_.size());
+  nodal_.resize(n, dim);
 }
 
 template <int dim>
 void FluctuationProjector<dim>::project(Components<dim> &w) const
 {
-  padded_.setZero(n_unknowns_ + 1, dim);
-  for (int c = 0; c < dim; ++c)
-  {
-    double *sum = padded_.col(c).data();
-    for (std::size_t i = 0; i < free_.size(); ++i)
-    {
-      const double momentum = mass_[i] * w[c][i];
-      for (int a = 0; a < n_cell_nodes; ++a)
-        sum[nodes_[i][a]] += value_[i][a] * momentum;
-    }
-  }
-  right_ = padded_.topRows(n_unknowns_);
-  solver_->solve(right_);
-  padded_.topRows(n_unknowns_) = right_;
-  padded_.row(n_unknowns_).setZero();
-  for (int c = 0; c < dim; ++c)
-  {
-    const double *field = padded_.col(c).data();
-    for (std::size_t i = 0; i < free_.size(); ++i)
-    {
-      double v = 0;
-      for (int a = 0; a < n_cell_nodes; ++a)
-        v += value_[i][a] * field[nodes_[i][a]];
-      w[c][i] -= v;
-    }
-  }
+  nodal_.setZero();
+  transfer_.add_momentum(w, nodal_);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (int c = 0; c < dim; ++c)
+      unknowns_[i * dim + c] = nodal_(nodes_[i], c);
+  solver_->solve(unknowns_.data(), dim);
+  nodal_.setZero();
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (int c = 0; c < dim; ++c)
+      nodal_(nodes_[i], c) = unknowns_[i * dim + c];
+  transfer_.subtract(nodal_, w);
 }
 
 template class FluctuationProjector<2>;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "coupling/linear_solver.h"
-#include "coupling/overlap.h"
+#include "coupling/transfer.h"
 
 namespace ligament::coupling
 {
@@ -13,23 +13,17 @@ template <int dim>
 class FluctuationProjector
 {
 public:
-  FluctuationProjector(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                       const std::string &solver);
+  FluctuationProjector(const Overlap<dim> &overlap, const Transfer<dim> &transfer,
+                       const particles::Particles<dim> &particles, const std::string &solver);
 
-  /// w <- Q w, in place; one array per component, over `free_members()`.
+  /// w <- Q w, in place; one array per component in the order of the transfer's members.
   void project(Components<dim> &w) const;
 
-  /// Indices into Overlap::members of the members that are not pad.
-  const std::vector<int> &free_members() const { return free_; }
-
 private:
-  static constexpr int n_cell_nodes = Overlap<dim>::n_cell_nodes;
-  std::vector<int> free_;
-  std::vector<double> mass_;                             // kg, of the free members
-  std::vector<std::array<int, n_cell_nodes>> nodes_;     // unknowns; left-out ones: n_unknowns_
-  std::vector<std::array<double, n_cell_nodes>> value_;  // shape functions
-  int n_unknowns_ = 0;
+  const Transfer<dim> &transfer_;
+  std::vector<int> nodes_; // near nodes that are unknowns
   std::unique_ptr<LinearSolver> solver_;
-  mutable Eigen::MatrixXd right_, padded_;
+  mutable std::vector<double> unknowns_; // dim per unknown
+  mutable Nodal<dim> nodal_;
 };
 } // namespace ligament::coupling

@@ -11,25 +11,83 @@
 #include <Epetra_MultiVector.h>
 #include <Epetra_SerialComm.h>
 
+#include <vector>
+
 namespace ligament::coupling
 {
 namespace
 {
+// P A P^T = L L^T by Eigen; the sweeps are our own, because Eigen's go through one right-hand side
+// after the other and read L anew for each.
 class EigenCholesky : public LinearSolver
 {
 public:
   void factorise(const Eigen::SparseMatrix<double> &matrix) override
   {
-    cholesky_.compute(matrix);
-    core::require(cholesky_.info() == Eigen::Success,
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(matrix);
+    core::require(cholesky.info() == Eigen::Success,
                   "an overlap system is not positive definite: the overlap holds too few particles "
                   "for its cells; raise /far_field/cell_size or /coupling/overlap_cells");
+    lower_ = cholesky.matrixL().nestedExpression();
+    lower_.makeCompressed();
+    const auto &permutation = cholesky.permutationP().indices();
+    place_.assign(permutation.data(), permutation.data() + permutation.size());
+    inverse_diagonal_.resize(place_.size());
+    for (std::size_t j = 0; j < place_.size(); ++j)
+      inverse_diagonal_[j] = 1 / lower_.valuePtr()[lower_.outerIndexPtr()[j]];
+    work_.resize(3 * place_.size());
   }
 
-  void solve(Eigen::MatrixXd &x) const override { x = cholesky_.solve(x); }
+  void solve(double *x, int n_columns) const override
+  {
+    if (n_columns == 1)
+      sweep<1>(x);
+    else if (n_columns == 2)
+      sweep<2>(x);
+    else
+      sweep<3>(x);
+  }
 
 private:
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
+  template <int columns>
+  void sweep(double *x) const
+  {
+    const int n = int(place_.size());
+    const int *start = lower_.outerIndexPtr(), *row = lower_.innerIndexPtr();
+    const double *value = lower_.valuePtr();
+    double *y = work_.data();
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < columns; ++c)
+        y[place_[i] * columns + c] = x[i * columns + c];
+    for (int j = 0; j < n; ++j)
+    {
+      double solved[columns];
+      for (int c = 0; c < columns; ++c)
+        solved[c] = y[j * columns + c] *= inverse_diagonal_[j];
+      for (int k = start[j] + 1; k < start[j + 1]; ++k)
+        for (int c = 0; c < columns; ++c)
+          y[row[k] * columns + c] -= value[k] * solved[c];
+    }
+    for (int j = n - 1; j >= 0; --j)
+    {
+      double sum[columns];
+      for (int c = 0; c < columns; ++c)
+        sum[c] = y[j * columns + c];
+      for (int k = start[j] + 1; k < start[j + 1]; ++k)
+        for (int c = 0; c < columns; ++c)
+          sum[c] -= value[k] * y[row[k] * columns + c];
+      for (int c = 0; c < columns; ++c)
+        y[j * columns + c] = sum[c] * inverse_diagonal_[j];
+    }
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < columns; ++c)
+        x[i * columns + c] = y[place_[i] * columns + c];
+  }
+
+  Eigen::SparseMatrix<double> lower_; // its first entry in each column is the diagonal
+  std::vector<int> place_;            // of an unknown in the order of elimination
+  std::vector<double> inverse_diagonal_;
+  mutable std::vector<double> work_;
 };
 
 class AmesosDirect : public LinearSolver
@@ -57,14 +115,17 @@ public:
                   "raise /far_field/cell_size or /coupling/overlap_cells");
   }
 
-  void solve(Eigen::MatrixXd &x) const override
+  void solve(double *x, int n_columns) const override
   {
-    const int n = int(x.rows());
-    Epetra_MultiVector right(Copy, *map_, x.data(), n, int(x.cols()));
-    Epetra_MultiVector left(View, *map_, x.data(), n, int(x.cols()));
+    const int n = map_->NumMyElements();
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::MatrixXd columns = Eigen::Map<const Rows>(x, n, n_columns);
+    Epetra_MultiVector right(Copy, *map_, columns.data(), n, n_columns);
+    Epetra_MultiVector left(View, *map_, columns.data(), n, n_columns);
     problem_->SetLHS(&left);
     problem_->SetRHS(&right);
     core::require<core::GuardStop>(solver_->Solve() == 0, "Amesos failed in the overlap");
+    Eigen::Map<Rows>(x, n, n_columns) = columns;
   }
 
 private:

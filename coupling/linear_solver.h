@@ -17,8 +17,8 @@ public:
   /// Takes a symmetric positive definite matrix; throws core::InputError when it is not.
   virtual void factorise(const Eigen::SparseMatrix<double> &matrix) = 0;
 
-  /// x <- A^-1 x, one right-hand side per column.
-  virtual void solve(Eigen::MatrixXd &x) const = 0;
+  /// x <- A^-1 x for n_columns (1 to 3) right-hand sides; x holds n_columns numbers per unknown.
+  virtual void solve(double *x, int n_columns) const = 0;
 };
 
 /// name: "eigen" (sparse Cholesky) or "amesos" (Trilinos, KLU).

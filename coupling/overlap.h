@@ -85,10 +85,6 @@ public:
   /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
 
-  /// Interpolates dim nodal columns to the members' translations.
-  Vector<dim> interpolate(const Member &m, const Eigen::MatrixXd &nodal) const;
-  Spin<dim> interpolate_spin(const Member &m, const Eigen::MatrixXd &nodal) const;
-
 private:
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
@@ -107,22 +103,4 @@ Eigen::Matrix<double, n_spins<dim>, dim> Overlap<dim>::spin_block(const Member &
   return block;
 }
 
-template <int dim>
-Vector<dim> Overlap<dim>::interpolate(const Member &m, const Eigen::MatrixXd &nodal) const
-{
-  Vector<dim> v = Vector<dim>::Zero();
-  for (int a = 0; a < n_cell_nodes; ++a)
-    for (int c = 0; c < dim; ++c)
-      v[c] += m.value[a] * nodal(m.nodes[a], c);
-  return v;
-}
-
-template <int dim>
-Spin<dim> Overlap<dim>::interpolate_spin(const Member &m, const Eigen::MatrixXd &nodal) const
-{
-  Spin<dim> w = Spin<dim>::Zero();
-  for (int a = 0; a < n_cell_nodes; ++a)
-    w += spin_block(m, a) * nodal.row(m.nodes[a]).transpose();
-  return w;
-}
 } // namespace ligament::coupling

@@ -180,13 +180,15 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
 template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
+  Workspace work; // with the sines of all rotations, which the bonds read, too
+  dilatation(p, surface_, work);
   double sum = surface_.energy(p) + contacts_.energy(p);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    sum += material_.shear_modulus() * b.area / b.distance * motion(b, p).du.squaredNorm() +
+    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
+                            get(p.displacement, b.j));
+    sum += material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
            bending_energy(b, p);
   });
-  Workspace work;
-  dilatation(p, surface_, work);
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)
       sum += 0.5 * work.pressure[i] * work.pressure[i] / lambda_per_volume_[i];

@@ -146,7 +146,8 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
   for (auto &a : stress)
     a.assign(packing_.size(), 0.);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const auto m = motion(b, particles);
+    const BondMotion<dim> m(b, turn(particles, work, b.i), turn(particles, work, b.j),
+                            get(particles.displacement, b.i), get(particles.displacement, b.j));
     const Vector<dim> f = bond_force(b, m, work.pressure);
     add(stress, b.i, symmetric_product<dim>(m.a_i, f));
     add(stress, b.j, symmetric_product<dim>(m.a_j, -f));

@@ -90,11 +90,16 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   strain_.push_back(r.strain);
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
-  // The state at the peak is known to be that only later: keep copies on the way up.
-  if (std::abs(r.load) > 1.001 * std::abs(peak_copied_))
+  // Which state is the peak is known only later: keep copies on the way up, of the motion closely,
+  // of the fields, which take longer, more rarely.
+  if (std::abs(r.load) > 1.002 * std::abs(motion_copied_at_))
   {
-    peak_copied_ = r.load;
+    motion_copied_at_ = r.load;
     peak_snapshot_ = snapshot(body, step.time);
+  }
+  if (std::abs(r.load) > 1.02 * std::abs(fields_copied_at_))
+  {
+    fields_copied_at_ = r.load;
     peak_particles_ = particle_fields(body);
     peak_cells_ = cell_fields(body);
     peak_broken_ = body.force ? body.force->broken_bonds().size() : 0;

@@ -62,7 +62,7 @@ private:
 
   // What the record needs from the history.
   std::vector<double> load_, stress_, strain_, time_, residual_, work_;
-  double peak_copied_ = 0; // N, load of the copies below
+  double motion_copied_at_ = 0, fields_copied_at_ = 0; // N, loads of the copies below
   std::optional<Snapshot> peak_snapshot_;
   ParticleFields peak_particles_;
   CellFields peak_cells_;
