@@ -151,7 +151,9 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     add(p.force, b.j, Vector<dim>(-f));
     add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure[b.i] * m.du) + bend));
     add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure[b.j] * m.du) - bend));
-    if (strength > 0 && f.dot(present_normal(b, turn_i, turn_j)) >= strength * b.area)
+    const double limit = strength * b.area;
+    if (strength > 0 && f.squaredNorm() >= limit * limit &&
+        f.dot(present_normal(b, turn_i, turn_j)) >= limit)
       work.exceeded.push_back(id);
   });
   surface.add_forces(p, pressure);
@@ -186,8 +188,8 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
     const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
                             get(p.displacement, b.j));
-    sum += material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
-           bending_energy(b, p);
+    sum +=
+        material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() + bending_energy(b, p);
   });
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)

@@ -52,15 +52,17 @@ std::pair<double, double> vibrate(int steps, double spacings)
   const auto packing = particles::make_lattice_packing<dim>(box<C>(spacings));
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   Run<dim> run(packing, material, {});
-  run.dt *= 0.5;
-  // A strain of 1e-3: the law is not linear there, and all modes take part.
+  // Not at exactly half the critical step: there six steps are a period of the stiffest mode, and
+  // this resonance of step and mode shows as a trend.
+  run.dt *= 0.45;
+  // A strain of 2e-4: the law is not quite linear there, and all modes take part.
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < run.solver->state.size(); ++i) {
     for (auto &a : run.solver->state.velocity)
-      a[i] = 5 * uniform(random);
+      a[i] = uniform(random);
     for (auto &a : run.solver->state.spin)
-      a[i] = 5 / packing.spacing * uniform(random);
+      a[i] = uniform(random) / packing.spacing;
   }
   const double start = run.mechanical();
   double largest = 0, first = 0, last = 0;
@@ -73,20 +75,21 @@ std::pair<double, double> vibrate(int steps, double spacings)
   return {largest, (last - first) / (steps / 10)};
 }
 
-TYPED_TEST(Energy, FreeVibrationAtHalfTheCriticalStep)
+TYPED_TEST(Energy, FreeVibrationNearHalfTheCriticalStep)
 {
   const auto [largest, drift] =
       vibrate<TypeParam>(TypeParam::dim == 2 ? 10000 : 1000, TypeParam::dim == 2 ? 7 : 3);
-  // Leap-frog: the invariant fluctuates by the square of (omega dt)^2/8 times the nonlinearity.
-  EXPECT_LT(largest, 2e-3);
-  EXPECT_LT(std::abs(drift), 2e-4);
+  // The invariant is exact for a linear law; the cubic part of the energy, of the order of the
+  // strain, makes it fluctuate by (omega dt)^2/12 of that.
+  EXPECT_LT(largest, 5e-4);
+  EXPECT_LT(std::abs(drift), 5e-5);
 }
 
 TYPED_TEST(Energy, SlowFreeVibrationOver1e5Steps)
 {
   const auto [largest, drift] = vibrate<TypeParam>(100000, TypeParam::dim == 2 ? 7 : 3);
-  EXPECT_LT(largest, 2e-3);
-  EXPECT_LT(std::abs(drift), 1e-4);
+  EXPECT_LT(largest, 5e-4);
+  EXPECT_LT(std::abs(drift), 5e-5);
 }
 
 /// A specimen torn apart by its two ends; the balance at the end and the number of broken bonds.
