@@ -109,8 +109,7 @@ void Assembly<dim>::add_cells()
     for (int s = 0; s < n_strains<dim>; ++s)
     {
       for (int a = 0; a < nc; ++a)
-        u.template segment<dim>(a * dim) =
-            strain_[s] * overlap_.mesh.nodes[overlap_.near_nodes[cell.nodes[a]]];
+        u.template segment<dim>(a * dim) = strain_[s] * fem::corner<dim>(size, a);
       const Eigen::Matrix<double, dim * nc, 1> f = k * u;
       for (int a = 0; a < nc; ++a)
         for (int i = 0; i < dim; ++i)
@@ -163,12 +162,15 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
           "the discrete zone away from that side");
 
   // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads.
+  // Translations do nothing: the first member stands still.
   Eigen::MatrixXd gradient(term.rows.rows(), n_strains<dim>); // stiffness * row . q
   for (int s = 0; s < n_strains<dim>; ++s)
   {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(term.rows.cols());
     for (std::size_t i = 0; i < term.members.size(); ++i)
-      q.segment<dim>(i * nd) = strain_[s] * get(particles_.reference, term.members[i]);
+      q.segment<dim>(i * nd) =
+          strain_[s] * overlap_.offset(get(particles_.reference, term.members[0]),
+                                       get(particles_.reference, term.members[i]));
     gradient.col(s) = term.stiffness.cwiseProduct(term.rows * q);
   }
   const double share = subtracted_share(term);

@@ -45,6 +45,16 @@ double Overlap<dim>::weight(const Vector<dim> &x) const
   return s * s * (3 - 2 * s);
 }
 
+template <int dim>
+Vector<dim> Overlap<dim>::offset(const Vector<dim> &from, const Vector<dim> &to) const
+{
+  Vector<dim> x = to - from;
+  for (int c = 0; c < dim; ++c)
+    if (const double period = parameters.period[c]; period > 0)
+      x[c] -= period * std::round(x[c] / period);
+  return x;
+}
+
 // Pad particles: those whose cell the faces do not close (a neighbour is missing at the edge of the
 // packing; faces on the specimen's surface do close), and all their neighbours.
 template <int dim>

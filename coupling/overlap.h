@@ -5,6 +5,7 @@
 #include "fem/mesh.h"
 #include "particles/particle_force.h"
 
+#include <array>
 #include <limits>
 
 namespace ligament::coupling
@@ -24,6 +25,9 @@ struct OverlapParameters
   double length;        // m, L: from the edge of the packing to the inner edge of the mesh
   double spacing;       // m, d
   int transition_cells; // layers of cells over which the mass goes from consistent to lumped
+  /// m; the body repeats itself in the directions where this is not 0: neighbours of the particles
+  /// and nodes of the cells at one side of the period are those at its other side.
+  std::array<double, 3> period = {};
 };
 
 /// The overlap of one discrete zone with the mesh (theory.md, "Overlap and weights").
@@ -81,6 +85,9 @@ public:
   const OverlapParameters parameters;
 
   int n_nodes() const { return int(near_nodes.size()); }
+
+  /// Vector from one particle to another or to the nearest of its periodic images, in m.
+  Vector<dim> offset(const Vector<dim> &from, const Vector<dim> &to) const;
 
   /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);

@@ -15,6 +15,7 @@ namespace
 struct Block
 {
   std::vector<int> nodes;       // near nodes
+  Eigen::MatrixXd place;        // m, one column per node, against the node in the middle
   Eigen::MatrixXd affine;       // P_a, (dim nodes) x n_strains, 1/m
   Eigen::MatrixXd rest;         // P_n, orthonormal
   double volume;                // m^3
@@ -22,18 +23,16 @@ struct Block
 };
 
 template <int dim>
-void make_bases(const Overlap<dim> &overlap, Block &block)
+void make_bases(Block &block)
 {
   constexpr int n_rigid = dim + n_spins<dim>;
   const int n = int(block.nodes.size());
-  Vector<dim> centre = Vector<dim>::Zero();
-  for (const int node : block.nodes)
-    centre += overlap.mesh.nodes[overlap.near_nodes[node]] / n;
+  const Vector<dim> centre = block.place.rowwise().mean();
   Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(dim * n, n_rigid);
   Eigen::MatrixXd affine(dim * n, n_strains<dim>);
   for (int i = 0; i < n; ++i)
   {
-    const Vector<dim> x = overlap.mesh.nodes[overlap.near_nodes[block.nodes[i]]] - centre;
+    const Vector<dim> x = block.place.col(i) - centre;
     for (int c = 0; c < dim; ++c)
       rigid(i * dim + c, c) = 1;
     if constexpr (dim == 2)
@@ -62,19 +61,28 @@ std::vector<Block> make_blocks(const Overlap<dim> &overlap, double thickness)
       for (const int node : overlap.cells[c].nodes)
         cells_of_node[node].push_back(int(c));
   std::vector<Block> blocks;
-  for (const auto &cells : cells_of_node)
-    if (int(cells.size()) == nc)
+  for (int middle = 0; middle < overlap.n_nodes(); ++middle)
+    if (const auto &cells = cells_of_node[middle]; int(cells.size()) == nc)
     {
       Block block;
       block.volume = 0;
+      block.place.resize(dim, nc * nc);
       for (const int c : cells)
       {
-        block.volume += thickness * overlap.mesh.cell_size[overlap.cells[c].cell].prod();
-        for (const int node : overlap.cells[c].nodes)
-          if (std::find(block.nodes.begin(), block.nodes.end(), node) == block.nodes.end())
-            block.nodes.push_back(node);
+        const auto &nodes = overlap.cells[c].nodes;
+        const Vector<dim> &size = overlap.mesh.cell_size[overlap.cells[c].cell];
+        const int corner = int(std::find(nodes.begin(), nodes.end(), middle) - nodes.begin());
+        block.volume += thickness * size.prod();
+        for (int a = 0; a < nc; ++a)
+          if (std::find(block.nodes.begin(), block.nodes.end(), nodes[a]) == block.nodes.end())
+          {
+            block.place.col(block.nodes.size()) =
+                fem::corner<dim>(size, a) - fem::corner<dim>(size, corner);
+            block.nodes.push_back(nodes[a]);
+          }
       }
-      make_bases<dim>(overlap, block);
+      block.place.conservativeResize(dim, block.nodes.size());
+      make_bases<dim>(block);
       blocks.push_back(std::move(block));
     }
   return blocks;

@@ -80,6 +80,16 @@ private:
   std::vector<int> bin_start_, bin_cells_;
 };
 
+/// Corner a (lexicographic order) of a cell of the given size against its lower one, in m.
+template <int dim>
+Vector<dim> corner(const Vector<dim> &size, int a)
+{
+  Vector<dim> x;
+  for (int c = 0; c < dim; ++c)
+    x[c] = (a >> c & 1) * size[c];
+  return x;
+}
+
 /// Q1 shape functions at p in the cell (lower, size): N_a, a in lexicographic order.
 template <int dim>
 Vec<n_cell_nodes<dim>> shape_values(const Vector<dim> &lower, const Vector<dim> &size,
