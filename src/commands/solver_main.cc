@@ -1,6 +1,7 @@
 // The program that computes: started by `ligament` with the same arguments.
 #include "core/check.h"
 #include "src/commands/commands.h"
+#include "src/launcher/solver_start.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@ using namespace ligament::program;
 
 int dispatch(const CommandLine &line)
 {
+  require_one_rank(line.ranks);
   if (line.command == "verify")
     return verify_command(line);
   const ReadResult input = read_scene(line.scene, line.overrides);

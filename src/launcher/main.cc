@@ -39,18 +39,9 @@ nlohmann::ordered_json as_json(const std::vector<core::Diagnostic> &diagnostics)
   return list;
 }
 
-void refuse_ranks(const CommandLine &line)
-{
-  core::require(line.ranks >= 1, fmt::format("-n {}: give at least 1 rank", line.ranks));
-  const int ranks = std::max(line.ranks, launched_ranks());
-  core::require(ranks == 1, fmt::format("{} ranks: several ranks are not supported yet; start one "
-                                        "process, without mpirun, srun or -n",
-                                        ranks));
-}
-
 int compute(const CommandLine &line, int argc, char **argv)
 {
-  refuse_ranks(line);
+  require_one_rank(line.ranks);
   const ReadResult result = read_scene(line.scene, line.overrides);
   for (const core::Diagnostic &d : result.warnings)
     fmt::print(stderr, "{}\n", to_string(d));
@@ -101,7 +92,7 @@ int dispatch(const CommandLine &line, int argc, char **argv)
   if (line.command == "run" || line.command == "check")
     return compute(line, argc, argv);
   if (line.command == "verify") {
-    refuse_ranks(line);
+    require_one_rank(line.ranks);
     start_solver(argc, argv);
   }
   if (line.command == "explain")

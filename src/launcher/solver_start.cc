@@ -40,4 +40,13 @@ int launched_ranks()
       return std::max(1, std::atoi(value));
   return 1;
 }
+
+void require_one_rank(int asked)
+{
+  core::require(asked >= 1, fmt::format("-n {}: give at least 1 rank", asked));
+  const int ranks = std::max(asked, launched_ranks());
+  core::require(ranks == 1, fmt::format("{} ranks: several ranks are not supported yet; start one "
+                                        "process, without mpirun, srun or -n",
+                                        ranks));
+}
 } // namespace ligament::program

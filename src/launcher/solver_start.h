@@ -11,4 +11,7 @@ namespace ligament::program
 
 /// How many processes mpirun or srun has started beside this one; 1 without them.
 int launched_ranks();
+
+/// Throws core::InputError when more than one rank was asked for (-n) or started.
+void require_one_rank(int asked);
 } // namespace ligament::program

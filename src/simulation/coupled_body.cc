@@ -224,7 +224,7 @@ template <int dim>
 void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
                   core::Timers &timers)
 {
-  if (!body.zone || !body.far)
+  if (!body.zone || !body.far || scene.coupling.scheme == "none")
   {
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
     return;
@@ -289,7 +289,8 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.poissons_ratio = scene.material.poissons_ratio;
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
-  body.equivalent_particles = std::llround(material_volume(scene) / lattice_cell_volume(scene));
+  if (scene.zone.spacing > 0)
+    body.equivalent_particles = std::llround(material_volume(scene) / lattice_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
     make_zone(scene, body, log);
   if (scene.zone.extent != DiscreteZone::Extent::all)

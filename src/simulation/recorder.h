@@ -40,6 +40,7 @@ private:
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
             const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
+  std::optional<std::string> overlap_leaves_its_range(const CoupledBody<dim> &body) const;
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;
