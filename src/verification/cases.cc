@@ -10,8 +10,11 @@ std::vector<Case> all_cases()
   const auto add = [&](std::vector<Case> more) {
     cases.insert(cases.end(), more.begin(), more.end());
   };
-  add(static_cases());
-  add(dynamic_cases());
+  add(moduli_cases());
+  add(rotation_cases());
+  add(patch_cases());
+  add(critical_step_cases());
+  add(drift_cases());
   return cases;
 }
 

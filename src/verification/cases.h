@@ -35,10 +35,12 @@ struct Case
   std::function<std::vector<Result>()> run;
 };
 
-/// Moduli, patch test, rotation.
-std::vector<Case> static_cases();
-/// Drift of noise, decay with dampers, critical step.
-std::vector<Case> dynamic_cases();
+// Each list stands in the file of its name.
+std::vector<Case> moduli_cases();
+std::vector<Case> patch_cases();
+std::vector<Case> rotation_cases();
+std::vector<Case> drift_cases();
+std::vector<Case> critical_step_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

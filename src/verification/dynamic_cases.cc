@@ -1,9 +1,0 @@
-#include "src/verification/cases.h"
-
-namespace ligament::program
-{
-std::vector<Case> dynamic_cases()
-{
-  return {};
-}
-} // namespace ligament::program

@@ -1,0 +1,129 @@
+// Uniform strain through the overlap: residual of the set-up, and a static solve of the whole body.
+#include "src/verification/cases.h"
+#include "src/verification/linear_motion.h"
+#include "src/verification/unit_bodies.h"
+
+#include <Eigen/LU>
+
+namespace ligament::program
+{
+namespace
+{
+constexpr double size_of_strain = 1e-14; // its square is below round-off
+
+/// Worst figures over a set of bodies.
+struct Deviation
+{
+  double residual = 0; // over C11 h^(dim-1)
+  double strain = 0;   // over the applied strain
+};
+
+template <int dim>
+Eigen::Matrix<double, dim, dim> tensor(const Strain<dim> &e)
+{
+  Eigen::Matrix<double, dim, dim> m;
+  if constexpr (dim == 2)
+    m << e[0], e[2] / 2, e[2] / 2, e[1];
+  else
+    m << e[0], e[5] / 2, e[4] / 2, e[5] / 2, e[1], e[3] / 2, e[4] / 2, e[3] / 2, e[2];
+  return m;
+}
+
+/// Loads `sides` by the stress (in E, in which strains are near 1) and compares with uniform
+/// strain.
+template <int dim>
+void load(Scene scene, const std::vector<int> &sides, Strain<dim> stress, Deviation &worst)
+{
+  stress *= size_of_strain;
+  add_tractions<dim>(scene, sides, stress);
+  UnitBody<dim> unit(scene);
+  auto &body = unit.body;
+  keep_worst(worst.residual, body.split->report().patch_residual);
+  LinearMotion<dim> motion(body);
+  const Strain<dim> strain = body.far->body().stiffness.inverse() * stress;
+  const auto gradient = tensor<dim>(strain);
+  const Eigen::VectorXd error = motion.solve() - motion.affine(gradient);
+  keep_worst(worst.strain, motion.largest_strain(error) / gradient.norm());
+}
+
+std::vector<Result> report(const std::string &name, const Deviation &worst)
+{
+  return {{name + "/residual", worst.residual, 1e-12, 1e-14},
+          {name + "/strain", worst.strain, 1e-12, 1e-14}};
+}
+
+/// Band across the specimen, overlap ends at free edges; uniaxial stress along it.
+std::vector<Result> band_2d(const std::string &name, double cell_size, double angle)
+{
+  Deviation worst;
+  for (const double nu : {0., 0.22, 0.45})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+      Scene scene = unit_scene(2, {25, 94, 0}, nu);
+      scene.plane = plane;
+      scene.zone.orientation[0] = angle;
+      add_far_field(scene, {0, 34, 0}, cell_size);
+      scene.coupling.transition_cells = 2;
+      load<2>(scene, {2, 3}, {0, 1, 0}, worst);
+    }
+  return report(name, worst);
+}
+
+/// Zone inside the specimen, closed overlap with corners; a stress with all components.
+std::vector<Result> ring_2d(const std::string &name, double cell_size, double angle)
+{
+  Deviation worst;
+  for (const double nu : {0., 0.22, 0.45})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+      Scene scene = unit_scene(2, {79, 81, 0}, nu);
+      scene.plane = plane;
+      scene.zone.orientation[0] = angle;
+      add_far_field(scene, {35, 33, 0}, cell_size);
+      scene.coupling.transition_cells = 2;
+      load<2>(scene, {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
+    }
+  return report(name, worst);
+}
+
+std::vector<Result> band_3d(const std::string &name, double cell_size)
+{
+  Deviation worst;
+  for (const double nu : {0., 0.3}) {
+    Scene scene = unit_scene(3, {9.3, 8.7, 56}, nu);
+    add_far_field(scene, {0, 0, 25}, cell_size);
+    scene.coupling.transition_cells = 2;
+    load<3>(scene, {4, 5}, {0, 0, 1, 0, 0, 0}, worst);
+  }
+  return report(name, worst);
+}
+
+std::vector<Result> ring_3d(const std::string &name, double cell_size)
+{
+  Deviation worst;
+  for (const double nu : {0., 0.3}) {
+    Scene scene = unit_scene(3, {45, 44, 46}, nu);
+    add_far_field(scene, {23, 22, 24}, cell_size);
+    scene.coupling.transition_cells = 1;
+    load<3>(scene, {0, 1, 2, 3, 4, 5}, {0.8, -0.5, 0.6, 0.3, -0.2, 0.4}, worst);
+  }
+  return report(name, worst);
+}
+} // namespace
+
+std::vector<Case> patch_cases()
+{
+  constexpr double turned = 15 * M_PI / 180;
+  const std::string band = "overlap that ends at free edges", ring = "closed overlap with corners";
+  return {{"patch_band_2d", band + ", hexagonal, h/d 4.1", false,
+           [] { return band_2d("patch_band_2d", 4.1, 0); }},
+          {"patch_band_2d_turned", band + ", hexagonal turned by 15 degrees, h/d 3.07", false,
+           [] { return band_2d("patch_band_2d_turned", 3.07, turned); }},
+          {"patch_ring_2d", ring + ", hexagonal, h/d 4.1", false,
+           [] { return ring_2d("patch_ring_2d", 4.1, 0); }},
+          {"patch_ring_2d_turned", ring + ", hexagonal turned by 15 degrees, h/d 3.07", false,
+           [] { return ring_2d("patch_ring_2d_turned", 3.07, turned); }},
+          {"patch_band_3d", band + ", FCC, h/d 3.1", false,
+           [] { return band_3d("patch_band_3d", 3.1); }},
+          {"patch_ring_3d", ring + ", FCC, h/d 3.07", true,
+           [] { return ring_3d("patch_ring_3d", 3.07); }}};
+}
+} // namespace ligament::program
