@@ -31,7 +31,8 @@ struct SplitReport
 
 /// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
 ///
-/// Both dampers act on the velocities before the kick, so that one solve serves damper and force.
+/// The fluctuation damper acts on w before the kick, so that one projection serves both; the gap-band
+/// filter acts in the steps of the far field.
 template <int dim>
 class FineScaleSplit : public Coupler<dim>
 {
@@ -67,9 +68,9 @@ private:
   /// the far field's impulse.
   void compute_near_force(const Bodies<dim> &bodies, const StepTime &step,
                           Nodal<dim> &force) const;
-  /// 1/2 v M v + 1/2 dt v f of what the coupler moves and of the rest of the zone: of V, and of w
-  /// with all spins and velocities outside. `force` acts on the near nodes.
-  double coarse_kinetic(const Nodal<dim> &force, double dt) const;
+  /// Kinetic energy of V at the time of the forces, in a step in which the far field acts.
+  double coarse_kinetic(const Bodies<dim> &bodies, const StepTime &step) const;
+  /// 1/2 v M v + 1/2 dt v f of w with all spins and with the velocities outside the overlap.
   double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
 
   FineScaleSplitParameters parameters_;
