@@ -15,6 +15,9 @@ std::vector<Case> all_cases()
   add(patch_cases());
   add(critical_step_cases());
   add(drift_cases());
+  add(wave_cases());
+  add(kirsch_cases());
+  add(beam_cases());
   return cases;
 }
 

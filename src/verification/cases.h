@@ -41,6 +41,9 @@ std::vector<Case> patch_cases();
 std::vector<Case> rotation_cases();
 std::vector<Case> drift_cases();
 std::vector<Case> critical_step_cases();
+std::vector<Case> wave_cases();
+std::vector<Case> kirsch_cases();
+std::vector<Case> beam_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

@@ -1,0 +1,110 @@
+// A plate with a hole under tension: displacements of the packing against Kirsch's solution.
+#include "core/check.h"
+#include "dem/many_body_force.h"
+#include "particles/lattice_packing.h"
+#include "src/verification/cases.h"
+
+#include <Eigen/SparseCholesky>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+
+namespace ligament::program
+{
+namespace
+{
+/// Endless plate in plane strain, hole of radius R at the origin, stress 1 along x far away
+/// (Kirsch 1898, in Kolosov's form).
+struct KirschField
+{
+  double radius, shear_modulus, poissons_ratio;
+
+  /// Displacement and rotation.
+  Vector<3> operator()(const Vector<2> &x) const
+  {
+    const std::complex<double> z(x[0], x[1]);
+    const double r2 = radius * radius, kappa = 3 - 4 * poissons_ratio;
+    const auto phi = (z + 2 * r2 / z) / 4., slope = (1. - 2 * r2 / (z * z)) / 4.;
+    const auto psi = -(z + r2 / z - r2 * r2 / (z * z * z)) / 2.;
+    const auto u = (kappa * phi - z * std::conj(slope) - std::conj(psi)) / (2 * shear_modulus);
+    return {u.real(), u.imag(), (kappa + 1) / (2 * shear_modulus) * slope.imag()};
+  }
+};
+
+/// Largest error of displacement over the body, over the largest displacement of the hole's rim.
+/// The body is a square of half width 2.5 R; particles within 3 d of its sides follow the solution.
+double displacement_error(double radius)
+{
+  constexpr int dofs = n_particle_dofs<2>;
+  const double half = 2.5 * radius;
+  particles::LatticeParameters<2> lattice;
+  lattice.spacing = 1;
+  lattice.lower.setConstant(-half);
+  lattice.upper.setConstant(half);
+  lattice.holes = {{Vector<2>::Zero(), radius}};
+  const auto packing = particles::make_lattice_packing<2>(lattice);
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.3;
+  const dem::ManyBodyForce<2> force(packing, material, {});
+  const KirschField field{radius, material.shear_modulus(), material.poissons_ratio};
+
+  std::vector<int> unknown(packing.size(), -1);
+  std::vector<Vector<3>> exact;
+  int n_unknown = 0;
+  for (int i = 0; i < packing.size(); ++i) {
+    const Vector<2> x = get(packing.centre, i);
+    exact.push_back(field(x));
+    if (x.cwiseAbs().maxCoeff() < half - 3)
+      unknown[i] = n_unknown++;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
+  force.add_tangent([&](const particles::QuadraticTerm<2> &term) {
+    const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
+    for (std::size_t a = 0; a < term.members.size(); ++a) {
+      const int row = unknown[term.members[a]];
+      if (row < 0)
+        continue;
+      for (std::size_t b = 0; b < term.members.size(); ++b) {
+        const int column = unknown[term.members[b]];
+        const auto block = k.block<dofs, dofs>(dofs * a, dofs * b);
+        if (column < 0)
+          right.segment<dofs>(dofs * row) -= block * exact[term.members[b]];
+        else if (column <= row)
+          for (int r = 0; r < dofs; ++r)
+            for (int c = 0; c < dofs; ++c)
+              entries.emplace_back(dofs * row + r, dofs * column + c, block(r, c));
+      }
+    }
+  });
+  Eigen::SparseMatrix<double> matrix(right.size(), right.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
+  core::require<core::EnvironmentError>(solver.info() == Eigen::Success,
+                                        "the static solve of the plate with a hole failed");
+  const Eigen::VectorXd solution = solver.solve(right);
+
+  double worst = 0;
+  for (int i = 0; i < packing.size(); ++i)
+    if (unknown[i] >= 0)
+      worst = std::max(worst, (solution.segment<2>(dofs * unknown[i]) - exact[i].head<2>()).norm());
+  return worst / field({radius, 0}).head<2>().norm();
+}
+
+Case kirsch_case(const std::string &name, double radius, double must, bool slow)
+{
+  return {name,
+          fmt::format("plate with a hole of radius {:g} d: displacement against Kirsch", radius),
+          slow, [=] {
+            return std::vector<Result>{
+                {name + "/displacement_error", displacement_error(radius), must, {}}};
+          }};
+}
+} // namespace
+
+std::vector<Case> kirsch_cases()
+{
+  return {kirsch_case("kirsch_10", 10, 0.015, false), kirsch_case("kirsch_40", 40, 0.003, true)};
+}
+} // namespace ligament::program

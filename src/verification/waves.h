@@ -1,0 +1,33 @@
+// What the overlap does to a wave that leaves the discrete zone: reflected and lost energy.
+#pragma once
+
+#include "src/verification/waves_strip.h"
+
+namespace ligament::program
+{
+enum class WaveKind
+{
+  p,
+  s
+};
+
+struct WaveParameters
+{
+  WaveKind kind = WaveKind::p;
+  double wave_length; // cells
+  double fine_damper = 4, gap_filter = 0;
+  int overlap_cells = 3;
+  double mesh_shift = 0.5; // layers of the packing, see StripParameters
+};
+
+/// Shares of the packet's energy.
+struct WaveFigures
+{
+  double reflected; // came back into the discrete zone, kinetic energy after over before
+  double lost;      // taken by the dampers of the overlap
+};
+
+/// Sends a packet from the zone at normal incidence into the mesh (docs/verification_waves.md).
+template <int dim>
+WaveFigures measure_wave(const WaveParameters &parameters);
+} // namespace ligament::program

@@ -1,0 +1,160 @@
+#include "src/verification/waves_strip.h"
+
+#include "core/check.h"
+#include "dem/many_body_force.h"
+#include "particles/lattice.h"
+
+#include <cmath>
+
+namespace ligament::program
+{
+template <int dim>
+particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int across, int layers,
+                                              bool closed)
+{
+  core::require(across >= 3, "a periodic packing is at least 3 particles across");
+  particles::LatticeParameters<dim> parameters;
+  parameters.kind = kind;
+  parameters.spacing = 1;
+  const particles::Lattice<dim> lattice(parameters);
+  using Index = particles::LatticeIndex<dim>;
+  const Vector<dim> origin = lattice.position(Index::Zero());
+
+  const int columns = dim == 2 ? across : across * across;
+  // Columns run along the last basis vector: neighbours of a column lie at constant offsets.
+  const auto number = [&](const Index &k) {
+    int column = 0;
+    for (int c = dim - 2; c >= 0; --c)
+      column = column * across + ((k[c] % across) + across) % across;
+    return column * layers + k[dim - 1];
+  };
+  const auto has_layer = [&](int layer) { return layer >= 0 && layer < layers; };
+
+  particles::Packing<dim> packing;
+  packing.spacing = 1;
+  const int n = columns * layers;
+  packing.volume.assign(n, lattice.cell_volume);
+  for (auto &x : packing.centre)
+    x.resize(n);
+  for (const auto &step : lattice.forward)
+    packing.directions.push_back({step.direction, step.distance, lattice.face_area});
+  for (int column = 0; column <= columns; ++column)
+    packing.row_begin.push_back(column * layers);
+
+  for (int i = 0; i < n; ++i) {
+    Index k;
+    for (int c = 0, rest = i / layers; c < dim - 1; ++c, rest /= across)
+      k[c] = rest % across;
+    k[dim - 1] = i % layers;
+    Vector<dim> x = lattice.position(k) - origin;
+    for (int c = 0; c < dim - 1; ++c)
+      x[c] -= across * std::floor(x[c] / across);
+    set(packing.centre, i, x);
+    packing.global_id.push_back(particles::Lattice<dim>::global_id(k));
+
+    for (std::size_t direction = 0; direction < lattice.forward.size(); ++direction)
+      for (const int sign : {1, -1}) {
+        const auto &step = lattice.forward[direction];
+        const Index neighbour = k + sign * step.offset;
+        const Vector<dim> normal = sign * step.direction, lever = normal / 2;
+        if (!has_layer(neighbour[dim - 1])) {
+          if (neighbour[dim - 1] < 0 || closed)
+            packing.boundary_faces.push_back(
+                {i, normal, lattice.face_area, 0.5, lever, 2 * dim - (sign > 0 ? 1 : 2)});
+        } else if (sign > 0)
+          packing.faces.push_back({i, number(neighbour), normal, lattice.face_area, 0.5, 0.5, lever,
+                                   -lever, int(direction), false});
+      }
+  }
+  return packing;
+}
+
+template <int dim>
+fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower)
+{
+  constexpr int nc = fem::n_cell_nodes<dim>;
+  fem::Mesh<dim> mesh;
+  const int columns = dim == 2 ? across : across * across;
+  const auto index = [&](int i) { // of cell or node i: along each axis
+    Eigen::Matrix<int, dim, 1> k;
+    for (int c = 0; c < dim - 1; ++c, i /= across)
+      k[c] = i % across;
+    k[dim - 1] = i;
+    return k;
+  };
+  const auto place = [&](int i) {
+    Vector<dim> x = size * index(i).template cast<double>();
+    x[dim - 1] += lower;
+    return x;
+  };
+  for (int i = 0; i < columns * (layers + 1); ++i)
+    mesh.nodes.push_back(place(i));
+  for (int i = 0; i < columns * layers; ++i) {
+    const auto k = index(i);
+    std::array<int, nc> nodes;
+    for (int a = 0; a < nc; ++a) {
+      int node = 0;
+      for (int c = dim - 1; c >= 0; --c)
+        node = node * across + (k[c] + (a >> c & 1)) % (c < dim - 1 ? across : layers + 1);
+      nodes[a] = node;
+    }
+    mesh.cells.push_back(nodes);
+    mesh.cell_lower.push_back(place(i));
+    mesh.cell_size.push_back(Vector<dim>::Constant(size));
+    mesh.cell_level.push_back(0);
+    if (k[dim - 1] == layers - 1)
+      mesh.boundary_faces.push_back({i, 2 * dim - 1, 2 * dim - 1});
+  }
+  return mesh;
+}
+
+template <int dim>
+Strip<dim> make_strip(const StripParameters &p)
+{
+  const auto kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  const int across = p.cells_across * p.cell_size;
+  const double overlap_length = p.overlap_cells * p.cell_size;
+  // Height of a layer, and of a cell above its centre.
+  const double layer = dim == 2 ? std::sqrt(3.) / 2 : std::sqrt(0.5);
+  const double cell_top = dim == 2 ? 1 / std::sqrt(3.) : std::sqrt(0.5);
+  const int layers = int(std::ceil((p.zone_length + overlap_length) / layer));
+  const double edge = (layers - 1 + p.mesh_shift) * layer + cell_top;
+
+  Strip<dim> strip;
+  strip.mesh_begin = edge - overlap_length;
+  auto packing = make_periodic_packing<dim>(kind, across, layers, false);
+  particles::Particles<dim> state;
+  particles::fill_particles(packing, p.material.density, state);
+  strip.zone = std::make_unique<particles::ParticleSolver<dim>>(
+      std::move(state),
+      std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), p.material,
+                                                std::vector<core::BoundaryLoad<dim>>()));
+  strip.dt = p.step_fraction * strip.zone->force->stable_step(strip.zone->state);
+
+  fem::Body<dim> body;
+  body.stiffness = p.material.template elastic_constants<dim>().stiffness;
+  body.density = p.material.density;
+  const int far_layers = int(std::ceil((p.far_length + overlap_length) / p.cell_size));
+  strip.far = std::make_unique<fem::FemSolver<dim>>(
+      make_periodic_mesh<dim>(p.cells_across, far_layers, p.cell_size, strip.mesh_begin), body,
+      std::vector<core::BoundaryLoad<dim>>());
+
+  coupling::OverlapParameters overlap;
+  overlap.sides = {{dim - 1, true, edge}};
+  overlap.length = overlap_length;
+  overlap.spacing = 1;
+  overlap.transition_cells = p.transition_cells;
+  for (int c = 0; c < dim - 1; ++c)
+    overlap.period[c] = across;
+  strip.timers = std::make_unique<core::Timers>();
+  auto bodies = strip.bodies();
+  strip.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, strip.dt,
+                                                                *strip.timers);
+  return strip;
+}
+
+template particles::Packing<2> make_periodic_packing(particles::LatticeKind, int, int, bool);
+template particles::Packing<3> make_periodic_packing(particles::LatticeKind, int, int, bool);
+template Strip<2> make_strip<2>(const StripParameters &);
+template Strip<3> make_strip<3>(const StripParameters &);
+} // namespace ligament::program

@@ -1,0 +1,56 @@
+// A bar of lattice packing and mesh that repeats itself sideways: bodies in which plane waves stay
+// plane.
+#pragma once
+
+#include "coupling/fine_scale_split.h"
+#include "dem/material.h"
+#include "particles/lattice_packing.h"
+
+namespace ligament::program
+{
+/// Particles of spacing 1 in `layers` layers of `across` (2D) or across x across (3D) particles;
+/// layers are stacked along the last axis, neighbours across the sides are those of the other side.
+/// Missing neighbours of the first layer, and of the last one when `closed`, are free surface.
+/// The first layer lies at 0. Lengths in units of the spacing; `across` is at least 3.
+template <int dim>
+particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int across, int layers,
+                                              bool closed);
+
+/// Cubes of edge `size` from `lower` on along the last axis, `across` of them and periodic
+/// sideways.
+template <int dim>
+fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower);
+
+struct StripParameters
+{
+  dem::DemMaterial material;
+  int cells_across = 3; // the patch fit's blocks of two cells need three
+  int cell_size = 4;    // r: whole, so that the period fits the packing sideways
+  int overlap_cells = 3;
+  int transition_cells = 6;
+  double zone_length;    // without the overlap
+  double far_length;     // without the overlap
+  double mesh_shift = 0; // from where the mesh ends level with the edge of the packing; layers
+  double step_fraction = 0.9;
+  coupling::FineScaleSplitParameters split;
+};
+
+/// Hexagonal (2D) or FCC (3D) packing below, mesh above, in units of the particle spacing. The
+/// mesh begins at `mesh_begin` on the last axis; layers of the packing lie at no fraction of a
+/// cell.
+template <int dim>
+struct Strip
+{
+  std::unique_ptr<particles::ParticleSolver<dim>> zone;
+  std::unique_ptr<fem::FemSolver<dim>> far;
+  std::unique_ptr<core::Timers> timers;
+  std::unique_ptr<coupling::FineScaleSplit<dim>> split;
+  double dt = 0;
+  double mesh_begin = 0;
+
+  coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
+};
+
+template <int dim>
+Strip<dim> make_strip(const StripParameters &parameters);
+} // namespace ligament::program
