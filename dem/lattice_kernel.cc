@@ -1,5 +1,7 @@
 #include "dem/lattice_kernel.h"
 
+#include <limits>
+
 namespace ligament::dem
 {
 template <int dim>
@@ -37,8 +39,9 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
 {
   auto constants = constants_;
   for (int k = 0; k < n_directions_; ++k)
-    constants[k].limit2 = strength * area_[k] * strength * area_[k];
-  sweep_forces_of({arrays, &constants, &segments, &exceeded}, strength > 0);
+    constants[k].limit2 = strength > 0 ? strength * area_[k] * strength * area_[k]
+                                       : std::numeric_limits<double>::infinity();
+  sweep_forces_of({arrays, &constants, &segments, &exceeded});
 }
 
 template class LatticeKernel<2>;

@@ -29,7 +29,8 @@ struct DirectionConstants
   double area_r;  // S/r, m
   double bending; // k_b, N m
   double twist;   // k_t - k_b, N m
-  double limit2;  // (strength S)^2, N^2
+  double limit2;  // (strength S)^2, N^2; infinite when nothing breaks: the test costs less than
+                  // a second set of loops, whose code the compiler makes slower
 };
 
 /// Particles [begin, end).
@@ -68,7 +69,7 @@ public:
 private:
   // One for each dimension, in a file of its own.
   void sweep_dilatation_of(const RowSweep<dim> &sweep) const;
-  void sweep_forces_of(const RowSweep<dim> &sweep, bool check) const;
+  void sweep_forces_of(const RowSweep<dim> &sweep) const;
 
   int n_directions_;
   std::array<double, max_directions> area_{};
@@ -78,9 +79,9 @@ private:
 template <>
 void LatticeKernel<2>::sweep_dilatation_of(const RowSweep<2> &sweep) const;
 template <>
-void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep, bool check) const;
+void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep) const;
 template <>
 void LatticeKernel<3>::sweep_dilatation_of(const RowSweep<3> &sweep) const;
 template <>
-void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep, bool check) const;
+void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep) const;
 } // namespace ligament::dem

@@ -70,7 +70,7 @@ struct Bonds2d
            ((d.normal[0] + m.hx) * (m.ax + m.cx) + (d.normal[1] + m.hy) * (m.ay + m.cy));
   }
 
-  template <bool full, bool check>
+  template <bool full>
   static LIGAMENT_INLINE void force(const LatticeArrays<2> &a, const Direction &d, const Own &o,
                                     const Neighbours &n, Sum &sum)
   {
@@ -93,10 +93,8 @@ struct Bonds2d
     const double gx = (tx + sx) - kp * (m.ax + m.cx), gy = (ty + sy) - kp * (m.ay + m.cy);
     sum.torque += d.half * (hx * gy - hy * gx) +
                   (kf * (a.turn[0][n.forward] - o.angle) - kb * (o.angle - a.turn[0][n.backward]));
-    if (check) {
-      const double mx = hx + fx, my = hy + fy, tension = tx * mx + ty * my;
-      sum.exceeded |= tension * std::abs(tension) >= d.limit2 * (mx * mx + my * my) ? 1 : 0;
-    }
+    const double mx = hx + fx, my = hy + fy, tension = tx * mx + ty * my;
+    sum.exceeded |= tension * std::abs(tension) >= d.limit2 * (mx * mx + my * my) ? 1 : 0;
   }
 
   static LIGAMENT_INLINE void store(const LatticeArrays<2> &a, const Own &, long i, const Sum &sum)
@@ -118,19 +116,11 @@ LIGAMENT_DISPATCH void dilatation_3(const Sweep &s)
 }
 LIGAMENT_DISPATCH void forces_2(const Sweep &s)
 {
-  sweep_forces<Bonds2d, 2, false>(s);
+  sweep_forces<Bonds2d, 2>(s);
 }
 LIGAMENT_DISPATCH void forces_3(const Sweep &s)
 {
-  sweep_forces<Bonds2d, 3, false>(s);
-}
-LIGAMENT_DISPATCH void checked_2(const Sweep &s)
-{
-  sweep_forces<Bonds2d, 2, true>(s);
-}
-LIGAMENT_DISPATCH void checked_3(const Sweep &s)
-{
-  sweep_forces<Bonds2d, 3, true>(s);
+  sweep_forces<Bonds2d, 3>(s);
 }
 } // namespace
 
@@ -141,11 +131,8 @@ void LatticeKernel<2>::sweep_dilatation_of(const RowSweep<2> &sweep) const
 }
 
 template <>
-void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep, bool check) const
+void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep) const
 {
-  if (n_directions_ == 2)
-    check ? checked_2(sweep) : forces_2(sweep);
-  else
-    check ? checked_3(sweep) : forces_3(sweep);
+  n_directions_ == 2 ? forces_2(sweep) : forces_3(sweep);
 }
 } // namespace ligament::dem

@@ -103,7 +103,7 @@ struct Bonds3d
     return d.area_r * d.half * dot(nn + h, duf + dub);
   }
 
-  template <bool full, bool check>
+  template <bool full>
   static LIGAMENT_INLINE void force(const LatticeArrays<3> &a, const Direction &d, const Own &o,
                                     const Neighbours &n, Sum &sum)
   {
@@ -128,11 +128,9 @@ struct Bonds3d
     const V g = (tf + tb) - (d.area_r * p) * (duf + dub);
     sum.torque = sum.torque + d.half * times(ai, g);
     sum.bending = sum.bending + (bf + bb);
-    if (check) {
-      const V m = ai + af;
-      const double tension = dot(tf, m);
-      sum.exceeded |= tension * std::abs(tension) >= d.limit2 * dot(m, m) ? 1 : 0;
-    }
+    const V m = ai + af;
+    const double tension = dot(tf, m);
+    sum.exceeded |= tension * std::abs(tension) >= d.limit2 * dot(m, m) ? 1 : 0;
   }
 
   static LIGAMENT_INLINE void store(const LatticeArrays<3> &a, const Own &o, long i, const Sum &sum)
@@ -159,19 +157,11 @@ LIGAMENT_DISPATCH void dilatation_6(const Sweep &s)
 }
 LIGAMENT_DISPATCH void forces_3(const Sweep &s)
 {
-  sweep_forces<Bonds3d, 3, false>(s);
+  sweep_forces<Bonds3d, 3>(s);
 }
 LIGAMENT_DISPATCH void forces_6(const Sweep &s)
 {
-  sweep_forces<Bonds3d, 6, false>(s);
-}
-LIGAMENT_DISPATCH void checked_3(const Sweep &s)
-{
-  sweep_forces<Bonds3d, 3, true>(s);
-}
-LIGAMENT_DISPATCH void checked_6(const Sweep &s)
-{
-  sweep_forces<Bonds3d, 6, true>(s);
+  sweep_forces<Bonds3d, 6>(s);
 }
 } // namespace
 
@@ -182,11 +172,8 @@ void LatticeKernel<3>::sweep_dilatation_of(const RowSweep<3> &sweep) const
 }
 
 template <>
-void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep, bool check) const
+void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep) const
 {
-  if (n_directions_ == 3)
-    check ? checked_3(sweep) : forces_3(sweep);
-  else
-    check ? checked_6(sweep) : forces_6(sweep);
+  n_directions_ == 3 ? forces_3(sweep) : forces_6(sweep);
 }
 } // namespace ligament::dem

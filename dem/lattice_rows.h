@@ -52,16 +52,16 @@ sum_dilatation(const LatticeArrays<dim> &a, const RowConstants<dim, n_dir> &row,
   return sum;
 }
 
-template <typename Bonds, bool full, bool check, int dim, int n_dir, std::size_t... k>
+template <typename Bonds, bool full, int dim, int n_dir, std::size_t... k>
 LIGAMENT_INLINE void sum_forces(const LatticeArrays<dim> &a, const RowConstants<dim, n_dir> &row,
                                 const typename Bonds::Own &own, long i, typename Bonds::Sum &sum,
                                 std::index_sequence<k...>)
 {
   const std::uint32_t mask = a.mask[i];
-  (Bonds::template force<full, check>(a, row.direction[k], own,
-                                      Neighbours{i + row.forward[k], i + row.backward[k],
-                                                 weight(mask, k), weight(mask, n_dir + k)},
-                                      sum),
+  (Bonds::template force<full>(a, row.direction[k], own,
+                               Neighbours{i + row.forward[k], i + row.backward[k], weight(mask, k),
+                                          weight(mask, n_dir + k)},
+                               sum),
    ...);
 }
 
@@ -79,7 +79,7 @@ LIGAMENT_INLINE void dilatation_range(const LatticeArrays<dim> &arrays,
         sum_dilatation<Bonds, full>(a, row, Bonds::own(a, i), i, std::make_index_sequence<n_dir>());
 }
 
-template <typename Bonds, bool full, bool check, int dim, int n_dir>
+template <typename Bonds, bool full, int dim, int n_dir>
 LIGAMENT_INLINE bool force_range(const LatticeArrays<dim> &arrays,
                                  const RowConstants<dim, n_dir> &constants, long begin, long end)
 {
@@ -90,10 +90,9 @@ LIGAMENT_INLINE bool force_range(const LatticeArrays<dim> &arrays,
   for (long i = begin; i < end; ++i) {
     const auto own = Bonds::own(a, i);
     typename Bonds::Sum sum;
-    sum_forces<Bonds, full, check>(a, row, own, i, sum, std::make_index_sequence<n_dir>());
+    sum_forces<Bonds, full>(a, row, own, i, sum, std::make_index_sequence<n_dir>());
     Bonds::store(a, own, i, sum);
-    if (check)
-      exceeded |= sum.exceeded;
+    exceeded |= sum.exceeded;
   }
   return exceeded != 0;
 }
@@ -130,17 +129,16 @@ LIGAMENT_INLINE void sweep_dilatation(const RowSweep<dim> &sweep)
       });
 }
 
-template <typename Bonds, int n_dir, bool check, int dim>
+template <typename Bonds, int n_dir, int dim>
 LIGAMENT_INLINE void sweep_forces(const RowSweep<dim> &sweep)
 {
   for_each_range<n_dir>(
       sweep.arrays.mask, *sweep.segments,
       [&](int begin, int end, const RowSegment &segment, bool full) __attribute__((always_inline)) {
         const RowConstants<dim, n_dir> row(sweep, segment);
-        const bool exceeded = full
-                                  ? force_range<Bonds, true, check>(sweep.arrays, row, begin, end)
-                                  : force_range<Bonds, false, check>(sweep.arrays, row, begin, end);
-        if (check && exceeded)
+        const bool exceeded = full ? force_range<Bonds, true>(sweep.arrays, row, begin, end)
+                                   : force_range<Bonds, false>(sweep.arrays, row, begin, end);
+        if (exceeded)
           sweep.exceeded->push_back({begin, end});
       });
 }
