@@ -1,0 +1,65 @@
+// The built-in verification cases hold; the list finds them by name.
+#include "core/check.h"
+#include "src/verification/cases.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace ligament::program
+{
+namespace
+{
+TEST(Result, ComparesInItsDirectionAndRefusesNan)
+{
+  Result most{"a", 1, 1, {}};
+  EXPECT_TRUE(most.passed());
+  most.value = 1.01;
+  EXPECT_FALSE(most.passed());
+  most.value = NAN;
+  EXPECT_FALSE(most.passed());
+  Result least{"a", 1, 1, {}, Result::Bound::at_least};
+  EXPECT_TRUE(least.passed());
+  least.value = 0.99;
+  EXPECT_FALSE(least.passed());
+  least.value = NAN;
+  EXPECT_FALSE(least.passed());
+}
+
+TEST(Cases, AreFoundByNameAndPrefix)
+{
+  std::set<std::string> names;
+  for (const auto &c : all_cases())
+    EXPECT_TRUE(names.insert(c.name).second) << c.name;
+  for (const auto &c : select_cases("", false))
+    EXPECT_FALSE(c.slow) << c.name;
+  EXPECT_EQ(select_cases("", true).size(), names.size());
+
+  ASSERT_EQ(select_cases("drift_long", false).size(), 1u);
+  EXPECT_TRUE(select_cases("drift_long", false)[0].slow);
+  for (const auto &c : select_cases("patch_", true))
+    EXPECT_EQ(c.name.rfind("patch_", 0), 0u);
+  EXPECT_LT(select_cases("patch_", false).size(), select_cases("patch_", true).size());
+  EXPECT_THROW(select_cases("nothing", false), core::InputError);
+  EXPECT_THROW(select_cases("patch_ring_3", false), core::InputError); // only a slow one
+}
+
+class VerifyCase : public testing::TestWithParam<const char *>
+{
+};
+
+TEST_P(VerifyCase, Holds)
+{
+  for (const auto &c : select_cases(GetParam(), false))
+    for (const auto &result : c.run())
+      EXPECT_TRUE(result.passed())
+          << result.name << ": " << result.value << ", must " << result.must;
+}
+
+INSTANTIATE_TEST_SUITE_P(Default, VerifyCase,
+                         testing::Values("moduli", "rotation", "patch_band_2d", "patch_ring_2d",
+                                         "patch_band_3d", "critical_step", "drift", "drift_3d",
+                                         "drift_ratio", "decay"));
+} // namespace
+} // namespace ligament::program
