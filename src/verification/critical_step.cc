@@ -28,7 +28,7 @@ void measure(const Scene &coupled, Measured &worst)
   worst.ratio = std::min(worst.ratio, plain_motion.largest_frequency() / frequency);
   worst.margin = std::min(worst.margin, 2 / frequency / coupled_body.body.dt_zone);
 
-  const Eigen::VectorXd x = 1e-9 * motion.noise();
+  const Eigen::VectorXd x = 1e-14 * motion.noise();
   const Eigen::VectorXd y = motion.accelerations(x, false);
   const Eigen::VectorXd z = motion.accelerations(y, false);
   // (y, A y) = (A x, A A x) and (x, A A y): A moved from one side to the other twice.

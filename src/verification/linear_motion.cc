@@ -134,19 +134,48 @@ Eigen::VectorXd LinearMotion<dim>::accelerations(const Eigen::VectorXd &x, bool 
   step.time = loaded ? 1 : 0;
   body_.coupler->compute_forces(bodies, step);
   body_.coupler->kick(bodies, step);
-  Eigen::VectorXd a(size());
-  double *value = a.data();
+  if (body_.far)
+    body_.far->distribute();
+  return velocities();
+}
+
+template <int dim>
+Eigen::VectorXd LinearMotion<dim>::velocities() const
+{
+  Eigen::VectorXd x(size());
+  double *value = x.data();
   const auto read = [&](const auto &components) {
     for (const auto &v : components)
       value = std::copy(v.begin(), v.end(), value);
   };
   read(body_.zone->state.velocity);
   read(body_.zone->state.spin);
-  if (body_.far) {
-    body_.far->distribute();
+  if (body_.far)
     read(body_.far->velocity);
+  return x;
+}
+
+template <int dim>
+Eigen::VectorXd LinearMotion<dim>::admissible(const Eigen::VectorXd &x)
+{
+  set_state(Eigen::VectorXd::Zero(size()));
+  const double *value = x.data();
+  const auto write = [&](auto &components) {
+    for (auto &component : components)
+      for (double &v : component)
+        v = *value++;
+  };
+  write(body_.zone->state.velocity);
+  write(body_.zone->state.spin);
+  if (body_.far) {
+    write(body_.far->velocity);
+    body_.far->distribute();
   }
-  return a;
+  if (body_.split) {
+    auto bodies = body_.bodies();
+    body_.split->take_velocities(bodies);
+  }
+  return velocities();
 }
 
 template <int dim>
@@ -214,8 +243,10 @@ template <int dim>
 Eigen::VectorXd LinearMotion<dim>::solve()
 {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-  for (const double tolerance : {1e-8, 1e-5, 1e-2}) // against the true residual each time
-    x += conjugate_gradients(accelerations(x, true), tolerance);
+  // Each round starts from the true residual, without the round-off that left the admissible
+  // motions.
+  for (const double tolerance : {1e-8, 1e-5, 1e-2})
+    x = admissible(x + conjugate_gradients(accelerations(x, true), tolerance));
   accelerations(x, true);
   return x;
 }
@@ -228,7 +259,7 @@ Eigen::VectorXd LinearMotion<dim>::noise()
   Eigen::VectorXd x(size());
   for (double &v : x)
     v = uniform(random);
-  x = accelerations(x, false); // v = Phi V + w in the overlap, whatever x was
+  x = admissible(x);
   return x / std::sqrt(inner(x, x));
 }
 
