@@ -28,6 +28,7 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   if (body.force)
   {
     ledger.fracture = body.force->fracture_energy();
+    ledger.breaking_step_error = body.force->breaking_step_error();
     ledger.friction = body.force->frictional_work();
     ledger.external_work += body.force->external_work();
   }

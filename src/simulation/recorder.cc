@@ -94,7 +94,11 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
   // Which state is the peak is known only later: keep copies on the way up, of the motion closely,
-  // of the fields, which take longer, more rarely.
+  // of the fields, which take longer, more rarely. A crack that runs moves within microseconds, while
+  // the grips still feel a rising load: the last state before it is the one to show and to compare.
+  const bool still = ledger.kinetic() < 0.01 * ledger.potential() || !peak_snapshot_;
+  if (!still)
+    return;
   if (std::abs(r.load) > 1.002 * std::abs(motion_copied_at_))
   {
     motion_copied_at_ = r.load;
