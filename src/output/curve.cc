@@ -17,14 +17,19 @@ double largest_magnitude(const std::vector<double> &values)
 }
 } // namespace
 
+// A broken half that swings back can press harder than the specimen was pulled: only loads with the
+// sign of the mean load count.
 std::optional<std::size_t> peak_index(const std::vector<double> &load)
 {
-  const double peak = largest_magnitude(load);
-  if (peak == 0)
-    return {};
-  return std::find_if(load.begin(), load.end(),
-                      [&](double value) { return std::abs(value) == peak; }) -
-         load.begin();
+  double mean = 0;
+  for (const double value : load)
+    if (std::isfinite(value))
+      mean += value;
+  std::optional<std::size_t> peak;
+  for (std::size_t i = 0; i < load.size(); ++i)
+    if (load[i] * mean > 0 && (!peak || std::abs(load[i]) > std::abs(load[*peak])))
+      peak = i;
+  return peak;
 }
 
 std::optional<double> fit_stiffness(const std::vector<double> &displacement,

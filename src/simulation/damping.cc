@@ -1,23 +1,27 @@
 #include "src/simulation/damping.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ligament::program
 {
 namespace
 {
-/// damping <- -fraction |force| sign(velocity); force += damping
+/// damping <- -min(fraction |force|, what stops it) sign(velocity); force += damping. The velocity
+/// is the one half-way through the kick: at large steps stiff modes change sign in every step, and
+/// a force against the old velocity would drive them.
 template <std::size_t n>
-void oppose(double fraction, const std::array<std::vector<double>, n> &velocity,
+void oppose(double fraction, double dt, const std::vector<double> &inverse_mass,
+            const std::array<std::vector<double>, n> &velocity,
             std::array<std::vector<double>, n> &force, std::array<std::vector<double>, n> &damping)
 {
-  for (std::size_t c = 0; c < n; ++c)
-  {
+  for (std::size_t c = 0; c < n; ++c) {
     damping[c].resize(force[c].size());
-    for (std::size_t i = 0; i < force[c].size(); ++i)
-    {
-      const double v = velocity[c][i];
-      damping[c][i] = v == 0 ? 0 : -fraction * std::copysign(std::abs(force[c][i]), v);
+    for (std::size_t i = 0; i < force[c].size(); ++i) {
+      const double half = 0.5 * dt * inverse_mass[i];
+      const double v = velocity[c][i] + half * force[c][i];
+      const double f = fraction * std::abs(force[c][i]);
+      damping[c][i] = -std::copysign(half > 0 ? std::min(f, std::abs(v) / half) : 0, v);
       force[c][i] += damping[c][i];
     }
   }
@@ -37,28 +41,28 @@ double power(const std::array<std::vector<double>, n> &velocity,
 
 // Supports prescribe the motion of held nodes: damping forces there would only falsify reactions.
 template <int dim>
-void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, bool far_acts)
+void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts)
 {
-  if (body.zone)
-  {
+  if (body.zone) {
     auto &state = body.zone->state;
-    oppose(parameters_.local, state.velocity, state.force, zone_force_);
-    oppose(parameters_.local, state.spin, state.torque, zone_torque_);
+    oppose(parameters_.local, dt, state.inverse_mass, state.velocity, state.force, zone_force_);
+    oppose(parameters_.local, dt, state.inverse_inertia, state.spin, state.torque, zone_torque_);
   }
-  if (body.far)
-  {
+  if (body.far) {
     auto &far = *body.far;
-    if (!far_acts)
-    {
+    if (!far_acts) {
       for (auto &f : far_force_)
         f.assign(far.mesh().n_nodes(), 0.);
       return;
     }
-    oppose(parameters_.local, far.velocity, far.force, far_force_);
+    if (inverse_far_mass_.empty())
+      for (const double mass : far.lumped_mass())
+        inverse_far_mass_.push_back(mass > 0 ? 1 / mass : 0);
+    oppose(parameters_.local, dt * body.coupler->step_ratio(), inverse_far_mass_, far.velocity,
+           far.force, far_force_);
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < far.mesh().n_nodes(); ++i)
-        if (far.is_held(i, c))
-        {
+        if (far.is_held(i, c)) {
           far.force[c][i] -= far_force_[c][i];
           far_force_[c][i] = 0;
         }
@@ -70,7 +74,8 @@ double BodyDamping<dim>::local_power(const CoupledBody<dim> &body) const
 {
   double sum = 0;
   if (body.zone)
-    sum += power(body.zone->state.velocity, zone_force_) + power(body.zone->state.spin, zone_torque_);
+    sum +=
+        power(body.zone->state.velocity, zone_force_) + power(body.zone->state.spin, zone_torque_);
   if (body.far)
     sum += body.coupler->step_ratio() * power(body.far->velocity, far_force_);
   return sum;
@@ -79,10 +84,22 @@ double BodyDamping<dim>::local_power(const CoupledBody<dim> &body) const
 template <int dim>
 void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepTime &step)
 {
-  if (parameters_.local == 0)
-    return;
-  add_local_forces(body, step.step % body.coupler->step_ratio() == 0);
-  energy_ -= 0.5 * step.dt * local_power(body);
+  const bool far_acts = step.step % body.coupler->step_ratio() == 0;
+  if (parameters_.kinetic && far_acts) {
+    auto bodies = body.bodies();
+    const auto energy = body.coupler->energy(bodies, step);
+    const double kinetic = energy.kinetic_discrete + energy.kinetic_far;
+    restarts_ = kinetic < last_kinetic_;
+    last_kinetic_ = restarts_ ? 0 : kinetic;
+    if (restarts_) {
+      body.coupler->scale_velocities(bodies, step, 0);
+      energy_ += kinetic;
+    }
+  }
+  if (parameters_.local > 0) {
+    add_local_forces(body, step.dt, far_acts);
+    energy_ -= 0.5 * step.dt * local_power(body);
+  }
 }
 
 template <int dim>
@@ -93,18 +110,11 @@ void BodyDamping<dim>::after_kick(CoupledBody<dim> &body, const coupling::StepTi
   auto bodies = body.bodies();
   if (parameters_.mass > 0)
     energy_ += body.coupler->scale_velocities(bodies, step, std::exp(-parameters_.mass * step.dt));
-  if (parameters_.kinetic && step.step % body.coupler->step_ratio() == 0)
-  {
-    const auto energy = body.coupler->energy(bodies, step);
-    const double kinetic = energy.kinetic_discrete + energy.kinetic_far;
-    const bool falls = kinetic < last_kinetic_;
-    last_kinetic_ = kinetic;
-    if (falls)
-    {
-      energy_ += body.coupler->scale_velocities(bodies, step, 0);
-      last_kinetic_ = 0;
-    }
-  }
+  // Rest at the time of the positions means half a kick half a step later. Rest half a step later
+  // would let stiff modes grow: by 1/sqrt(1 - (omega dt/2)^2) with each restart.
+  if (restarts_)
+    energy_ += body.coupler->scale_velocities(bodies, step, 0.5);
+  restarts_ = false;
 }
 
 template class BodyDamping<2>;

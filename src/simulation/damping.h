@@ -22,12 +22,14 @@ public:
   double energy() const { return energy_; }
 
 private:
-  void add_local_forces(CoupledBody<dim> &body, bool far_acts);
+  void add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts);
   double local_power(const CoupledBody<dim> &body) const;
 
   Damping parameters_;
   double energy_ = 0;
   double last_kinetic_ = 0;
+  bool restarts_ = false;                  // from rest, in this step
+  std::vector<double> inverse_far_mass_;   // 1/kg, own cells of the far field
   Components<dim> zone_force_, far_force_; // N, of local damping
   Components<n_spins<dim>> zone_torque_;   // N m
 };

@@ -34,6 +34,13 @@ TEST(Curve, StiffnessIsTheSlopeBetweenTenAndFiftyPercentBeforeThePeak)
   EXPECT_NEAR(*fit_stiffness(strain, stress) / k, 1, 1e-9);
 }
 
+TEST(Curve, PeakLiesInTheDirectionOfLoading)
+{
+  // Pulled slowly to 3, then the halves swing back with -4.
+  EXPECT_EQ(*peak_index({0, 1, 2, 3, -4}), 3u);
+  EXPECT_EQ(*peak_index({0, -1, -2, -3, 4}), 3u);
+}
+
 TEST(Curve, NothingToFitIsEmpty)
 {
   EXPECT_FALSE(peak_index({}));
