@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ligament::program
@@ -185,6 +186,25 @@ std::vector<Result> measure(const std::string &name, WaveParameters parameters,
   return results;
 }
 
+/// Phase velocity of P waves across the layers of the hexagonal packing against the table of
+/// theory.md (nu 0.3, plane strain; 10, 20 and 40 particles per wave length).
+std::vector<Result> measure_dispersion()
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.3;
+  const auto waves = make_bloch_waves<2>(material);
+  double worst = 0;
+  for (const auto &[per_wave, slower] :
+       {std::pair{10., 0.0277}, std::pair{20., 0.0070}, std::pair{40., 0.0018}})
+  {
+    const double k = 2 * M_PI / per_wave;
+    const double speed = waves.mode(k, Vector<2>(0, 1)).frequency / k;
+    const double exact = material.elastic_constants<2>().wave_speed_p;
+    worst = std::max(worst, std::abs(1 - speed / exact - slower));
+  }
+  return {{"dispersion/phase_velocity", worst, 1e-4, 5e-5}};
+}
+
 template <int dim>
 Case wave_case(const std::string &name, const std::string &text, bool slow,
                const WaveParameters &parameters, const std::vector<Bound> &bounds)
@@ -199,7 +219,9 @@ std::vector<Case> wave_cases()
   fracture.fine_damper = 8, fracture.gap_filter = 4;
   weak.overlap_cells = 4, weak.gap_filter = 4;
   const std::string text = "energy that the overlap reflects: ";
-  return {wave_case<2>("waves_2d", text + "2D, waves of 8 and 4 cells, cf 4, cg 0", false, elastic,
+  return {{"dispersion", "phase velocity of P waves in the hexagonal packing against the table",
+           false, measure_dispersion},
+          wave_case<2>("waves_2d", text + "2D, waves of 8 and 4 cells, cf 4, cg 0", false, elastic,
                        {{8, 1e-4, 7e-3}, {4, 6e-3, 0}}),
           wave_case<2>("waves_2d_long", text + "2D, waves of 16 and 6 cells, cf 4, cg 0", true,
                        elastic, {{16, 5e-6, 0}, {6, 6e-4, 0}}),
