@@ -40,7 +40,7 @@ void report(const std::string &name, const Measured &worst, std::vector<Result> 
 {
   results.push_back({name + "/ratio", worst.ratio, 0.99, 1, Result::Bound::at_least});
   results.push_back({name + "/margin", worst.margin, 1, {}, Result::Bound::at_least});
-  results.push_back({name + "/asymmetry", worst.asymmetry, 1e-9, {}});
+  results.push_back({name + "/asymmetry", worst.asymmetry, 1e-12, {}});
 }
 
 std::vector<Result> critical_step()
