@@ -60,6 +60,6 @@ TEST_P(VerifyCase, Holds)
 INSTANTIATE_TEST_SUITE_P(Default, VerifyCase,
                          testing::Values("moduli", "rotation", "patch_band_2d", "patch_ring_2d",
                                          "patch_band_3d", "critical_step", "drift", "drift_3d",
-                                         "drift_ratio", "decay"));
+                                         "decay"));
 } // namespace
 } // namespace ligament::program
