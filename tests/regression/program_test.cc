@@ -1,0 +1,163 @@
+// The program from outside: exit codes, fields of --json, older runs are kept, examples check.
+#include "tests/support/small_plate.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+using namespace ligament::tests;
+
+namespace
+{
+struct Outcome
+{
+  int code;
+  std::string last_line; // of standard output
+  nlohmann::json json() const { return nlohmann::json::parse(last_line); }
+};
+
+Outcome ligament(const std::string &arguments)
+{
+  std::FILE *pipe = popen((LIGAMENT_PROGRAM " " + arguments + " 2>/dev/null").c_str(), "r");
+  Outcome outcome{-1, ""};
+  std::string line;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+    if (c == '\n') {
+      outcome.last_line = line;
+      line.clear();
+    } else
+      line += char(c);
+  outcome.code = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+/// A file of the small plate, pulled for `duration`.
+std::string scene_file(const std::string &name)
+{
+  std::ofstream(name) << small_plate;
+  return name;
+}
+
+const std::string pulled =
+    R"( --set '/loads=[{"boundary": "top", "velocity": [null, 1e-4], "ramp": 50}]' )";
+const std::string weak =
+    R"( --set '/material/fracture={"criterion": "maximum_tension", "strength": 1e-5}' )";
+
+std::vector<std::string> missing(const nlohmann::json &json, const std::vector<std::string> &names)
+{
+  std::vector<std::string> result;
+  for (const auto &name : names)
+    if (!json.contains(name))
+      result.push_back(name);
+  return result;
+}
+
+TEST(Program, RunEndsWithTheFieldsThatScriptsRead)
+{
+  std::filesystem::remove_all("run");
+  const auto outcome = ligament("run " + scene_file("run.json") + pulled + "--output run --json");
+  EXPECT_EQ(outcome.code, 0);
+  const auto json = outcome.json();
+  EXPECT_EQ(missing(json, {"status", "steps", "wall_seconds", "peak_load", "broken_bonds",
+                           "energy_residual", "output"}),
+            std::vector<std::string>());
+  EXPECT_EQ(json["status"], "done");
+  EXPECT_GT(json["steps"], 0);
+  EXPECT_GT(json["peak_load"], 0);
+  for (const char *file : {"run.json", "run.log", "history.csv", "scene.resolved.json",
+                           "report.html", "broken_bonds.csv"})
+    EXPECT_TRUE(std::filesystem::exists(std::string("run/") + file)) << file;
+}
+
+TEST(Program, CheckAndCompareEndWithTheFieldsThatScriptsRead)
+{
+  const std::string scene = scene_file("check.json");
+  const auto checked = ligament("check " + scene + pulled + "--json");
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_EQ(missing(checked.json(), {"particles", "cells", "overlap_particles", "dt", "dt_critical",
+                                     "steps", "memory_bytes", "errors"}),
+            std::vector<std::string>());
+  EXPECT_TRUE(checked.json()["errors"].empty());
+
+  std::filesystem::remove_all("a");
+  std::filesystem::remove_all("b");
+  ligament("run " + scene + pulled + "--output a");
+  ligament("run " + scene + pulled + "--set /far_field=none --output b");
+  const auto compared = ligament("compare a b --json");
+  EXPECT_EQ(compared.code, 0);
+  EXPECT_EQ(missing(compared.json(),
+                    {"peak_load_error", "stiffness_error", "crack_distance_mean",
+                     "crack_distance_max", "energy_error", "time_ratio", "particle_ratio"}),
+            std::vector<std::string>());
+}
+
+TEST(Program, WrongInputIsTwoAndAGuardIsThree)
+{
+  const std::string scene = scene_file("codes.json");
+  const auto wrong = ligament("check " + scene + " --set /coupling/overlap_widht=3 --json");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_FALSE(wrong.json()["errors"].empty());
+  EXPECT_EQ(ligament("run no_such_scene.json").code, 2);
+
+  std::filesystem::remove_all("guarded");
+  const auto guarded = ligament("run " + scene + pulled + weak + "--output guarded --json");
+  EXPECT_EQ(guarded.code, 3);
+  EXPECT_EQ(guarded.json()["status"], "guard");
+}
+
+TEST(Program, AnOlderRunIsKept)
+{
+  for (const char *folder : {"kept", "kept.1", "kept.2"})
+    std::filesystem::remove_all(folder);
+  const std::string command = "run " + scene_file("kept.json") + pulled + "--output kept ";
+  EXPECT_EQ(ligament(command + "--set /time/duration=50").code, 0);
+  EXPECT_EQ(ligament(command + "--set /time/duration=60").code, 0);
+  const auto time_of = [](const std::string &folder) {
+    std::ifstream in(folder + "/run.json");
+    return nlohmann::json::parse(in).at("simulated_time").get<double>();
+  };
+  // Whole steps of about half a time unit.
+  EXPECT_NEAR(time_of("kept.1"), 50, 1);
+  EXPECT_NEAR(time_of("kept"), 60, 1);
+}
+
+TEST(Program, StopsWhenTheSpecimenIsBroken)
+{
+  std::filesystem::remove_all("broken");
+  const auto outcome =
+      ligament("run " + scene_file("broken.json") +
+               R"( --set '/loads=[{"boundary": "top", "velocity": [null, 1e-4], "ramp": 50},)"
+               R"( {"boundary": "bottom", "velocity": [null, -1e-4], "ramp": 50}]' )"
+               R"( --set '/specimen/cracks=[{"points": [[-10, 0], [10, 0]]}]' )"
+               R"( --set '/material/fracture={"criterion": "maximum_tension", "strength": 1e-3}' )"
+               R"( --set /time/duration=5000 --set /time/stop_when='"specimen_broken"' )"
+               "--output broken --json");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.json()["status"], "done");
+  std::ifstream in("broken/run.json");
+  EXPECT_LT(nlohmann::json::parse(in).at("simulated_time"), 4900);
+}
+
+TEST(Examples, AllCheck)
+{
+  int n = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(LIGAMENT_SOURCE_DIR "/examples")) {
+    const std::string scene = entry.path().string() + "/scene.json";
+    if (!std::filesystem::exists(scene))
+      continue;
+    SCOPED_TRACE(scene);
+    ++n;
+    const auto outcome = ligament("check " + scene + " --json");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_TRUE(outcome.json()["errors"].empty()) << outcome.last_line;
+    EXPECT_TRUE(std::filesystem::exists(entry.path() / "README.md"));
+    EXPECT_TRUE(std::filesystem::exists(entry.path() / "picture.png"));
+  }
+  EXPECT_GE(n, 4);
+}
+} // namespace

@@ -1,0 +1,117 @@
+// Short whole runs of a small cracked plate: coupled against pure discrete elements, repeated, in
+// all kinds of bodies, with guards and ends.
+#include "core/files.h"
+#include "src/output/compare.h"
+#include "src/output/table.h"
+#include "src/simulation/simulation.h"
+#include "tests/support/small_plate.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+// Bonds break at a strain of 1e-3; the plate is pulled apart over some thirty passages of a wave.
+const std::vector<std::string> pulled = {
+    R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-3})",
+    R"(/loads=[{"boundary": "top", "velocity": [null, 1.2e-5], "ramp": 1000},
+               {"boundary": "bottom", "velocity": [null, -1.2e-5], "ramp": 1000}])",
+    "/time/duration=6000", "/output/history_interval=10"};
+const std::vector<std::string> cracked =
+    std::vector<std::string>{R"(/specimen/cracks=[{"points": [[-4, 0], [4, 0]]}])"} + pulled;
+const std::string until_broken = R"(/time/stop_when="specimen_broken")";
+
+RunRecord run(const std::string &folder, const std::vector<std::string> &overrides)
+{
+  const RunFolder place{folder};
+  std::filesystem::remove_all(folder);
+  place.create();
+  std::FILE *quiet = std::fopen("/dev/null", "w");
+  const RunRecord record = Simulation<2>(small_scene(overrides), place, quiet).run();
+  std::fclose(quiet);
+  return record;
+}
+
+std::string content(const std::string &path)
+{
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(Runs, CoupledPlateBreaksLikeItsPureDiscreteTwin)
+{
+  const auto until = cracked + std::vector<std::string>{until_broken};
+  const RunRecord coupled = run("coupled", until);
+  const RunRecord discrete = run("discrete", until + std::vector<std::string>{"/far_field=none"});
+  EXPECT_EQ(coupled.kind, "coupled");
+  EXPECT_EQ(discrete.kind, "pure_dem");
+  for (const auto &record : {coupled, discrete}) {
+    EXPECT_EQ(record.status, "done");
+    EXPECT_EQ(record.reason.substr(0, 15), "specimen broken");
+    // A crack along one row: two faces per spacing of the 16 left, less what the ends of the
+    // initial crack and the sides take, at most a spacing each.
+    EXPECT_GE(record.broken_bonds, 2 * (16 - 4));
+    EXPECT_LT(*record.energy_residual, 0.02);
+  }
+  const CompareResult r = compare("coupled", "discrete");
+  EXPECT_LT(std::abs(r.peak_load_error.value()), 0.01);
+  EXPECT_LT(std::abs(r.stiffness_error.value()), 0.003);
+  EXPECT_LT(r.crack_distance_mean.value(), 1);
+  EXPECT_GT(r.particle_ratio.value(), 2);
+}
+
+TEST(Runs, TheSameSceneGivesTheSameBits)
+{
+  const auto overrides =
+      cracked + std::vector<std::string>{"/time/duration=4000", "/coupling/step_ratio=2"};
+  run("first", overrides);
+  run("second", overrides);
+  const std::string history = content("first/history.csv");
+  EXPECT_GT(history.size(), 10000u);
+  EXPECT_EQ(history, content("second/history.csv"));
+  EXPECT_EQ(content("first/broken_bonds.csv"), content("second/broken_bonds.csv"));
+  EXPECT_EQ(content("first/snapshot_end.bin"), content("second/snapshot_end.bin"));
+}
+
+TEST(Runs, PureBodiesGoThroughTheSameLoop)
+{
+  // Quasi-static stretch without fracture: stress over strain is E/(1 - nu^2) of plane strain.
+  const std::vector<std::string> elastic = {pulled[1], "/time/duration=2000"};
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    const RunRecord record = run(std::string("elastic_") + kind.name, kind.overrides + elastic);
+    EXPECT_EQ(record.kind, kind.name);
+    EXPECT_EQ(record.particles > 0, record.kind != "pure_fem");
+    EXPECT_EQ(record.cells > 0, record.kind != "pure_dem");
+    EXPECT_EQ(record.broken_bonds, 0);
+    // Ramp and waves: the load lags by the inertia of the plate, (L/cT)^2 of it or about 1 %.
+    EXPECT_NEAR(record.stiffness.value() * (1 - 0.22 * 0.22), 1, 0.01);
+    EXPECT_LT(*record.energy_residual, 0.01);
+  }
+}
+
+TEST(Runs, GuardStopsWhenTheOverlapIsHalfAsTenseAsItsStrength)
+{
+  // Without crack the tension is the same everywhere.
+  const RunRecord record = run("guarded", pulled);
+  EXPECT_EQ(record.status, "guard");
+  EXPECT_NE(record.reason.find("overlap"), std::string::npos);
+  EXPECT_EQ(record.broken_bonds, 0);
+  // Half the strength on the faces nearest to the load, 60 degrees off its side: sin^2 of that.
+  // Three per cent: waves run, and the guard looks every 50 steps.
+  EXPECT_NEAR(record.peak_stress.value() / (0.5e-3 / 0.75), 1, 0.03);
+
+  const RunRecord warned =
+      run("warned",
+          pulled + std::vector<std::string>{R"(/coupling/guard="warn")", "/time/duration=4000"});
+  EXPECT_EQ(warned.status, "done");
+  EXPECT_NE(content("warned/run.log").find("overlap"), std::string::npos);
+}
+} // namespace

@@ -1,0 +1,103 @@
+// The energy balance of a vibrating body closes: free, and with every kind of damping, in all three
+// kinds of bodies.
+#include "src/simulation/damping.h"
+#include "src/simulation/energy_ledger.h"
+#include "tests/support/small_plate.h"
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+struct Balance
+{
+  double start = 0;   // J, energy at rest before the release
+  double error = 0;   // largest change of the residual over the start energy
+  double left = 0;    // kinetic and potential energy at the end over the start energy
+  double damping = 0; // taken by body damping over the start energy
+};
+
+/// Releases the plate from a uniform strain of 1e-6 and follows it for one or two vibrations.
+Balance vibrate(const std::vector<std::string> &overrides, double duration)
+{
+  const Scene scene = small_scene(overrides);
+  SmallBody small(scene);
+  auto &body = small.body;
+  small.deform(Eigen::Vector2d(0, 1e-6).asDiagonal());
+  BodyDamping<2> damping(scene.damping);
+  auto bodies = body.bodies();
+  coupling::StepTime step{0, 0, body.dt};
+  body.coupler->compute_forces(bodies, step);
+  Balance balance;
+  double first = 0;
+  while (step.time < duration) {
+    if (step.step % body.coupler->step_ratio() == 0) {
+      const auto ledger = read_ledger(body, step, damping.energy());
+      if (step.step == 0) {
+        balance.start = ledger.potential();
+        first = ledger.residual();
+      }
+      balance.error = std::max(balance.error, std::abs(ledger.residual() - first) / balance.start);
+      balance.left = (ledger.kinetic() + ledger.potential()) / balance.start;
+      balance.damping = ledger.damping / balance.start;
+    }
+    damping.before_kick(body, step);
+    body.coupler->kick(bodies, step);
+    damping.after_kick(body, step);
+    body.coupler->drift(bodies, step);
+    ++step.step;
+    step.time = step.step * step.dt;
+    body.coupler->compute_forces(bodies, step);
+  }
+  return balance;
+}
+
+// 120 long, wave speed about 1.07: one vibration takes 225.
+constexpr double one_vibration = 225;
+
+// Nonlinear terms of a strain of 1e-6 are of this order; damping changes them by less.
+constexpr double linear = 5e-6;
+
+TEST(EnergyLedger, ClosesWithoutDamping)
+{
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    const auto b = vibrate(kind.overrides, 2 * one_vibration);
+    // 1/2 C11 e^2 A of the stretched plate with held sides; particles at free sides answer as in
+    // plane stress across them, hence the per cents.
+    const double nu = 0.22, modulus = (1 - nu) / (1 + nu) / (1 - 2 * nu);
+    EXPECT_NEAR(b.start / (0.5 * modulus * 1e-12 * 24 * 120), 1, 0.03);
+    EXPECT_LT(b.error, linear);
+    EXPECT_EQ(b.damping, 0);
+  }
+}
+
+TEST(EnergyLedger, ClosesWithEveryDamping)
+{
+  const std::vector<std::pair<std::string, double>> dampings = {
+      {"/damping/local=0.3", 0.9}, // each with the share that it must have taken at least
+      {"/damping/mass=0.02", 0.9}, // exp(-0.02 t) of the kinetic energy, which is half of all
+      {"/damping/kinetic=true", 0.9}};
+  for (const auto &kind : body_kinds)
+    for (const auto &[damping, share] : dampings) {
+      SCOPED_TRACE(kind.name + (" " + damping));
+      const auto b = vibrate(kind.overrides + std::vector<std::string>{damping}, 3 * one_vibration);
+      EXPECT_LT(b.error, linear);
+      EXPECT_GT(1 - b.left, share);
+      EXPECT_GT(b.damping, 0.5);
+      EXPECT_LT(b.damping, 1 + linear);
+    }
+}
+
+TEST(EnergyLedger, FarStepsOfFourZoneStepsKeepTheBalanceBounded)
+{
+  // For m > 1 the ledger fluctuates by some 5e-3 (theory.md eq. (E2)), here, where the release
+  // starts with a jump, up to twice as much; without trend.
+  for (const auto &damping : {"/damping/mass=0", "/damping/mass=0.02", "/damping/local=0.3"}) {
+    SCOPED_TRACE(damping);
+    const auto b = vibrate({"/coupling/step_ratio=4", damping}, 3 * one_vibration);
+    EXPECT_LT(b.error, 1e-2);
+  }
+}
+} // namespace

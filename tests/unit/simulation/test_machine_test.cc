@@ -1,0 +1,87 @@
+// The test machine reads what a uniformly stretched body must answer, whatever the body is made of.
+#include "src/simulation/test_machine.h"
+#include "tests/support/small_plate.h"
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+const std::string held_ends = R"(/loads=[{"boundary": "top", "displacement": [null, 0.006]},
+                                         {"boundary": "bottom", "displacement": [null, -0.006]}])";
+const std::string pulled_ends = R"(/loads=[{"boundary": "top", "traction": [null, 1e-4]},
+                                           {"boundary": "bottom", "traction": [null, -1e-4]}])";
+
+/// Uniaxial stress of a plate of E = 1, nu = 0.22 with free sides, plane strain.
+Eigen::Matrix2d uniaxial(double strain)
+{
+  const double nu = 0.22;
+  return Eigen::Vector2d(-nu / (1 - nu) * strain, strain).asDiagonal();
+}
+
+TEST(TestMachine, ReadsStressAndStrainOfEveryKindOfBody)
+{
+  const double strain = 2 * 0.006 / 120, stress = strain / (1 - 0.22 * 0.22);
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    SmallBody small(small_scene(kind.overrides + std::vector<std::string>{held_ends}));
+    small.deform(uniaxial(strain));
+    auto bodies = small.body.bodies();
+    const coupling::StepTime step{0, 0, small.body.dt};
+    small.body.coupler->compute_forces(bodies, step);
+    const TestMachine<2> machine(small.body);
+    const Reading r = machine.read(small.body, 0);
+    // Exact for linear bodies up to rounding, which sums over a few hundred nodes or particles.
+    EXPECT_NEAR(r.stress / stress, 1, 1e-10);
+    EXPECT_NEAR(r.load / (24 * stress), 1, 1e-10);
+    EXPECT_NEAR(r.strain / strain, 1, 1e-12);
+    EXPECT_NEAR(r.displacement / 0.012, 1, 1e-12);
+  }
+}
+
+TEST(TestMachine, ReadsAppliedTractionsAndTheMotionOfTheSides)
+{
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    SmallBody small(small_scene(kind.overrides + std::vector<std::string>{pulled_ends}));
+    small.deform(uniaxial(1e-4));
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    EXPECT_NEAR(r.load / (24 * 1e-4), 1, 1e-10);
+    // The outermost particles lie up to a spacing inside the sides.
+    EXPECT_NEAR(r.strain / 1e-4, 1, 2. / 120);
+  }
+}
+
+TEST(TestMachine, FollowsTheFirstLoadAndItsLargestComponent)
+{
+  const auto machine = [](const std::string &loads) {
+    SmallBody small(small_scene({"/discrete_zone=none", "/loads=" + loads}));
+    return TestMachine<2>(small.body);
+  };
+  const auto shear = machine(R"([{"boundary": "top", "velocity": [1, 0.1]},
+                                 {"boundary": "left", "velocity": [5, null]}])");
+  EXPECT_EQ(shear.axis(), 1);
+  EXPECT_EQ(shear.component(), 0);
+  const auto side = machine(R"([{"boundary": "left", "traction": [0.1, null]}])");
+  EXPECT_EQ(side.axis(), 0);
+  EXPECT_EQ(side.component(), 0);
+  EXPECT_FALSE(machine("[]").has_load());
+}
+
+TEST(TestMachine, TensionIsPositiveOnBothSides)
+{
+  for (const char *boundary : {"top", "bottom"}) {
+    const std::string value = boundary == std::string("top") ? "0.006" : "-0.006";
+    SmallBody small(
+        small_scene({"/discrete_zone=none", "/loads=[{\"boundary\": \"" + std::string(boundary) +
+                                                "\", \"displacement\": [null, " + value + "]}]"}));
+    small.deform(uniaxial(1e-4));
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    EXPECT_GT(TestMachine<2>(small.body).read(small.body, 0).load, 0) << boundary;
+  }
+}
+} // namespace
