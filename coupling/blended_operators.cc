@@ -2,6 +2,8 @@
 
 #include "core/check.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
@@ -41,13 +43,14 @@ class Assembly
 {
 public:
   Assembly(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-           const fem::Body<dim> &body)
+           const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
       : overlap_(overlap), particles_(particles), body_(body), n_(overlap.n_nodes())
   {
     residual = Eigen::MatrixXd::Zero(dim * n_, n_strains<dim>);
     mass_bound = Eigen::VectorXd::Zero(n_);
     for (int k = 0; k < n_strains<dim>; ++k)
       strain_[k] = unit_strain<dim>(k);
+    find_motions(force);
   }
 
   void add_cells();
@@ -60,14 +63,25 @@ public:
 
 private:
   static constexpr double consistent_bound = dim == 2 ? 1. / 9 : 1. / 27;
+  /// What one node's motion does to a member: translation value * u, rotation spin * u.
+  struct Share
+  {
+    int node;
+    double value;
+    Eigen::Matrix<double, n_spins<dim>, dim> spin;
+  };
+  using Motion = std::vector<Share>;
+
   double subtracted_share(const particles::QuadraticTerm<dim> &term) const;
+  void find_motions(const particles::ParticleForce<dim> &force);
 
   const Overlap<dim> &overlap_;
   const particles::Particles<dim> &particles_;
   const fem::Body<dim> &body_;
   const int n_;
   std::array<Eigen::Matrix<double, dim, dim>, n_strains<dim>> strain_;
-  std::vector<int> nodes_; // of the present term
+  std::vector<Motion> motions_; // of the members
+  std::vector<int> nodes_;      // of the present term
 };
 
 template <int dim>
@@ -131,6 +145,69 @@ void Assembly<dim>::add_masses()
     }
 }
 
+// The interpolated motion of the members. Pads turn as they do in the step, by half the curl of
+// their cell. The others turn by half the curl that they and their neighbours see (least squares):
+// the curl of a cell jumps at its border, and a particle there would follow one side only; then
+// shear waves reflect up to ten times more, depending on where the layers of the packing lie in the
+// cells. Both are exact in affine motion.
+template <int dim>
+void Assembly<dim>::find_motions(const particles::ParticleForce<dim> &force)
+{
+  constexpr int nc = fem::n_cell_nodes<dim>;
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  const int n_members = int(overlap_.members.size());
+  std::vector<std::vector<int>> neighbours(n_members);
+  force.for_each_face([&](const particles::FaceView<dim> &face) {
+    if (face.j < 0 || !face.bonded)
+      return;
+    const int i = overlap_.member_of_particle[face.i], j = overlap_.member_of_particle[face.j];
+    if (i >= 0 && j >= 0)
+      neighbours[i].push_back(j);
+  });
+  const auto add = [](Motion &motion, const Share &share) {
+    for (Share &s : motion)
+      if (s.node == share.node)
+      {
+        s.value += share.value;
+        s.spin += share.spin;
+        return;
+      }
+    motion.push_back(share);
+  };
+  for (int i = 0; i < n_members; ++i)
+  {
+    const auto &m = overlap_.members[i];
+    const Vector<dim> x = get(particles_.reference, m.particle);
+    Matrix moment = Matrix::Zero();
+    for (const int j : neighbours[i])
+    {
+      const Vector<dim> r =
+          overlap_.offset(x, get(particles_.reference, overlap_.members[j].particle));
+      moment += r * r.transpose() / r.squaredNorm();
+    }
+    const bool alone = m.pad || std::abs(moment.determinant()) < 1e-3;
+    Motion &motion = motions_.emplace_back();
+    for (int a = 0; a < nc; ++a)
+      add(motion, {m.nodes[a], m.value[a],
+                   (alone ? 1. : 0.) * half_curl<dim>(m.gradient.col(a))});
+    if (alone)
+      continue;
+    const Matrix inverse = moment.inverse();
+    for (const int j : neighbours[i])
+    {
+      const auto &other = overlap_.members[j];
+      const Vector<dim> r = overlap_.offset(x, get(particles_.reference, other.particle));
+      // gradient = sum (u_j - u_i) (x) g
+      const auto spin = half_curl<dim>(inverse * r / r.squaredNorm());
+      for (int a = 0; a < nc; ++a)
+      {
+        add(motion, {other.nodes[a], 0, other.value[a] * spin});
+        add(motion, {m.nodes[a], 0, -m.value[a] * spin});
+      }
+    }
+  }
+}
+
 // 1 - a of a term of the discrete energy: subtracted only where all its particles lie in the
 // overlap; wholly where one of them is pad.
 template <int dim>
@@ -151,7 +228,6 @@ template <int dim>
 void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
 {
   constexpr int nd = n_particle_dofs<dim>;
-  constexpr int nc = fem::n_cell_nodes<dim>;
   const bool touches = std::any_of(term.members.begin(), term.members.end(), [&](int i) {
     return overlap_.member_of_particle[i] >= 0;
   });
@@ -184,13 +260,11 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
         term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
     const Eigen::MatrixXd torque =
         term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
-    for (int a = 0; a < nc; ++a)
-    {
-      const Eigen::MatrixXd spin = Overlap<dim>::spin_block(m, a).transpose() * torque;
+    for (const Share &s : motions_[index])
       for (int c = 0; c < dim; ++c)
-        residual.row(c * n_ + m.nodes[a]) -=
-            (1 - share) * m.value[a] * force.row(c) + ((m.pad ? 1. : 0.) - share) * spin.row(c);
-    }
+        residual.row(c * n_ + s.node) -=
+            (1 - share) * s.value * force.row(c) +
+            ((m.pad ? 1. : 0.) - share) * s.spin.col(c).transpose() * torque;
   }
   if (share == 0)
     return;
@@ -198,22 +272,19 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
   // The subtracted stiffness: rows on the interpolated motion.
   nodes_.clear();
   for (const int i : term.members)
-    for (const int node : overlap_.members[overlap_.member_of_particle[i]].nodes)
-      if (std::find(nodes_.begin(), nodes_.end(), node) == nodes_.end())
-        nodes_.push_back(node);
+    for (const Share &s : motions_[overlap_.member_of_particle[i]])
+      if (std::find(nodes_.begin(), nodes_.end(), s.node) == nodes_.end())
+        nodes_.push_back(s.node);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(term.rows.rows(), dim * nodes_.size());
   for (std::size_t i = 0; i < term.members.size(); ++i)
-  {
-    const auto &m = overlap_.members[overlap_.member_of_particle[term.members[i]]];
-    for (int a = 0; a < nc; ++a)
+    for (const Share &s : motions_[overlap_.member_of_particle[term.members[i]]])
     {
       const int column =
-          dim * int(std::find(nodes_.begin(), nodes_.end(), m.nodes[a]) - nodes_.begin());
+          dim * int(std::find(nodes_.begin(), nodes_.end(), s.node) - nodes_.begin());
       rows.middleCols(column, dim) +=
-          m.value[a] * term.rows.middleCols(i * nd, dim) +
-          term.rows.middleCols(i * nd + dim, n_spins<dim>) * Overlap<dim>::spin_block(m, a);
+          s.value * term.rows.middleCols(i * nd, dim) +
+          term.rows.middleCols(i * nd + dim, n_spins<dim>) * s.spin;
     }
-  }
   const Eigen::MatrixXd k = share * rows.transpose() * term.stiffness.asDiagonal() * rows;
   for (std::size_t a = 0; a < nodes_.size(); ++a)
     for (std::size_t b = 0; b < nodes_.size(); ++b)
@@ -298,7 +369,7 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
                                              const particles::ParticleForce<dim> &force,
                                              const fem::Body<dim> &body)
 {
-  Assembly<dim> assembly(overlap, particles, body);
+  Assembly<dim> assembly(overlap, particles, force, body);
   assembly.add_cells();
   assembly.add_masses();
   force.add_tangent([&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });

@@ -98,11 +98,11 @@ private:
   void find_cells();
 };
 
+/// 1/2 curl(g . x u) = half_curl(g) u: the spin of a motion u that grows along the gradient g (1/m).
 template <int dim>
-Eigen::Matrix<double, n_spins<dim>, dim> Overlap<dim>::spin_block(const Member &m, int a)
+Eigen::Matrix<double, n_spins<dim>, dim> half_curl(const Vector<dim> &g)
 {
   Eigen::Matrix<double, n_spins<dim>, dim> block;
-  const auto g = m.gradient.col(a);
   if constexpr (dim == 2)
     block << -g[1] / 2, g[0] / 2;
   else
@@ -110,4 +110,9 @@ Eigen::Matrix<double, n_spins<dim>, dim> Overlap<dim>::spin_block(const Member &
   return block;
 }
 
+template <int dim>
+Eigen::Matrix<double, n_spins<dim>, dim> Overlap<dim>::spin_block(const Member &m, int a)
+{
+  return half_curl<dim>(m.gradient.col(a));
+}
 } // namespace ligament::coupling
