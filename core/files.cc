@@ -12,8 +12,10 @@
 #include <unistd.h>
 #include <utility>
 
-namespace ligament::core {
-namespace {
+namespace ligament::core
+{
+namespace
+{
 constexpr std::size_t buffer_size = 1 << 16;
 
 /// A device or pipe must be written in place: renaming over it would destroy it.

@@ -4,7 +4,8 @@
 #include <string>
 #include <string_view>
 
-namespace ligament::core {
+namespace ligament::core
+{
 /// A buffered file opened for writing. Every failure of the system throws EnvironmentError with
 /// path and reason. Mode::replace writes beside the target and renames in commit(), so that no
 /// reader ever meets half a file; without commit() the target stays as it was. Mode::stream starts

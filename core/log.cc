@@ -2,7 +2,8 @@
 
 #include <fmt/chrono.h>
 
-namespace ligament::core {
+namespace ligament::core
+{
 Log::Log(const std::string &path, std::FILE *echo)
     : echo_(echo), start_(std::chrono::steady_clock::now())
 {

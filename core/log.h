@@ -11,7 +11,8 @@
 #include <string>
 #include <utility>
 
-namespace ligament::core {
+namespace ligament::core
+{
 /// Passed in, never global. Lines reach the file at once. Without a path nothing is written to
 /// disk; warnings also go to `echo` when that is given.
 class Log

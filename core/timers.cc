@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
-namespace ligament::core {
-namespace {
+namespace ligament::core
+{
+namespace
+{
 double seconds(Timers::Clock::duration d)
 {
   return std::chrono::duration<double>(d).count();

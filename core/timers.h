@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-namespace ligament::core {
+namespace ligament::core
+{
 /// Times are exclusive: while an inner section runs, the outer one stands still, so that the rows
 /// add up to the total. Not for several threads.
 class Timers

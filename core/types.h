@@ -20,7 +20,7 @@ inline constexpr int n_particle_dofs = dim + n_spins<dim>;
 /// Components of a symmetric tensor in Voigt order: (xx, yy, xy) or (xx, yy, zz, yz, xz, xy).
 /// Strains carry engineering shears (2 e_xy), so that e . s is work per volume.
 template <int dim>
-inline constexpr int n_strains = dim * (dim + 1) / 2;
+inline constexpr int n_strains = dim *(dim + 1) / 2;
 
 template <int n>
 using Vec = Eigen::Matrix<double, n, 1>;

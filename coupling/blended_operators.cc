@@ -16,8 +16,8 @@ using core::require;
 
 // Gauss points and weights on [0, 1]; four points integrate the cubic weight times the quadratic
 // strain products exactly where s is linear.
-constexpr double gauss_point[4] = {0.069431844202973712, 0.33000947820757187,
-                                   0.66999052179242813, 0.93056815579702629};
+constexpr double gauss_point[4] = {0.069431844202973712, 0.33000947820757187, 0.66999052179242813,
+                                   0.93056815579702629};
 constexpr double gauss_weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                     0.17392742256872693};
 
@@ -25,12 +25,10 @@ template <int dim, typename Visit>
 void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &size, Visit &&visit)
 {
   constexpr int n = dim == 2 ? 16 : 64;
-  for (int q = 0; q < n; ++q)
-  {
+  for (int q = 0; q < n; ++q) {
     Vector<dim> x;
     double weight = 1;
-    for (int c = 0, rest = q; c < dim; ++c, rest /= 4)
-    {
+    for (int c = 0, rest = q; c < dim; ++c, rest /= 4) {
       x[c] = lower[c] + size[c] * gauss_point[rest % 4];
       weight *= size[c] * gauss_weight[rest % 4];
     }
@@ -88,8 +86,7 @@ template <int dim>
 void Assembly<dim>::add_cells()
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
-  for (const auto &cell : overlap_.cells)
-  {
+  for (const auto &cell : overlap_.cells) {
     const Vector<dim> &lower = overlap_.mesh.cell_lower[cell.cell];
     const Vector<dim> &size = overlap_.mesh.cell_size[cell.cell];
     Eigen::Matrix<double, dim * nc, dim * nc> k;
@@ -105,13 +102,11 @@ void Assembly<dim>::add_cells()
       consistent += w * body_.density * value * value.transpose();
     });
     const double mu = cell.consistent_share;
-    for (int a = 0; a < nc; ++a)
-    {
+    for (int a = 0; a < nc; ++a) {
       const double row_sum = consistent.row(a).sum();
       mass.emplace_back(cell.nodes[a], cell.nodes[a], (1 - mu) * row_sum);
       mass_bound[cell.nodes[a]] += row_sum * (1 - mu + mu * consistent_bound);
-      for (int b = 0; b < nc; ++b)
-      {
+      for (int b = 0; b < nc; ++b) {
         mass.emplace_back(cell.nodes[a], cell.nodes[b], mu * consistent(a, b));
         for (int i = 0; i < dim; ++i)
           for (int j = 0; j < dim; ++j)
@@ -120,8 +115,7 @@ void Assembly<dim>::add_cells()
       }
     }
     Eigen::Matrix<double, dim * nc, 1> u;
-    for (int s = 0; s < n_strains<dim>; ++s)
-    {
+    for (int s = 0; s < n_strains<dim>; ++s) {
       for (int a = 0; a < nc; ++a)
         u.template segment<dim>(a * dim) = strain_[s] * fem::corner<dim>(size, a);
       const Eigen::Matrix<double, dim * nc, 1> f = k * u;
@@ -136,8 +130,7 @@ template <int dim>
 void Assembly<dim>::add_masses()
 {
   for (const auto &m : overlap_.members)
-    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-    {
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
       const double share = m.weight * particles_.mass[m.particle] * m.value[a];
       mass_bound[m.nodes[a]] += share * consistent_bound;
       for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
@@ -166,21 +159,18 @@ void Assembly<dim>::find_motions(const particles::ParticleForce<dim> &force)
   });
   const auto add = [](Motion &motion, const Share &share) {
     for (Share &s : motion)
-      if (s.node == share.node)
-      {
+      if (s.node == share.node) {
         s.value += share.value;
         s.spin += share.spin;
         return;
       }
     motion.push_back(share);
   };
-  for (int i = 0; i < n_members; ++i)
-  {
+  for (int i = 0; i < n_members; ++i) {
     const auto &m = overlap_.members[i];
     const Vector<dim> x = get(particles_.reference, m.particle);
     Matrix moment = Matrix::Zero();
-    for (const int j : neighbours[i])
-    {
+    for (const int j : neighbours[i]) {
       const Vector<dim> r =
           overlap_.offset(x, get(particles_.reference, overlap_.members[j].particle));
       moment += r * r.transpose() / r.squaredNorm();
@@ -188,19 +178,16 @@ void Assembly<dim>::find_motions(const particles::ParticleForce<dim> &force)
     const bool alone = m.pad || std::abs(moment.determinant()) < 1e-3;
     Motion &motion = motions_.emplace_back();
     for (int a = 0; a < nc; ++a)
-      add(motion, {m.nodes[a], m.value[a],
-                   (alone ? 1. : 0.) * half_curl<dim>(m.gradient.col(a))});
+      add(motion, {m.nodes[a], m.value[a], (alone ? 1. : 0.) * half_curl<dim>(m.gradient.col(a))});
     if (alone)
       continue;
     const Matrix inverse = moment.inverse();
-    for (const int j : neighbours[i])
-    {
+    for (const int j : neighbours[i]) {
       const auto &other = overlap_.members[j];
       const Vector<dim> r = overlap_.offset(x, get(particles_.reference, other.particle));
       // gradient = sum (u_j - u_i) (x) g
       const auto spin = half_curl<dim>(inverse * r / r.squaredNorm());
-      for (int a = 0; a < nc; ++a)
-      {
+      for (int a = 0; a < nc; ++a) {
         add(motion, {other.nodes[a], 0, other.value[a] * spin});
         add(motion, {m.nodes[a], 0, -m.value[a] * spin});
       }
@@ -214,8 +201,7 @@ template <int dim>
 double Assembly<dim>::subtracted_share(const particles::QuadraticTerm<dim> &term) const
 {
   bool pad = false;
-  for (const int i : term.members)
-  {
+  for (const int i : term.members) {
     const int m = overlap_.member_of_particle[i];
     if (m < 0)
       return 0;
@@ -228,9 +214,8 @@ template <int dim>
 void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
 {
   constexpr int nd = n_particle_dofs<dim>;
-  const bool touches = std::any_of(term.members.begin(), term.members.end(), [&](int i) {
-    return overlap_.member_of_particle[i] >= 0;
-  });
+  const bool touches = std::any_of(term.members.begin(), term.members.end(),
+                                   [&](int i) { return overlap_.member_of_particle[i] >= 0; });
   if (!touches)
     return;
   require(term.kind != particles::QuadraticTerm<dim>::Kind::wall,
@@ -240,8 +225,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
   // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads.
   // Translations do nothing: the first member stands still.
   Eigen::MatrixXd gradient(term.rows.rows(), n_strains<dim>); // stiffness * row . q
-  for (int s = 0; s < n_strains<dim>; ++s)
-  {
+  for (int s = 0; s < n_strains<dim>; ++s) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(term.rows.cols());
     for (std::size_t i = 0; i < term.members.size(); ++i)
       q.segment<dim>(i * nd) =
@@ -250,8 +234,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     gradient.col(s) = term.stiffness.cwiseProduct(term.rows * q);
   }
   const double share = subtracted_share(term);
-  for (std::size_t i = 0; i < term.members.size(); ++i)
-  {
+  for (std::size_t i = 0; i < term.members.size(); ++i) {
     const int index = overlap_.member_of_particle[term.members[i]];
     if (index < 0)
       continue;
@@ -277,13 +260,11 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
         nodes_.push_back(s.node);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(term.rows.rows(), dim * nodes_.size());
   for (std::size_t i = 0; i < term.members.size(); ++i)
-    for (const Share &s : motions_[overlap_.member_of_particle[term.members[i]]])
-    {
+    for (const Share &s : motions_[overlap_.member_of_particle[term.members[i]]]) {
       const int column =
           dim * int(std::find(nodes_.begin(), nodes_.end(), s.node) - nodes_.begin());
-      rows.middleCols(column, dim) +=
-          s.value * term.rows.middleCols(i * nd, dim) +
-          term.rows.middleCols(i * nd + dim, n_spins<dim>) * s.spin;
+      rows.middleCols(column, dim) += s.value * term.rows.middleCols(i * nd, dim) +
+                                      term.rows.middleCols(i * nd + dim, n_spins<dim>) * s.spin;
     }
   const Eigen::MatrixXd k = share * rows.transpose() * term.stiffness.asDiagonal() * rows;
   for (std::size_t a = 0; a < nodes_.size(); ++a)
@@ -306,8 +287,8 @@ void add_normal(std::vector<Vector<dim>> &normals, const Vector<dim> &normal)
 // A node feels a free surface when a particle at that surface, or a neighbour of one, hands it
 // forces, or when it lies on the surface itself.
 template <int dim>
-std::vector<std::vector<Vector<dim>>>
-find_free_normals(const Overlap<dim> &overlap, const particles::ParticleForce<dim> &force)
+std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &overlap,
+                                                        const particles::ParticleForce<dim> &force)
 {
   const int n_particles = int(overlap.member_of_particle.size());
   std::vector<std::vector<Vector<dim>>> on_surface(n_particles), felt(n_particles);
@@ -323,8 +304,7 @@ find_free_normals(const Overlap<dim> &overlap, const particles::ParticleForce<di
   });
   std::vector<std::vector<Vector<dim>>> normals(overlap.n_nodes());
   for (const auto &m : overlap.members)
-    for (const auto &normal : felt[m.particle])
-    {
+    for (const auto &normal : felt[m.particle]) {
       require((normal.cwiseAbs().array() > 1 - 1e-9).any(),
               "the overlap ends at a curved or inclined free surface, which is not supported yet; "
               "keep holes and notches away from it");
@@ -335,8 +315,7 @@ find_free_normals(const Overlap<dim> &overlap, const particles::ParticleForce<di
   for (int i = 0; i < overlap.n_nodes(); ++i)
     near[overlap.near_nodes[i]] = i;
   for (const auto &face : overlap.mesh.boundary_faces)
-    if (face.boundary < inner_surface<dim>)
-    {
+    if (face.boundary < inner_surface<dim>) {
       const int axis = face.face / 2, side = face.face % 2;
       for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
         if (((a >> axis) & 1) == side)
@@ -353,8 +332,7 @@ Eigen::Matrix<double, dim, dim> unit_strain(int k)
   Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
   if (k < dim)
     e(k, k) = 1;
-  else
-  {
+  else {
     // Voigt order of the shears: 2D xy; 3D yz, xz, xy.
     const int i = dim == 2 ? 0 : (k == 3 ? 1 : 0);
     const int j = dim == 2 ? 1 : (k == 5 ? 1 : 2);
@@ -364,10 +342,9 @@ Eigen::Matrix<double, dim, dim> unit_strain(int k)
 }
 
 template <int dim>
-BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
-                                             const particles::Particles<dim> &particles,
-                                             const particles::ParticleForce<dim> &force,
-                                             const fem::Body<dim> &body)
+BlendedOperators<dim>
+make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                       const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
 {
   Assembly<dim> assembly(overlap, particles, force, body);
   assembly.add_cells();

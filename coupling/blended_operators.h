@@ -14,12 +14,12 @@ namespace ligament::coupling
 template <int dim>
 struct BlendedOperators
 {
-  /// Coarse stiffness without the patch fit, N/m (theory.md eq. (C3)): cells weighted by 1 - a minus
-  /// the discrete energy weighted by 1 - a, evaluated on the interpolated motion; transition cells
-  /// whole.
+  /// Coarse stiffness without the patch fit, N/m (theory.md eq. (C3)): cells weighted by 1 - a
+  /// minus the discrete energy weighted by 1 - a, evaluated on the interpolated motion; transition
+  /// cells whole.
   Eigen::SparseMatrix<double> stiffness;
-  /// Scalar coarse mass of the near cells and of the particles' share, kg; without the lumped mass of
-  /// cells that stay with the far-field solver.
+  /// Scalar coarse mass of the near cells and of the particles' share, kg; without the lumped mass
+  /// of cells that stay with the far-field solver.
   Eigen::SparseMatrix<double> mass;
   /// Per near node a lower bound of `mass` in the sense of quadratic forms, kg: consistent masses
   /// count 1/3^dim of their row sum. Keeps the gap filter below the mass (theory.md, "Dampers").
@@ -31,10 +31,9 @@ struct BlendedOperators
 };
 
 template <int dim>
-BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
-                                             const particles::Particles<dim> &particles,
-                                             const particles::ParticleForce<dim> &force,
-                                             const fem::Body<dim> &body);
+BlendedOperators<dim>
+make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                       const particles::ParticleForce<dim> &force, const fem::Body<dim> &body);
 
 /// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
 template <int dim>

@@ -1,4 +1,5 @@
-// A sparse matrix of dim x dim blocks on nodes: the coarse stiffness as the time loop multiplies it.
+// A sparse matrix of dim x dim blocks on nodes: the coarse stiffness as the time loop multiplies
+// it.
 #pragma once
 
 #include "coupling/transfer.h"

@@ -33,9 +33,9 @@ struct CoupledEnergy
   double kinetic_far = 0;
   double potential_discrete = 0;
   double potential_far = 0;
-  double blended = 0;      // 1/2 U K_near U: what the coupler took over from the far field
-  double fine_damper = 0;  // taken so far by the fluctuation damper
-  double gap_filter = 0;   // taken so far by the gap-band filter
+  double blended = 0;     // 1/2 U K_near U: what the coupler took over from the far field
+  double fine_damper = 0; // taken so far by the fluctuation damper
+  double gap_filter = 0;  // taken so far by the gap-band filter
 };
 
 /// One time step is drift (positions), forces, kick (velocities); theory.md, "One step".

@@ -24,8 +24,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   const auto operators =
       make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body());
   stiffness_ = operators.stiffness;
-  if (parameters.patch_fit)
-  {
+  if (parameters.patch_fit) {
     const PatchFit fit = fit_patch(overlap_, operators, far.body());
     stiffness_ += fit.correction;
     report_.patch_residual_before = fit.residual_before;
@@ -44,8 +43,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
     released.push_back(cell.cell);
   far.release_cells(released);
   std::vector<Eigen::Triplet<double>> far_mass;
-  for (int i = 0; i < n; ++i)
-  {
+  for (int i = 0; i < n; ++i) {
     far_mass.emplace_back(i, i, far.lumped_mass()[overlap_.near_nodes[i]]);
     for (int c = 0; c < dim; ++c)
       core::require(!far.is_held(overlap_.near_nodes[i], c),
@@ -62,8 +60,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   if (parameters.gap_filter > 0)
     filter_ = make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
                               parameters.step_ratio * dt, operators.mass_bound);
-  for (int k = 0; k < transfer_.size(); ++k)
-  {
+  for (int k = 0; k < transfer_.size(); ++k) {
     const double s = transfer_.position(k);
     const double rate =
         parameters.fine_damper * constants.wave_speed_p / overlap_.cell_size * (1 - s) * (1 - s);
@@ -85,8 +82,7 @@ void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
   const auto &far = *bodies.far;
   const auto &zone = bodies.zone->state;
   for (int i = 0; i < overlap_.n_nodes(); ++i)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
@@ -119,8 +115,7 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
   }
   displacement_ += step.dt * velocity_;
   // The far field moves in one go, just before it acts again: it is needed nowhere in between.
-  if ((step.step + 1) % parameters_.step_ratio == 0)
-  {
+  if ((step.step + 1) % parameters_.step_ratio == 0) {
     const auto timing = this->timers_.scope(this->far_);
     auto &far = *bodies.far;
     for (int c = 0; c < dim; ++c)
@@ -137,8 +132,7 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
     const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
   }
-  if (is_far_step(step))
-  {
+  if (is_far_step(step)) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
   }
@@ -183,13 +177,11 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
   const auto &zone = bodies.zone->state;
   double sum = 0;
   for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k)
-    {
+    for (int k = 0; k < transfer_.size(); ++k) {
       const double w = fluctuation_[c][k];
       sum += w * (transfer_.mass(k) * w + dt * zone.force[c][transfer_.particle(k)]);
     }
-  for (int i = 0; i < zone.n_owned; ++i)
-  {
+  for (int i = 0; i < zone.n_owned; ++i) {
     const int index = overlap_.member_of_particle[i];
     if (index < 0)
       for (int c = 0; c < dim; ++c)
@@ -204,8 +196,7 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 template <int dim>
 void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (is_far_step(step))
-  {
+  if (is_far_step(step)) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(parameters_.step_ratio * step.dt, step.time);
   }
@@ -227,8 +218,7 @@ void FineScaleSplit<dim>::kick_coarse(const Bodies<dim> &bodies, const StepTime 
   compute_near_force(bodies, step, force_);
   change_ = step.dt * force_;
   mass_solver_->solve(change_.data(), dim);
-  if (filter_.rows() == 0 || !is_far_step(step))
-  {
+  if (filter_.rows() == 0 || !is_far_step(step)) {
     velocity_ += change_;
     return;
   }
@@ -250,8 +240,7 @@ void FineScaleSplit<dim>::kick_fine(const Bodies<dim> &bodies, const StepTime &s
   const bool damps = parameters_.fine_damper > 0;
   if (damps)
     previous_ = fluctuation_;
-  for (int c = 0; c < dim; ++c)
-  {
+  for (int c = 0; c < dim; ++c) {
     const double *f = zone.force[c].data();
     for (int k = 0; k < transfer_.size(); ++k)
       fluctuation_[c][k] += step.dt * f[transfer_.particle(k)] * transfer_.inverse_mass(k) -
@@ -284,8 +273,7 @@ double FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime
     for (double &v : w)
       v *= factor;
   velocity_ *= factor;
-  if (is_far_step(step))
-  {
+  if (is_far_step(step)) {
     // The far field keeps its velocities for m steps: it takes their damping at once.
     auto &far = *bodies.far;
     const double whole = std::pow(factor, parameters_.step_ratio);
@@ -308,8 +296,8 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
   stiffness_blocks_->subtract_product(displacement_, force);
   e.blended = -0.5 * displacement_.cwiseProduct(force).sum();
-  e.kinetic_far = bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) +
-                  coarse_kinetic(bodies, step);
+  e.kinetic_far =
+      bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) + coarse_kinetic(bodies, step);
   e.kinetic_discrete = fine_kinetic(bodies, step.dt);
   return e;
 }

@@ -11,9 +11,9 @@ namespace ligament::coupling
 {
 struct FineScaleSplitParameters
 {
-  int step_ratio = 1;       // m: the far field acts once per m steps
-  double fine_damper = 8;   // c_f
-  double gap_filter = 4;    // c_g
+  int step_ratio = 1;     // m: the far field acts once per m steps
+  double fine_damper = 8; // c_f
+  double gap_filter = 4;  // c_g
   bool patch_fit = true;
   std::string solver = "eigen";
 };
@@ -31,8 +31,8 @@ struct SplitReport
 
 /// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
 ///
-/// The fluctuation damper acts on w before the kick, so that one projection serves both; the gap-band
-/// filter acts in the steps of the far field.
+/// The fluctuation damper acts on w before the kick, so that one projection serves both; the
+/// gap-band filter acts in the steps of the far field.
 template <int dim>
 class FineScaleSplit : public Coupler<dim>
 {
@@ -66,8 +66,7 @@ private:
   void write_velocities(Bodies<dim> &bodies);
   /// Force on the near nodes at this step: near cells, particles, and in the steps in which it acts
   /// the far field's impulse.
-  void compute_near_force(const Bodies<dim> &bodies, const StepTime &step,
-                          Nodal<dim> &force) const;
+  void compute_near_force(const Bodies<dim> &bodies, const StepTime &step, Nodal<dim> &force) const;
   /// Kinetic energy of V at the time of the forces, in a step in which the far field acts.
   double coarse_kinetic(const Bodies<dim> &bodies, const StepTime &step) const;
   /// 1/2 v M v + 1/2 dt v f of w with all spins and with the velocities outside the overlap.

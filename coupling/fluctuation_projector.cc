@@ -15,8 +15,7 @@ std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
   int band = 0;
   double largest = 0;
   for (int col = 0; col < n; ++col)
-    for (Eigen::SparseMatrix<double>::InnerIterator it(gram, col); it; ++it)
-    {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(gram, col); it; ++it) {
       band = std::max(band, std::abs(int(it.row()) - col));
       if (it.row() == col)
         largest = std::max(largest, it.value());
@@ -24,16 +23,13 @@ std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
   // lower(i, i - j): row i, j <= band columns back.
   Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(band + 1, n); // column i holds row i of L
   std::vector<char> keep(n, 1);
-  for (int i = 0; i < n; ++i)
-  {
+  for (int i = 0; i < n; ++i) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(band + 1);
     for (Eigen::SparseMatrix<double>::InnerIterator it(gram, i); it && it.row() <= i; ++it)
       row[i - it.row()] = it.value();
     const int first = std::max(0, i - band);
-    for (int j = first; j < i; ++j)
-    {
-      if (!keep[j])
-      {
+    for (int j = first; j < i; ++j) {
+      if (!keep[j]) {
         row[i - j] = 0;
         continue;
       }
@@ -67,8 +63,7 @@ FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
   std::vector<int> order(n), rank(n);
   std::iota(order.begin(), order.end(), 0);
   Vector<dim> low = overlap.mesh.nodes[overlap.near_nodes[0]], high = low;
-  for (const int node : overlap.near_nodes)
-  {
+  for (const int node : overlap.near_nodes) {
     low = low.cwiseMin(overlap.mesh.nodes[node]);
     high = high.cwiseMax(overlap.mesh.nodes[node]);
   }
@@ -94,8 +89,7 @@ FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
 
   std::vector<int> unknown(n, -1);
   for (int i = 0; i < n; ++i)
-    if (keep[i])
-    {
+    if (keep[i]) {
       unknown[i] = int(nodes_.size());
       nodes_.push_back(order[i]);
     }

@@ -59,8 +59,7 @@ private:
     for (int i = 0; i < n; ++i)
       for (int c = 0; c < columns; ++c)
         y[place_[i] * columns + c] = x[i * columns + c];
-    for (int j = 0; j < n; ++j)
-    {
+    for (int j = 0; j < n; ++j) {
       double solved[columns];
       for (int c = 0; c < columns; ++c)
         solved[c] = y[j * columns + c] *= inverse_diagonal_[j];
@@ -68,8 +67,7 @@ private:
         for (int c = 0; c < columns; ++c)
           y[row[k] * columns + c] -= value[k] * solved[c];
     }
-    for (int j = n - 1; j >= 0; --j)
-    {
+    for (int j = n - 1; j >= 0; --j) {
       double sum[columns];
       for (int c = 0; c < columns; ++c)
         sum[c] = y[j * columns + c];
@@ -99,8 +97,7 @@ public:
     map_ = std::make_unique<Epetra_Map>(n, 0, comm_);
     matrix_ = std::make_unique<Epetra_CrsMatrix>(Copy, *map_, 0);
     // Symmetric: a column is a row.
-    for (int row = 0; row < n; ++row)
-    {
+    for (int row = 0; row < n; ++row) {
       const int begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
       matrix_->InsertGlobalValues(row, end - begin, matrix.valuePtr() + begin,
                                   matrix.innerIndexPtr() + begin);
@@ -110,9 +107,10 @@ public:
     problem_->SetOperator(matrix_.get());
     solver_.reset(Amesos().Create("Amesos_Klu", *problem_));
     core::require<core::EnvironmentError>(solver_ != nullptr, "this Trilinos has no Amesos_Klu");
-    core::require(solver_->SymbolicFactorization() == 0 && solver_->NumericFactorization() == 0,
-                  "an overlap system is singular: the overlap holds too few particles for its cells; "
-                  "raise /far_field/cell_size or /coupling/overlap_cells");
+    core::require(
+        solver_->SymbolicFactorization() == 0 && solver_->NumericFactorization() == 0,
+        "an overlap system is singular: the overlap holds too few particles for its cells; "
+        "raise /far_field/cell_size or /coupling/overlap_cells");
   }
 
   void solve(double *x, int n_columns) const override

@@ -13,14 +13,12 @@ Coupler<dim>::Coupler(core::Timers &timers)
 template <int dim>
 void NullCoupler<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (bodies.zone)
-  {
+  if (bodies.zone) {
     const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->drift(step.dt);
     bodies.zone->update_ghosts();
   }
-  if (bodies.far)
-  {
+  if (bodies.far) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->drift(step.dt);
   }
@@ -29,13 +27,11 @@ void NullCoupler<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 template <int dim>
 void NullCoupler<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (bodies.zone)
-  {
+  if (bodies.zone) {
     const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
   }
-  if (bodies.far)
-  {
+  if (bodies.far) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
   }
@@ -44,13 +40,11 @@ void NullCoupler<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &step)
 template <int dim>
 void NullCoupler<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (bodies.zone)
-  {
+  if (bodies.zone) {
     const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->kick(step.dt);
   }
-  if (bodies.far)
-  {
+  if (bodies.far) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(step.dt, step.time);
   }
@@ -60,14 +54,12 @@ template <int dim>
 double NullCoupler<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
 {
   double loss = 0;
-  if (bodies.zone)
-  {
+  if (bodies.zone) {
     auto &zone = *bodies.zone;
     loss += scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor);
     zone.scale_velocities(factor);
   }
-  if (bodies.far)
-  {
+  if (bodies.far) {
     auto &far = *bodies.far;
     loss += scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
     far.scale_velocities(factor);
@@ -79,13 +71,11 @@ template <int dim>
 CoupledEnergy NullCoupler<dim>::energy(const Bodies<dim> &bodies, const StepTime &step) const
 {
   CoupledEnergy e;
-  if (bodies.zone)
-  {
+  if (bodies.zone) {
     e.kinetic_discrete = bodies.zone->kinetic_energy(step.dt);
     e.potential_discrete = bodies.zone->potential_energy();
   }
-  if (bodies.far)
-  {
+  if (bodies.far) {
     e.kinetic_far = bodies.far->kinetic_energy(step.dt);
     e.potential_far = bodies.far->potential_energy();
   }

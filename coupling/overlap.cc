@@ -25,16 +25,15 @@ double Overlap<dim>::distance_to_edge(const Vector<dim> &x) const
 {
   double distance = std::numeric_limits<double>::max();
   for (const auto &side : parameters.sides)
-    distance = std::min(distance, side.upper ? side.position - x[side.axis]
-                                             : x[side.axis] - side.position);
+    distance = std::min(distance,
+                        side.upper ? side.position - x[side.axis] : x[side.axis] - side.position);
   return distance;
 }
 
 template <int dim>
 double Overlap<dim>::position(const Vector<dim> &x) const
 {
-  const double s =
-      (distance_to_edge(x) - depth) / (parameters.length - depth - parameters.spacing);
+  const double s = (distance_to_edge(x) - depth) / (parameters.length - depth - parameters.spacing);
   return std::clamp(s, 0., 1.);
 }
 
@@ -73,8 +72,7 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
   });
   std::vector<char> pad(n, 0);
   for (int i = 0; i < n; ++i)
-    if (closure[i].norm() > 1e-8 * surface[i])
-    {
+    if (closure[i].norm() > 1e-8 * surface[i]) {
       pad[i] = 1;
       for (const int j : neighbours[i])
         pad[j] = 1;
@@ -82,8 +80,7 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
 
   const fem::CellLocator<dim> locator(mesh);
   member_of_particle.assign(n, -1);
-  for (int i = 0; i < n; ++i)
-  {
+  for (int i = 0; i < n; ++i) {
     const Vector<dim> x = get(particles.reference, i);
     const int cell = locator.find(x);
     core::require(cell >= 0 || !pad[i],
@@ -105,12 +102,12 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
       depth = std::max(depth, distance_to_edge(x));
   }
   core::require(!members.empty(), "no particle lies in the mesh: the zones do not overlap");
-  core::require(parameters.length > depth + 3 * parameters.spacing,
-                fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
-                            "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
-                            parameters.length, depth + 3 * parameters.spacing));
-  for (auto &m : members)
-  {
+  core::require(
+      parameters.length > depth + 3 * parameters.spacing,
+      fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
+                  "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
+                  parameters.length, depth + 3 * parameters.spacing));
+  for (auto &m : members) {
     const Vector<dim> x = get(particles.reference, m.particle);
     m.position = position(x);
     m.weight = weight(x);
@@ -130,11 +127,9 @@ void Overlap<dim>::find_cells()
       if (node_layer[node] < 0)
         node_layer[node] = l;
   };
-  for (int c = 0; c < mesh.n_cells(); ++c)
-  {
+  for (int c = 0; c < mesh.n_cells(); ++c) {
     bool inside = true;
-    for (const auto &side : parameters.sides)
-    {
+    for (const auto &side : parameters.sides) {
       const double lower = mesh.cell_lower[c][side.axis];
       const double size = mesh.cell_size[c][side.axis];
       const double reach = side.upper ? side.position - lower : lower + size - side.position;
@@ -145,9 +140,9 @@ void Overlap<dim>::find_cells()
   }
   for (const auto &m : members)
     for (const int node : m.nodes)
-      core::require(node_layer[node] == 0, "a particle lies in the mesh beyond the edge of the packing");
-  for (int l = 1; l <= parameters.transition_cells; ++l)
-  {
+      core::require(node_layer[node] == 0,
+                    "a particle lies in the mesh beyond the edge of the packing");
+  for (int l = 1; l <= parameters.transition_cells; ++l) {
     const std::vector<int> before = node_layer;
     for (int c = 0; c < mesh.n_cells(); ++c)
       if (layer[c] < 0 && std::any_of(mesh.cells[c].begin(), mesh.cells[c].end(),
@@ -157,8 +152,7 @@ void Overlap<dim>::find_cells()
 
   std::vector<int> near(mesh.n_nodes(), -1);
   for (int node = 0; node < mesh.n_nodes(); ++node)
-    if (node_layer[node] >= 0)
-    {
+    if (node_layer[node] >= 0) {
       near[node] = int(near_nodes.size());
       near_nodes.push_back(node);
       is_overlap_node.push_back(node_layer[node] == 0);
@@ -169,8 +163,7 @@ void Overlap<dim>::find_cells()
                   "field more fine cells or lower /coupling/transition_cells");
   cell_size = std::numeric_limits<double>::max();
   for (int c = 0; c < mesh.n_cells(); ++c)
-    if (layer[c] >= 0)
-    {
+    if (layer[c] >= 0) {
       Cell cell;
       cell.cell = c;
       cell.layer = layer[c];

@@ -57,11 +57,11 @@ public:
   struct Member
   {
     int particle;
-    bool pad;                            // moves with the mesh
-    double weight;                       // a at its centre
-    double position;                     // s at its centre
-    std::array<int, n_cell_nodes> nodes; // near nodes of its cell
-    Vec<n_cell_nodes> value;             // Phi: shape functions at its centre
+    bool pad;                                          // moves with the mesh
+    double weight;                                     // a at its centre
+    double position;                                   // s at its centre
+    std::array<int, n_cell_nodes> nodes;               // near nodes of its cell
+    Vec<n_cell_nodes> value;                           // Phi: shape functions at its centre
     Eigen::Matrix<double, dim, n_cell_nodes> gradient; // of the shape functions, 1/m
   };
 
@@ -76,11 +76,11 @@ public:
 
   std::vector<Member> members;
   std::vector<Cell> cells;
-  std::vector<int> near_nodes;        // mesh node of every near node
-  std::vector<char> is_overlap_node;  // per near node: node of a cell of layer 0
+  std::vector<int> near_nodes;         // mesh node of every near node
+  std::vector<char> is_overlap_node;   // per near node: node of a cell of layer 0
   std::vector<int> member_of_particle; // index into members, or -1
-  double depth = 0;                   // m
-  double cell_size = 0;               // m, smallest edge of the overlap's cells
+  double depth = 0;                    // m
+  double cell_size = 0;                // m, smallest edge of the overlap's cells
   const fem::Mesh<dim> &mesh;
   const OverlapParameters parameters;
 
@@ -98,7 +98,8 @@ private:
   void find_cells();
 };
 
-/// 1/2 curl(g . x u) = half_curl(g) u: the spin of a motion u that grows along the gradient g (1/m).
+/// 1/2 curl(g . x u) = half_curl(g) u: the spin of a motion u that grows along the gradient g
+/// (1/m).
 template <int dim>
 Eigen::Matrix<double, n_spins<dim>, dim> half_curl(const Vector<dim> &g)
 {

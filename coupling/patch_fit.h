@@ -14,8 +14,8 @@ struct PatchFit
   double largest_modulus; // max |S| / (C11 V_b): how much stiffness the fit moves
 };
 
-/// Solves for Z = sum over blocks of 2^dim overlap cells (theory.md, "Patch fit"). At nodes that feel
-/// a free surface only the strains that leave that surface free of stress are fitted.
+/// Solves for Z = sum over blocks of 2^dim overlap cells (theory.md, "Patch fit"). At nodes that
+/// feel a free surface only the strains that leave that surface free of stress are fitted.
 template <int dim>
 PatchFit fit_patch(const Overlap<dim> &overlap, const BlendedOperators<dim> &operators,
                    const fem::Body<dim> &body);

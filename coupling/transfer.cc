@@ -13,8 +13,7 @@ Transfer<dim>::Transfer(const Overlap<dim> &overlap, const particles::Particles<
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return members[a].nodes < members[b].nodes; });
-  for (const int index : order)
-  {
+  for (const int index : order) {
     const auto &m = members[index];
     if (groups_.empty() || groups_.back().nodes != m.nodes)
       groups_.push_back({size(), size(), m.nodes});
@@ -26,8 +25,7 @@ Transfer<dim>::Transfer(const Overlap<dim> &overlap, const particles::Particles<
     mass_.push_back(m.pad ? 0 : particles.mass[m.particle]);
     inverse_mass_.push_back(m.pad ? 0 : particles.inverse_mass[m.particle]);
     position_.push_back(m.position);
-    if (m.pad)
-    {
+    if (m.pad) {
       Pad pad = {m.particle, m.nodes, {}};
       for (int a = 0; a < nc; ++a)
         pad.spin[a] = Overlap<dim>::spin_block(m, a);
@@ -40,8 +38,7 @@ template <int dim>
 void Transfer<dim>::add_forces(const particles::Particles<dim> &particles, Nodal<dim> &nodal) const
 {
   for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       const double *f = particles.force[c].data();
       double sum[nc] = {};
       for (int k = group.begin; k < group.end; ++k)
@@ -50,8 +47,7 @@ void Transfer<dim>::add_forces(const particles::Particles<dim> &particles, Nodal
       for (int a = 0; a < nc; ++a)
         nodal(group.nodes[a], c) += sum[a];
     }
-  for (const auto &pad : pads_)
-  {
+  for (const auto &pad : pads_) {
     const Spin<dim> torque = get(particles.torque, pad.particle);
     for (int a = 0; a < nc; ++a)
       nodal.row(pad.nodes[a]) += torque.transpose() * pad.spin[a];
@@ -62,11 +58,9 @@ template <int dim>
 void Transfer<dim>::add_momentum(const Components<dim> &w, Nodal<dim> &nodal) const
 {
   for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       double sum[nc] = {};
-      for (int k = group.begin; k < group.end; ++k)
-      {
+      for (int k = group.begin; k < group.end; ++k) {
         const double momentum = mass_[k] * w[c][k];
         for (int a = 0; a < nc; ++a)
           sum[a] += value_[a][k] * momentum;
@@ -80,13 +74,11 @@ template <int dim>
 void Transfer<dim>::subtract(const Nodal<dim> &nodal, Components<dim> &w) const
 {
   for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       double at_node[nc];
       for (int a = 0; a < nc; ++a)
         at_node[a] = nodal(group.nodes[a], c);
-      for (int k = group.begin; k < group.end; ++k)
-      {
+      for (int k = group.begin; k < group.end; ++k) {
         double v = 0;
         for (int a = 0; a < nc; ++a)
           v += value_[a][k] * at_node[a];
@@ -100,22 +92,19 @@ void Transfer<dim>::write_velocities(const Nodal<dim> &nodal, const Components<d
                                      particles::Particles<dim> &particles) const
 {
   for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       double at_node[nc];
       for (int a = 0; a < nc; ++a)
         at_node[a] = nodal(group.nodes[a], c);
       double *velocity = particles.velocity[c].data();
-      for (int k = group.begin; k < group.end; ++k)
-      {
+      for (int k = group.begin; k < group.end; ++k) {
         double v = w[c][k];
         for (int a = 0; a < nc; ++a)
           v += value_[a][k] * at_node[a];
         velocity[particle_[k]] = v;
       }
     }
-  for (const auto &pad : pads_)
-  {
+  for (const auto &pad : pads_) {
     Spin<dim> spin = Spin<dim>::Zero();
     for (int a = 0; a < nc; ++a)
       spin += pad.spin[a] * nodal.row(pad.nodes[a]).transpose();

@@ -8,7 +8,7 @@ namespace
 {
 using Direction = DirectionConstants<2>;
 
-/// Theory.md eqs. (D6), (D8b) for the two neighbours along one direction. The traction of a bond is
+/// theory.md eqs. (D6), (D8b) for the two neighbours along one direction. The traction of a bond is
 /// formed by the same operations in the same order from either end: pair forces cancel exactly.
 struct Bonds2d
 {

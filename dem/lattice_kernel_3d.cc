@@ -40,7 +40,7 @@ struct Q
   V v;
 };
 
-/// Theory.md eqs. (D4), (D6), (D8b) for the two neighbours along one direction. The traction of a
+/// theory.md eqs. (D4), (D6), (D8b) for the two neighbours along one direction. The traction of a
 /// bond is formed by the same operations in the same order from either end: pair forces cancel
 /// exactly.
 struct Bonds3d

@@ -22,7 +22,7 @@ struct CrackAxes
 ///
 /// Where a row lies in the crack plane all tips are alike. Otherwise tips differ (hexagonal, 30
 /// degrees off a row: 0.60 to 0.87) and c is the largest of a few at different places of the
-/// lattice: a straight crack then never starts below K_Ic, but up to a third above it.
+/// lattice: a straight crack then never starts below K_Ic, but it can start up to 45 % above it.
 template <int dim>
 double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, const CrackAxes<dim> &crack = {});

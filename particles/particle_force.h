@@ -32,8 +32,8 @@ template <int dim>
 struct FaceView
 {
   int i, j;
-  Vector<dim> normal; // unit, out of i
-  double area;        // m^2
+  Vector<dim> normal;   // unit, out of i
+  double area;          // m^2
   Vector<dim> centroid; // m, in the reference
   bool bonded;
 };
@@ -42,12 +42,12 @@ struct FaceView
 template <int dim>
 struct ElasticConstants
 {
-  double youngs_modulus; // Pa
-  double poissons_ratio; // -
-  double density;        // kg/m^3
+  double youngs_modulus;    // Pa
+  double poissons_ratio;    // -
+  double density;           // kg/m^3
   Stiffness<dim> stiffness; // Pa, Voigt, for the plane mode of the packing in 2D
-  double wave_speed_p; // m/s, in the body (plane mode in 2D)
-  double wave_speed_s; // m/s
+  double wave_speed_p;      // m/s, in the body (plane mode in 2D)
+  double wave_speed_s;      // m/s
 };
 
 /// Adds forces to all particles: one virtual call per step.
@@ -70,8 +70,7 @@ public:
   virtual ElasticConstants<dim> elastic_constants() const = 0;
 
   /// Every quadratic term of the linearised energy of the present bonds, once.
-  virtual void
-  add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
+  virtual void add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
 
   /// Every face of every cell, once per side (i, j), then the faces on the surface (j = -1).
   virtual void for_each_face(const std::function<void(const FaceView<dim> &)> &visit) const = 0;

@@ -19,17 +19,17 @@ struct Particles
   int n_owned = 0;
   int n_ghosts = 0;
 
-  Components<dim> reference;         // m, centre in the reference configuration
-  Components<dim> displacement;      // m
-  Components<n_rotations> rotation;  // rad (2D), unit quaternion (3D)
-  Components<dim> velocity;          // m/s
-  Components<n_spins<dim>> spin;     // rad/s, in space axes
-  Components<dim> force;             // N
-  Components<n_spins<dim>> torque;   // N m, in space axes
-  std::vector<double> volume;        // m^3 (2D: area times thickness)
-  std::vector<double> mass;          // kg
-  std::vector<double> inverse_mass;  // 1/kg, 0 for held particles
-  std::vector<double> inertia;       // kg m^2
+  Components<dim> reference;        // m, centre in the reference configuration
+  Components<dim> displacement;     // m
+  Components<n_rotations> rotation; // rad (2D), unit quaternion (3D)
+  Components<dim> velocity;         // m/s
+  Components<n_spins<dim>> spin;    // rad/s, in space axes
+  Components<dim> force;            // N
+  Components<n_spins<dim>> torque;  // N m, in space axes
+  std::vector<double> volume;       // m^3 (2D: area times thickness)
+  std::vector<double> mass;         // kg
+  std::vector<double> inverse_mass; // 1/kg, 0 for held particles
+  std::vector<double> inertia;      // kg m^2
   std::vector<double> inverse_inertia;
   std::vector<std::uint8_t> material;
   std::vector<std::int64_t> global_id;

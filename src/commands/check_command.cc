@@ -38,8 +38,7 @@ Prediction time_steps(CoupledBody<dim> &body, core::Timers &timers)
   coupling::StepTime step;
   step.dt = body.dt;
   const auto advance = [&](int n) {
-    for (int i = 0; i < n; ++i, ++step.step)
-    {
+    for (int i = 0; i < n; ++i, ++step.step) {
       body.coupler->compute_forces(bodies, step);
       body.coupler->kick(bodies, step);
       body.coupler->drift(bodies, step);
@@ -58,8 +57,7 @@ Prediction time_steps(CoupledBody<dim> &body, core::Timers &timers)
   const auto start = Clock::now();
   long n = 0;
   double seconds = 0;
-  while (seconds < 0.5)
-  {
+  while (seconds < 0.5) {
     advance(block);
     n += block;
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -83,28 +81,25 @@ void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &f
   view.field = "displacement";
   view.magnify = 0;
   view.title = scene.title;
-  if (scene.zone.extent == DiscreteZone::Extent::box)
-  {
+  if (scene.zone.extent == DiscreteZone::Extent::box) {
     std::array<double, 6> box = {};
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       box[c] = std::max(scene.zone.lower[c], body.lower[c]);
       box[3 + c] = std::min(scene.zone.upper[c], body.upper[c]);
     }
     view.boxes.push_back(box);
   }
-  auto picture = picture_of(particle_fields(body), cell_fields(body), {}, dim, body.spacing / 2, view);
+  auto picture =
+      picture_of(particle_fields(body), cell_fields(body), {}, dim, body.spacing / 2, view);
   picture.value_label.clear();
   for (auto &scatter : picture.scatters)
     scatter.values.clear();
   for (auto &quads : picture.quads)
     quads.values.clear();
-  for (const auto &load : scene.loads)
-  {
+  for (const auto &load : scene.loads) {
     Label label;
     const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
-    const int boundary =
-        int(std::find(names.begin(), names.end(), load.boundary) - names.begin());
+    const int boundary = int(std::find(names.begin(), names.end(), load.boundary) - names.begin());
     label.position = {0, 0, 0};
     label.position[boundary / 2] =
         (boundary % 2 ? 0.94 : -0.94) * scene.specimen.size[boundary / 2] / 2;
@@ -112,8 +107,7 @@ void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &f
     picture.labels.push_back(label);
   }
   for (const auto &crack : scene.specimen.cracks)
-    if (dim == 2)
-    {
+    if (dim == 2) {
       Segments segments;
       for (const auto &point : crack.points)
         segments.points.insert(segments.points.end(), {point[0], point[1], 0.});
@@ -130,8 +124,7 @@ int check(const CommandLine &line, const ReadResult &input)
   core::Timers timers;
   const double memory_before = resident_bytes();
   auto body = make_body<dim>(scene, log, timers);
-  if (line.draw)
-  {
+  if (line.draw) {
     const std::string folder = output_folder(line);
     std::filesystem::create_directories(folder);
     const std::string file = folder + "/check.png";
@@ -161,8 +154,7 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
   fmt::print("  predicted time       {:>12}\n", duration_text(seconds));
   double saving = 0;
-  if (body.split)
-  {
+  if (body.split) {
     saving = prediction.discrete_share * double(body.equivalent_particles) / particles;
     fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements\n", saving);
     fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n",
@@ -170,8 +162,7 @@ int check(const CommandLine &line, const ReadResult &input)
   }
   for (const auto &part : body.skipped)
     fmt::print("  not needed: {} ({})\n", part.what, part.why);
-  if (line.json)
-  {
+  if (line.json) {
     nlohmann::ordered_json json = {{"particles", particles},
                                    {"cells", cells},
                                    {"overlap_particles", overlap},

@@ -55,16 +55,12 @@ int run_command(const CommandLine &line, const ReadResult &input)
       scene.dimension == 2 ? simulate<2>(scene, folder) : simulate<3>(scene, folder);
   const std::string report = write_report(folder.path);
   fmt::print("{}\n{}\n{}\nreport: {}\n", record.reason, headline(record), record.verdict, report);
-  if (line.json)
-  {
-    nlohmann::ordered_json json = {{"status", record.status},
-                                   {"reason", record.reason},
-                                   {"steps", record.steps},
-                                   {"wall_seconds", record.wall_seconds},
-                                   {"peak_load", nullptr},
-                                   {"broken_bonds", record.broken_bonds},
-                                   {"energy_residual", nullptr},
-                                   {"output", folder.path}};
+  if (line.json) {
+    nlohmann::ordered_json json = {
+        {"status", record.status},    {"reason", record.reason},
+        {"steps", record.steps},      {"wall_seconds", record.wall_seconds},
+        {"peak_load", nullptr},       {"broken_bonds", record.broken_bonds},
+        {"energy_residual", nullptr}, {"output", folder.path}};
     if (record.peak_load)
       json["peak_load"] = *record.peak_load;
     if (record.energy_residual)

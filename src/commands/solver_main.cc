@@ -37,24 +37,15 @@ int main(int argc, char **argv)
   const CommandLine line = parse_command_line(argc, argv);
   if (line.exit_code)
     return *line.exit_code;
-  try
-  {
+  try {
     return dispatch(line);
-  }
-  catch (const core::InputError &error)
-  {
+  } catch (const core::InputError &error) {
     return fail(line, error.what(), 2);
-  }
-  catch (const core::GuardStop &error)
-  {
+  } catch (const core::GuardStop &error) {
     return fail(line, error.what(), 3);
-  }
-  catch (const std::bad_alloc &)
-  {
+  } catch (const std::bad_alloc &) {
     return fail(line, "not enough memory; `ligament check` predicts what the scene needs", 4);
-  }
-  catch (const std::exception &error)
-  {
+  } catch (const std::exception &error) {
     return fail(line, error.what(), 4);
   }
 }

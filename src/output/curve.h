@@ -7,8 +7,8 @@
 
 namespace ligament::program
 {
-/// Index of the largest value in the direction of loading, which is the sign of the mean load; empty
-/// for an empty or all-zero curve.
+/// Index of the largest value in the direction of loading, which is the sign of the mean load;
+/// empty for an empty or all-zero curve.
 std::optional<std::size_t> peak_index(const std::vector<double> &load);
 
 /// Slope of `load` over `displacement` by least squares over the points before the peak whose load

@@ -21,14 +21,11 @@ std::vector<double> interleave(const std::array<std::vector<double>, n> &compone
 template <int dim>
 void put_tensor(const Strain<dim> &s, const CoupledBody<dim> &body, double *out)
 {
-  if constexpr (dim == 2)
-  {
+  if constexpr (dim == 2) {
     const double zz = body.plane == PlaneMode::strain ? body.poissons_ratio * (s[0] + s[1]) : 0;
     const double t[6] = {s[0], s[1], zz, s[2], 0, 0};
     std::copy(t, t + 6, out);
-  }
-  else
-  {
+  } else {
     const double t[6] = {s[0], s[1], s[2], s[5], s[3], s[4]};
     std::copy(t, t + 6, out);
   }
@@ -43,7 +40,8 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
     return fields;
   const auto &state = body.zone->state;
   fields.reference = interleave(state.reference);
-  fields.fields.push_back({"displacement", "m", Field::Kind::vector, interleave(state.displacement)});
+  fields.fields.push_back(
+      {"displacement", "m", Field::Kind::vector, interleave(state.displacement)});
   fields.fields.push_back({"velocity", "m/s", Field::Kind::vector, interleave(state.velocity)});
   Components<n_strains<dim>> stress;
   body.force->stresses(state, stress);
@@ -51,8 +49,7 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   {
     const auto &overlap = body.split->overlap();
     for (const auto &m : overlap.members)
-      if (m.pad)
-      {
+      if (m.pad) {
         Vec<dim * fem::n_cell_nodes<dim>> u;
         for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
           u.template segment<dim>(a * dim) =
@@ -84,21 +81,18 @@ CellFields cell_fields(const CoupledBody<dim> &body)
     for (int c = 0; c < dim; ++c)
       fields.reference[3 * i + c] = mesh.nodes[i][c];
   std::vector<double> tensor(6 * mesh.n_nodes(), 0.), count(mesh.n_nodes(), 0.);
-  for (int cell = 0; cell < mesh.n_cells(); ++cell)
-  {
+  for (int cell = 0; cell < mesh.n_cells(); ++cell) {
     const Vector<dim> &lower = mesh.cell_lower[cell], &size = mesh.cell_size[cell];
-    const auto b = fem::strain_matrix<dim>(
-        fem::shape_gradients<dim>(lower, size, lower + size / 2));
+    const auto b =
+        fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, lower + size / 2));
     Vec<dim * nc> u;
-    for (int a = 0; a < nc; ++a)
-    {
+    for (int a = 0; a < nc; ++a) {
       fields.connectivity.push_back(mesh.cells[cell][ring[a]]);
       u.template segment<dim>(a * dim) = get(body.far->displacement, mesh.cells[cell][a]);
     }
     double stress[6];
     put_tensor<dim>(body.far->body().stiffness * (b * u), body, stress);
-    for (const int node : mesh.cells[cell])
-    {
+    for (const int node : mesh.cells[cell]) {
       count[node] += 1;
       for (int k = 0; k < 6; ++k)
         tensor[6 * node + k] += stress[k];
@@ -127,8 +121,7 @@ Snapshot snapshot(const CoupledBody<dim> &body, double time)
   const auto &state = body.zone->state;
   s.global_id = state.global_id;
   for (int i = 0; i < state.n_owned; ++i)
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       s.reference.push_back(state.reference[c][i]);
       s.displacement.push_back(state.displacement[c][i]);
       s.velocity.push_back(state.velocity[c][i]);
@@ -142,14 +135,12 @@ std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body)
   std::vector<BrokenBond> bonds;
   if (!body.force)
     return bonds;
-  for (const auto &broken : body.force->broken_bonds())
-  {
+  for (const auto &broken : body.force->broken_bonds()) {
     BrokenBond b = {};
     b.i = broken.global_i;
     b.j = broken.global_j;
     b.time = broken.time;
-    for (int c = 0; c < dim; ++c)
-    {
+    for (int c = 0; c < dim; ++c) {
       b.centroid[c] = broken.position[c];
       b.normal[c] = broken.normal[c];
     }

@@ -32,21 +32,17 @@ bool is_broken_across(const CoupledBody<dim> &body, int axis)
   const int n_nodes = body.far ? body.far->mesh().n_nodes() : 0;
   const int low = n_particles + n_nodes, high = low + 1;
   Sets sets(high + 1);
-  if (body.zone)
-  {
+  if (body.zone) {
     body.zone->force->for_each_face([&](const particles::FaceView<dim> &face) {
-      if (face.j >= 0)
-      {
+      if (face.j >= 0) {
         if (face.bonded)
           sets.join(face.i, face.j);
-      }
-      else if (std::abs(face.normal[axis]) > 0.999 &&
-               std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
+      } else if (std::abs(face.normal[axis]) > 0.999 &&
+                 std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
         sets.join(face.i, face.centroid[axis] < 0 ? low : high);
     });
   }
-  if (body.far)
-  {
+  if (body.far) {
     const auto &mesh = body.far->mesh();
     for (const auto &cell : mesh.cells)
       for (const int node : cell)
@@ -58,8 +54,7 @@ bool is_broken_across(const CoupledBody<dim> &body, int axis)
       if (std::abs(std::abs(mesh.nodes[i][axis]) - body.upper[axis]) < 1e-9 * body.upper[axis])
         sets.join(n_particles + i, mesh.nodes[i][axis] < 0 ? low : high);
   }
-  if (body.split)
-  {
+  if (body.split) {
     const auto &overlap = body.split->overlap();
     for (const auto &m : overlap.members)
       sets.join(m.particle, n_particles + overlap.near_nodes[m.nodes[0]]);

@@ -20,12 +20,10 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
 {
   const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
   std::vector<core::BoundaryLoad<dim>> loads;
-  for (const auto &parameters : scene.loads)
-  {
+  for (const auto &parameters : scene.loads) {
     core::BoundaryLoad<dim> load;
     using Kind = typename core::BoundaryLoad<dim>::Kind;
-    load.boundary =
-        int(std::find(names.begin(), names.end(), parameters.boundary) - names.begin());
+    load.boundary = int(std::find(names.begin(), names.end(), parameters.boundary) - names.begin());
     load.kind = parameters.kind == "velocity"       ? Kind::velocity
                 : parameters.kind == "displacement" ? Kind::displacement
                                                     : Kind::traction;
@@ -52,8 +50,7 @@ particles::LatticeParameters<dim> lattice_of(const Scene &scene)
     p.holes.push_back({to_vector<dim>(hole.centre), hole.radius});
   for (const auto &notch : scene.specimen.notches)
     p.notches.push_back({to_vector<dim>(notch.lower), to_vector<dim>(notch.upper)});
-  for (const auto &crack : scene.specimen.cracks)
-  {
+  for (const auto &crack : scene.specimen.cracks) {
     auto &points = p.cracks.emplace_back();
     for (const auto &point : crack.points)
       points.push_back(to_vector<dim>(point));
@@ -80,8 +77,7 @@ double material_volume(const Scene &scene)
     volume *= scene.specimen.size[c];
   for (const auto &hole : scene.specimen.holes)
     volume -= M_PI * hole.radius * hole.radius;
-  for (const auto &notch : scene.specimen.notches)
-  {
+  for (const auto &notch : scene.specimen.notches) {
     double box = 1;
     for (int c = 0; c < scene.dimension; ++c)
       box *= std::max(0., std::min(notch.upper[c], scene.specimen.size[c] / 2) -
@@ -94,8 +90,7 @@ double material_volume(const Scene &scene)
 double lattice_cell_volume(const Scene &scene)
 {
   const double d = scene.zone.spacing;
-  switch (particles::lattice_kind(scene.zone.packing))
-  {
+  switch (particles::lattice_kind(scene.zone.packing)) {
   case particles::LatticeKind::square:
     return d * d * scene.specimen.thickness;
   case particles::LatticeKind::hexagonal:
@@ -119,11 +114,10 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
   law.criterion = dem::FractureLaw::Criterion::maximum_tension;
   if (p.strength)
     law.strength = *p.strength;
-  else
-  {
+  else {
     const auto lattice = lattice_of<dim>(scene);
-    const double c = dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation,
-                                                   material_of(scene));
+    const double c =
+        dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material_of(scene));
     law.strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
     body.figures["toughness_factor"] = {c, ""};
     log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, law.strength,
@@ -140,8 +134,7 @@ std::vector<coupling::CoupledSide> coupled_sides(const Scene &scene)
   std::vector<coupling::CoupledSide> sides;
   if (scene.zone.extent != DiscreteZone::Extent::box)
     return sides;
-  for (int c = 0; c < dim; ++c)
-  {
+  for (int c = 0; c < dim; ++c) {
     const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
     if (scene.zone.lower[c] > -half + tolerance)
       sides.push_back({c, false, scene.zone.lower[c]});
@@ -208,10 +201,11 @@ void choose_step(const Scene &scene, CoupledBody<dim> &body)
 {
   const double stable = body.zone ? body.dt_zone : body.dt_far;
   body.dt = scene.time.step.value_or(scene.time.step_fraction * stable);
-  require(body.dt <= 0.99 * stable,
-          fmt::format("/time/step: {:.4g} s is above the stable step of {:.4g} s; give at most 0.95 "
-                      "of that, or leave it out",
-                      body.dt, stable));
+  require(
+      body.dt <= 0.99 * stable,
+      fmt::format("/time/step: {:.4g} s is above the stable step of {:.4g} s; give at most 0.95 "
+                  "of that, or leave it out",
+                  body.dt, stable));
   if (body.zone && body.far)
     require(scene.coupling.step_ratio * body.dt <= 0.6 * body.dt_far,
             fmt::format("/coupling/step_ratio: {} steps of {:.4g} s are more than 0.6 of the far "
@@ -221,11 +215,9 @@ void choose_step(const Scene &scene, CoupledBody<dim> &body)
 }
 
 template <int dim>
-void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
-                  core::Timers &timers)
+void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log, core::Timers &timers)
 {
-  if (!body.zone || !body.far || scene.coupling.scheme == "none")
-  {
+  if (!body.zone || !body.far || scene.coupling.scheme == "none") {
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
     return;
   }
@@ -243,10 +235,11 @@ void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
   auto bodies = body.bodies();
   auto split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p, body.dt, timers);
   const auto &report = split->report();
-  log.info("overlap: {} particles ({} pad), {} nodes; patch residual {:.1e} before and {:.1e} after "
-           "the fit, which moves {:.1e} of C11",
-           report.overlap_particles, report.pad_particles, report.near_nodes,
-           report.patch_residual_before, report.patch_residual, report.patch_modulus);
+  log.info(
+      "overlap: {} particles ({} pad), {} nodes; patch residual {:.1e} before and {:.1e} after "
+      "the fit, which moves {:.1e} of C11",
+      report.overlap_particles, report.pad_particles, report.near_nodes,
+      report.patch_residual_before, report.patch_residual, report.patch_modulus);
   body.figures["patch_residual"] = {report.patch_residual, ""};
   body.figures["patch_modulus"] = {report.patch_modulus, ""};
   body.split = split.get();

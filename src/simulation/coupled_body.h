@@ -19,19 +19,19 @@ struct CoupledBody
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
 
-  dem::ManyBodyForce<dim> *force = nullptr;          // of the zone
-  coupling::FineScaleSplit<dim> *split = nullptr;    // the coupler, when it is one
+  dem::ManyBodyForce<dim> *force = nullptr;       // of the zone
+  coupling::FineScaleSplit<dim> *split = nullptr; // the coupler, when it is one
 
-  Vector<dim> lower, upper;             // m, specimen
-  double thickness = 1;                 // m, 2D
-  PlaneMode plane = PlaneMode::strain;  // 2D
+  Vector<dim> lower, upper;            // m, specimen
+  double thickness = 1;                // m, 2D
+  PlaneMode plane = PlaneMode::strain; // 2D
   double poissons_ratio = 0;
-  double spacing = 0;                   // m, d
-  double dt = 0;                        // s
-  double dt_zone = 0;                   // s, stable step of the discrete side
-  double dt_far = 0;                    // s, of the far field's own cells
+  double spacing = 0;                    // m, d
+  double dt = 0;                         // s
+  double dt_zone = 0;                    // s, stable step of the discrete side
+  double dt_far = 0;                     // s, of the far field's own cells
   std::int64_t equivalent_particles = 0; // of the pure discrete model
-  std::int64_t n_cracked_faces = 0;     // cut by initial cracks
+  std::int64_t n_cracked_faces = 0;      // cut by initial cracks
   std::map<std::string, Figure> figures;
   std::vector<SkippedPart> skipped;
 

@@ -25,8 +25,7 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   EnergyLedger ledger;
   ledger.body = body.coupler->energy(body.bodies(), step);
   ledger.damping = damping;
-  if (body.force)
-  {
+  if (body.force) {
     ledger.fracture = body.force->fracture_energy();
     ledger.breaking_step_error = body.force->breaking_step_error();
     ledger.friction = body.force->frictional_work();

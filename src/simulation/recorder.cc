@@ -30,9 +30,9 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), history_interval_(scene.output.history_interval > 0
-                                               ? scene.output.history_interval
-                                               : scene.time.duration / 2000)
+      n_steps_(n_steps),
+      history_interval_(scene.output.history_interval > 0 ? scene.output.history_interval
+                                                          : scene.time.duration / 2000)
 {
   if (body.split && body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
     for (const auto &m : body.split->overlap().members)
@@ -51,8 +51,7 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (!guard && !history && !fields && !progress)
     return {};
   const auto timing = timers_.scope(section_);
-  if (history)
-  {
+  if (history) {
     record_history(body, step, damping);
     if (!std::isfinite(residual_.back()))
       return Stop{true, fmt::format("the energies are no longer finite at {:.4g} s: the run is "
@@ -94,18 +93,17 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
   // Which state is the peak is known only later: keep copies on the way up, of the motion closely,
-  // of the fields, which take longer, more rarely. A crack that runs moves within microseconds, while
-  // the grips still feel a rising load: the last state before it is the one to show and to compare.
+  // of the fields, which take longer, more rarely. A crack that runs moves within microseconds,
+  // while the grips still feel a rising load: the last state before it is the one to show and to
+  // compare.
   const bool still = ledger.kinetic() < 0.01 * ledger.potential() || !peak_snapshot_;
   if (!still)
     return;
-  if (std::abs(r.load) > 1.002 * std::abs(motion_copied_at_))
-  {
+  if (std::abs(r.load) > 1.002 * std::abs(motion_copied_at_)) {
     motion_copied_at_ = r.load;
     peak_snapshot_ = snapshot(body, step.time);
   }
-  if (std::abs(r.load) > 1.02 * std::abs(fields_copied_at_))
-  {
+  if (std::abs(r.load) > 1.02 * std::abs(fields_copied_at_)) {
     fields_copied_at_ = r.load;
     peak_particles_ = particle_fields(body);
     peak_cells_ = cell_fields(body);
@@ -123,7 +121,8 @@ void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::
 // What the coupler cannot carry: fracture near the overlap, and a turning overlap, whose coarse
 // stiffness is that of the reference.
 template <int dim>
-std::optional<std::string> Recorder<dim>::overlap_leaves_its_range(const CoupledBody<dim> &body) const
+std::optional<std::string>
+Recorder<dim>::overlap_leaves_its_range(const CoupledBody<dim> &body) const
 {
   const auto &state = body.zone->state;
   const double strength = body.force->fracture().strength;
@@ -150,19 +149,16 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
                                                 const coupling::StepTime &step)
 {
   if (body.split && !warned_)
-    if (const auto finding = overlap_leaves_its_range(body))
-    {
+    if (const auto finding = overlap_leaves_its_range(body)) {
       warned_ = true;
       const std::string reason = fmt::format("at {:.4g} s {}", step.time, *finding);
       log_.warning(reason);
       if (scene_.coupling.guard == "stop")
         return Stop{true, reason};
     }
-  if (scene_.time.stop_when == "specimen_broken" && body.force)
-  {
+  if (scene_.time.stop_when == "specimen_broken" && body.force) {
     const std::size_t n_broken = body.force->broken_bonds().size();
-    if (n_broken != broken_before_)
-    {
+    if (n_broken != broken_before_) {
       broken_before_ = n_broken;
       if (is_broken_across(body, machine_.axis()))
         return Stop{false, fmt::format("specimen broken at {:.4g} s", step.time)};
@@ -221,8 +217,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   if (body.zone)
     write_snapshot(folder_.end_snapshot(), snapshot(body, step.time));
 
-  if (const auto peak = peak_index(load_))
-  {
+  if (const auto peak = peak_index(load_)) {
     record.peak_load = load_[*peak];
     record.peak_stress = stress_[*peak];
     record.peak_time = time_[*peak];

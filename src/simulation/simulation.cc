@@ -36,8 +36,7 @@ std::optional<Stop> Simulation<dim>::loop()
   auto bodies = body_.bodies();
   auto &coupler = *body_.coupler;
   coupler.compute_forces(bodies, clock_.now);
-  while (!clock_.is_at_end())
-  {
+  while (!clock_.is_at_end()) {
     if (clock_.now.step % coupler.step_ratio() == 0)
       if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
         return stop;

@@ -10,8 +10,7 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
   double largest = 0;
   for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
     for (int c = 0; c < dim; ++c)
-      if (body.loads[l].value[c] && std::abs(*body.loads[l].value[c]) > largest)
-      {
+      if (body.loads[l].value[c] && std::abs(*body.loads[l].value[c]) > largest) {
         largest = std::abs(*body.loads[l].value[c]);
         load_ = int(l);
         component_ = c;
@@ -60,22 +59,17 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
   const double place = boundary % 2 ? body.upper[axis] : body.lower[axis];
   double sum = 0;
   long n = 0;
-  if (body.far)
-  {
+  if (body.far) {
     const auto &mesh = body.far->mesh();
     for (int i = 0; i < mesh.n_nodes(); ++i)
-      if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place))
-      {
+      if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place)) {
         sum += body.far->displacement[component][i];
         ++n;
       }
-  }
-  else
-  {
+  } else {
     const auto &state = body.zone->state;
     for (int i = 0; i < state.n_owned; ++i)
-      if (std::abs(state.reference[axis][i] - place) < body.spacing)
-      {
+      if (std::abs(state.reference[axis][i] - place) < body.spacing) {
         sum += state.displacement[component][i];
         ++n;
       }

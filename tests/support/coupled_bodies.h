@@ -32,9 +32,9 @@ struct CoupledBodiesParameters
   particles::LatticeKind kind =
       dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero();
-  Vector<dim> size;               // specimen, centred at the origin
-  Vector<dim> zone_size;          // beyond the specimen: not coupled there
-  double cell_size = 4.1;         // h/d, incommensurate with the packing
+  Vector<dim> size;       // specimen, centred at the origin
+  Vector<dim> zone_size;  // beyond the specimen: not coupled there
+  double cell_size = 4.1; // h/d, incommensurate with the packing
   int overlap_cells = 3;
   int transition_cells = 6;
   int levels = 0;
@@ -65,8 +65,7 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   overlap.spacing = 1;
   overlap.transition_cells = p.transition_cells;
   for (int c = 0; c < dim; ++c)
-    if (p.zone_size[c] < p.size[c])
-    {
+    if (p.zone_size[c] < p.size[c]) {
       const double edge = p.zone_size[c] / 2;
       lattice.zone_lower[c] = -edge;
       lattice.zone_upper[c] = edge;
@@ -79,8 +78,9 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   particles::Particles<dim> state;
   particles::fill_particles(packing, p.material.density, state);
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(
-      std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(
-                            std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>()));
+      std::move(state),
+      std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), p.material,
+                                                std::vector<core::BoundaryLoad<dim>>()));
   fem::Body<dim> material;
   material.stiffness = p.material.template elastic_constants<dim>().stiffness;
   material.density = p.material.density;
@@ -90,7 +90,7 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   body.dt = p.step_fraction * body.dt_zone;
   auto bodies = body.bodies();
   body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
-                                                                *body.timers);
+                                                               *body.timers);
   return body;
 }
 

@@ -16,13 +16,10 @@ CoupledBodiesParameters<dim> band(double nu)
 {
   CoupledBodiesParameters<dim> p;
   p.material.poissons_ratio = nu;
-  if constexpr (dim == 2)
-  {
+  if constexpr (dim == 2) {
     p.size = {61, 140};
     p.zone_size = {100, 50};
-  }
-  else
-  {
+  } else {
     p.size = {13, 11, 90};
     p.zone_size = {100, 100, 34};
     p.cell_size = 3.1;
@@ -33,8 +30,7 @@ CoupledBodiesParameters<dim> band(double nu)
 TEST(FineScaleSplit, PatchFitOfABandThatEndsAtFreeEdges)
 {
   for (const double nu : {0., 0.22, 0.45})
-    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
-    {
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
       auto p = band<2>(nu);
       p.material.plane = plane;
       const auto body = make_coupled_bodies(p);
@@ -46,8 +42,7 @@ TEST(FineScaleSplit, PatchFitOfABandThatEndsAtFreeEdges)
 
 TEST(FineScaleSplit, PatchFitOfABandIn3D)
 {
-  for (const double nu : {0., 0.3})
-  {
+  for (const double nu : {0., 0.3}) {
     const auto body = make_coupled_bodies(band<3>(nu));
     const auto &report = body.split->report();
     EXPECT_LT(report.patch_residual, 1e-12) << "nu " << nu;
@@ -57,8 +52,7 @@ TEST(FineScaleSplit, PatchFitOfABandIn3D)
 
 TEST(FineScaleSplit, PatchFitOfAClosedRing)
 {
-  for (const double nu : {0., 0.22, 0.45})
-  {
+  for (const double nu : {0., 0.22, 0.45}) {
     auto p = band<2>(nu);
     p.size = {150, 140};
     p.zone_size = {51, 47};
@@ -92,17 +86,14 @@ double drift_of_noise(CoupledBodiesParameters<dim> p, double speed, int n_steps)
   time.dt = body.dt;
   std::vector<double> block(10, 0.);
   const int per_block = n_steps / 10, sample = p.split.step_ratio * 10;
-  for (double &mean : block)
-  {
+  for (double &mean : block) {
     int n = 0;
-    for (int k = 0; k < per_block; ++k)
-    {
+    for (int k = 0; k < per_block; ++k) {
       body.split->compute_forces(bodies, time);
-      if (time.step % sample == 0)
-      {
+      if (time.step % sample == 0) {
         const auto e = body.split->energy(bodies, time);
-        mean += e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far +
-                e.blended;
+        mean +=
+            e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
         ++n;
       }
       body.split->kick(bodies, time);

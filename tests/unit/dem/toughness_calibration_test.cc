@@ -14,7 +14,7 @@ DemMaterial material(double nu, PlaneMode plane = PlaneMode::strain)
 
 TEST(ToughnessCalibration, KnownFactorsAlongARow)
 {
-  // Theory.md section 1.6: 0.75 for the square lattice, 0.81 to 0.83 for the hexagonal one.
+  // By theory.md section 1.6: 0.75 for the square lattice, 0.81 to 0.83 for the hexagonal one.
   EXPECT_NEAR(calibrate_toughness<2>(Kind::square, Spin<2>(0.), material(0.22)), 0.75, 0.01);
   for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
     const double c = calibrate_toughness<2>(Kind::hexagonal, Spin<2>(0.), material(0.22, plane));
