@@ -84,6 +84,7 @@ RunRecord Simulation<dim>::make_record() const
 template <int dim>
 RunRecord Simulation<dim>::run()
 {
+  log_.info("ligament {}, commit {}", core::version(), core::commit());
   RunRecord record = make_record();
   record.setup_seconds = timers_.total();
   write_run_record(folder_.record(), record);
@@ -107,6 +108,7 @@ RunRecord Simulation<dim>::run()
   record.verdict = verdict(record);
   write_run_record(folder_.record(), record);
   log_.info("{} after {} steps: {}", record.status, record.steps, record.reason);
+  log_.info("time by section\n{}", core::timing_table(record.timing));
   log_.info("{}", record.verdict);
   return record;
 }
