@@ -141,7 +141,7 @@ void Assembly<dim>::add_masses()
 // The interpolated motion of the members. Pads turn as they do in the step, by half the curl of
 // their cell. The others turn by half the curl that they and their neighbours see (least squares):
 // the curl of a cell jumps at its border, and a particle there would follow one side only; then
-// shear waves reflect up to ten times more, depending on where the layers of the packing lie in the
+// shear waves reflect 1.5 to 3 times more, depending on where the layers of the packing lie in the
 // cells. Both are exact in affine motion.
 template <int dim>
 void Assembly<dim>::find_motions(const particles::ParticleForce<dim> &force)
