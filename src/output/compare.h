@@ -20,9 +20,11 @@ struct CompareResult
   /// the nearest one of the other; the mean of both directions, and the largest of all.
   std::optional<double> crack_distance_mean;
   std::optional<double> crack_distance_max;
-  /// The same over faces that broke up to the peak of their own run, and over the later ones.
-  std::optional<double> crack_distance_mean_to_peak, crack_distance_max_to_peak;
-  std::optional<double> crack_distance_mean_after_peak, crack_distance_max_after_peak;
+  /// The same over faces that broke up to the onset of fracture in their own run, and over the
+  /// later ones. The onset is the time of the largest stored elastic energy: the peak as the crack
+  /// sees it, before the news of it reaches the grips.
+  std::optional<double> crack_distance_mean_to_onset, crack_distance_max_to_onset;
+  std::optional<double> crack_distance_mean_after_onset, crack_distance_max_after_onset;
   std::optional<double> energy_error;   // external work at the peak
   std::optional<double> time_ratio;     // wall time of the reference over that of the run
   std::optional<double> particle_ratio; // particles of the reference over those of the run

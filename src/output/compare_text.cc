@@ -39,10 +39,10 @@ nlohmann::json to_json(const CompareResult &r)
   put("stiffness_error", r.stiffness_error);
   put("crack_distance_mean", r.crack_distance_mean);
   put("crack_distance_max", r.crack_distance_max);
-  put("crack_distance_mean_to_peak", r.crack_distance_mean_to_peak);
-  put("crack_distance_max_to_peak", r.crack_distance_max_to_peak);
-  put("crack_distance_mean_after_peak", r.crack_distance_mean_after_peak);
-  put("crack_distance_max_after_peak", r.crack_distance_max_after_peak);
+  put("crack_distance_mean_to_onset", r.crack_distance_mean_to_onset);
+  put("crack_distance_max_to_onset", r.crack_distance_max_to_onset);
+  put("crack_distance_mean_after_onset", r.crack_distance_mean_after_onset);
+  put("crack_distance_max_after_onset", r.crack_distance_max_after_onset);
   put("energy_error", r.energy_error);
   put("time_ratio", r.time_ratio);
   put("particle_ratio", r.particle_ratio);

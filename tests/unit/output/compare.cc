@@ -40,8 +40,8 @@ TEST(Compare, FindsTheFactorsBetweenTwoRuns)
   EXPECT_NEAR(*r.particle_ratio, 10, rounding);
   // The same faces, shifted by 1.5 d: every distance is 1.5, in both directions.
   for (const auto &distance : {r.crack_distance_mean, r.crack_distance_max,
-                               r.crack_distance_mean_to_peak, r.crack_distance_max_to_peak,
-                               r.crack_distance_mean_after_peak, r.crack_distance_max_after_peak})
+                               r.crack_distance_mean_to_onset, r.crack_distance_max_to_onset,
+                               r.crack_distance_mean_after_onset, r.crack_distance_max_after_onset})
     EXPECT_NEAR(distance.value(), 1.5, rounding);
   EXPECT_EQ(r.matched_particles, 10);
   EXPECT_NEAR(*r.displacement_error, 0.25, rounding);
@@ -65,8 +65,8 @@ TEST(Compare, LongerCrackCountsInOneDirection)
   const int n_run = run.n_broken_before + run.n_broken_after;
   EXPECT_NEAR(*r.crack_distance_max, 3, rounding);
   EXPECT_NEAR(*r.crack_distance_mean, 0.5 * (1. + 2. + 3.) / n_run, rounding);
-  EXPECT_NEAR(*r.crack_distance_max_to_peak, 0, rounding);
-  EXPECT_NEAR(*r.crack_distance_mean_after_peak, 0.5 * (1. + 2. + 3.) / run.n_broken_after,
+  EXPECT_NEAR(*r.crack_distance_max_to_onset, 0, rounding);
+  EXPECT_NEAR(*r.crack_distance_mean_after_onset, 0.5 * (1. + 2. + 3.) / run.n_broken_after,
               rounding);
 }
 

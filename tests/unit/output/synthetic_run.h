@@ -12,7 +12,8 @@
 
 namespace ligament::tests
 {
-/// A straight load line up to the peak, then nothing; a crack along y = crack_y.
+/// A straight load line up to the peak, then nothing; a crack along y = crack_y that takes over
+/// shortly before the grips see the peak.
 struct SyntheticRun
 {
   double stiffness = 70e9;  // Pa
@@ -22,6 +23,7 @@ struct SyntheticRun
   double peak_time = 1e-4;  // s
   double spacing = 1e-3;    // m
   double crack_y = 0;       // m
+  double onset = 0.95;      // of the peak's time: the stored energy falls from then on
   int n_broken_before = 3, n_broken_after = 4;
   double displacement_factor = 1;
   std::int64_t first_id = 0;
@@ -31,6 +33,12 @@ struct SyntheticRun
   double peak_load() const { return peak_stress * area; }
   double peak_strain() const { return peak_stress / stiffness; }
   double work() const { return 0.5 * peak_load() * peak_strain() * length; }
+
+  /// Elastic energy in J at a share of the peak's time.
+  double stored(double share) const
+  {
+    return work() * (share <= onset ? share * share : 2 * onset * onset - share * share);
+  }
 
   program::RunFolder write(const std::string &path) const
   {
@@ -63,6 +71,9 @@ struct SyntheticRun
       history.set("strain", s * peak_strain());
       history.set("displacement", s * peak_strain() * length);
       history.set("external_work", std::min(s * s, 1.) * work());
+      history.set("potential_discrete", 0.6 * stored(s));
+      history.set("potential_far", 0.5 * stored(s));
+      history.set("blended", -0.1 * stored(s));
       history.set("residual", 1e-6 * s * work());
       history.end_row();
     }
@@ -72,7 +83,7 @@ struct SyntheticRun
     for (int b = 0; b < n_broken_before + n_broken_after; ++b)
       bonds.push_back({b,
                        b + 1,
-                       peak_time * (b < n_broken_before ? 0.9 : 1.1),
+                       peak_time * (b < n_broken_before ? onset - 0.01 : onset + 0.01),
                        {b * spacing, crack_y, 0},
                        {0, 1, 0},
                        0.5 * spacing,
