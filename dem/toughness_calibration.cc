@@ -1,8 +1,7 @@
 #include "dem/toughness_calibration.h"
 
 #include "dem/many_body_force.h"
-
-#include <Eigen/SparseCholesky>
+#include "particles/linear_equilibrium.h"
 
 namespace ligament::dem
 {
@@ -111,55 +110,24 @@ double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientatio
   // Outside the radius the particles follow the field; inside they are unknowns.
   constexpr int dofs = n_particle_dofs<dim>;
   const int n = packing.size();
-  std::vector<int> unknown(n, -1);
+  std::vector<char> is_free(n, 0);
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(dofs * n);
-  int n_unknown = 0;
   for (int i = 0; i < n; ++i) {
     const double x = packing.centre[0][i] - tip[0], y = packing.centre[1][i] - tip[1];
     if (std::hypot(x, y) < radius)
-      unknown[i] = n_unknown++;
+      is_free[i] = 1;
     else {
       const Vector<3> u = field(x, y);
       motion.segment<2>(dofs * i) = u.head<2>();
       motion[dofs * i + dofs - 1] = u[2];
     }
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
-  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
-    if (std::none_of(term.members.begin(), term.members.end(),
-                     [&](int i) { return unknown[i] >= 0; }))
-      return;
-    const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
-    for (std::size_t a = 0; a < term.members.size(); ++a) {
-      const int row = unknown[term.members[a]];
-      if (row < 0)
-        continue;
-      for (std::size_t b = 0; b < term.members.size(); ++b) {
-        const int column = unknown[term.members[b]];
-        const auto block = k.block<dofs, dofs>(dofs * a, dofs * b);
-        if (column < 0)
-          right.segment<dofs>(dofs * row) -= block * motion.segment<dofs>(dofs * term.members[b]);
-        else if (column <= row)
-          for (int r = 0; r < dofs; ++r)
-            for (int c = 0; c < dofs; ++c)
-              entries.push_back({dofs * row + r, dofs * column + c, block(r, c)});
-      }
-    }
-  });
-  Eigen::SparseMatrix<double> matrix(right.size(), right.size());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
-  core::require<core::EnvironmentError>(solver.info() == Eigen::Success,
-                                        "the crack-tip solve for the toughness factor failed");
-  const Eigen::VectorXd solution = solver.solve(right);
+  particles::solve_equilibrium(force, is_free, motion);
 
   particles::Particles<dim> state;
   particles::fill_particles(packing, scaled.density, state);
   std::vector<int> near;
   for (int i = 0; i < n; ++i) {
-    if (unknown[i] >= 0)
-      motion.segment<dofs>(dofs * i) = solution.segment<dofs>(dofs * unknown[i]);
     set(state.displacement, i, Vector<dim>(motion.segment<dim>(dofs * i)));
     for (int c = 0; c < n_spins<dim>; ++c)
       state.rotation[dim == 2 ? 0 : c + 1][i] =
