@@ -1,6 +1,7 @@
 #include "coupling/blended_operators.h"
 
 #include "core/check.h"
+#include "coupling/nodal_matrix.h"
 
 #include <Eigen/LU>
 
@@ -42,7 +43,8 @@ class Assembly
 public:
   Assembly(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
            const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
-      : overlap_(overlap), particles_(particles), body_(body), n_(overlap.n_nodes())
+      : stiffness(overlap.n_nodes()), overlap_(overlap), particles_(particles), body_(body),
+        n_(overlap.n_nodes())
   {
     residual = Eigen::MatrixXd::Zero(dim * n_, n_strains<dim>);
     mass_bound = Eigen::VectorXd::Zero(n_);
@@ -55,7 +57,8 @@ public:
   void add_masses();
   void add_term(const particles::QuadraticTerm<dim> &term);
 
-  Triplets stiffness, mass;
+  NodalMatrix<dim> stiffness;
+  Triplets mass;
   Eigen::MatrixXd residual;
   Eigen::VectorXd mass_bound;
 
@@ -106,14 +109,10 @@ void Assembly<dim>::add_cells()
       const double row_sum = consistent.row(a).sum();
       mass.emplace_back(cell.nodes[a], cell.nodes[a], (1 - mu) * row_sum);
       mass_bound[cell.nodes[a]] += row_sum * (1 - mu + mu * consistent_bound);
-      for (int b = 0; b < nc; ++b) {
+      for (int b = 0; b < nc; ++b)
         mass.emplace_back(cell.nodes[a], cell.nodes[b], mu * consistent(a, b));
-        for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j)
-            stiffness.emplace_back(i * n_ + cell.nodes[a], j * n_ + cell.nodes[b],
-                                   k(a * dim + i, b * dim + j));
-      }
     }
+    stiffness.add({cell.nodes.begin(), cell.nodes.end()}, k);
     Eigen::Matrix<double, dim * nc, 1> u;
     for (int s = 0; s < n_strains<dim>; ++s) {
       for (int a = 0; a < nc; ++a)
@@ -266,13 +265,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
       rows.middleCols(column, dim) += s.value * term.rows.middleCols(i * nd, dim) +
                                       term.rows.middleCols(i * nd + dim, n_spins<dim>) * s.spin;
     }
-  const Eigen::MatrixXd k = share * rows.transpose() * term.stiffness.asDiagonal() * rows;
-  for (std::size_t a = 0; a < nodes_.size(); ++a)
-    for (std::size_t b = 0; b < nodes_.size(); ++b)
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j)
-          stiffness.emplace_back(i * n_ + nodes_[a], j * n_ + nodes_[b],
-                                 -k(a * dim + i, b * dim + j));
+  stiffness.add(nodes_, (rows.transpose() * term.stiffness.asDiagonal() * rows).eval(), -share);
 }
 
 template <int dim>
@@ -353,8 +346,7 @@ make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<d
 
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;
-  result.stiffness.resize(dim * n, dim * n);
-  result.stiffness.setFromTriplets(assembly.stiffness.begin(), assembly.stiffness.end());
+  result.stiffness = assembly.stiffness.to_sparse();
   result.mass.resize(n, n);
   result.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
   result.mass_bound = assembly.mass_bound;

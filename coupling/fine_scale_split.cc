@@ -30,7 +30,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
     report_.patch_residual_before = fit.residual_before;
     report_.patch_residual = fit.residual;
     report_.patch_modulus = fit.largest_modulus;
-    core::require(fit.residual < 1e-10,
+    core::require(fit.residual < 1e-12,
                   fmt::format("the patch fit leaves a residual of {:.1e} (of C11 h^(dim-1)): the "
                               "overlap's shape is not supported; widen /coupling/overlap_cells or "
                               "keep the overlap away from corners, holes and loads",

@@ -1,0 +1,86 @@
+// The equations of the patch fit, never assembled: blocks of cells with their symmetric
+// corrections, and the least-norm solution by conjugate gradients on two levels.
+#pragma once
+
+#include "coupling/overlap.h"
+
+#include <Eigen/Cholesky>
+
+#include <memory>
+
+namespace ligament::coupling
+{
+/// Forces on nodes under unit strains, N: one row per strain; columns node by node, component by
+/// component.
+template <int dim>
+using StrainForces = Eigen::Matrix<double, n_strains<dim>, Eigen::Dynamic>;
+
+/// Motions of the nodes of a block, shared by blocks of equal shape; rows are node by node,
+/// component by component.
+template <int dim>
+struct PatchBasis
+{
+  Eigen::MatrixXd place;       // m, one column per node, against the node in the middle
+  Eigen::MatrixXd homogeneous; // Q, orthonormal: rigid and affine motions
+  Eigen::MatrixXd strain;      // Q^T P_a, 1/m: P_a = Q strain (theory.md eq. (C8))
+};
+
+/// The overlap cells around one node and their part of the correction Z. Its forces under the unit
+/// strains are P_a S + P_n H.
+template <int dim>
+struct PatchBlock
+{
+  std::vector<int> nodes; // near nodes
+  double volume;          // m^3
+  std::shared_ptr<const PatchBasis<dim>> basis;
+  Stiffness<dim> s = Stiffness<dim>::Zero(); // S, N m
+  StrainForces<dim> h;                       // (P_n H)^T, N
+
+  /// Its part of Z, N/m.
+  Eigen::MatrixXd correction() const;
+};
+
+/// One block around every node that only overlap cells share.
+template <int dim>
+std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, double thickness);
+
+/// G x = R with x the S/V_b and H/(V_b/h) of all blocks, only at the states that each node admits.
+template <int dim>
+class PatchEquations
+{
+public:
+  using Field = StrainForces<dim>;
+
+  /// `states`: per near node its admissible strains, orthonormal columns; none outside the overlap.
+  PatchEquations(std::vector<PatchBlock<dim>> &blocks, const std::vector<Eigen::MatrixXd> &states,
+                 const Overlap<dim> &overlap);
+
+  /// Leaves only the admissible states.
+  void restrict_to_states(Field &field) const;
+
+  /// Sets S and H of least norm with G x = right, to round-off, for a restricted `right` in the
+  /// range of G (forces that balance); returns what is left of it.
+  Field solve(const Field &right);
+
+private:
+  static constexpr int ns = n_strains<dim>;
+
+  void make_coarse_space(const Overlap<dim> &overlap);
+  void add_coarse_share(const PatchBlock<dim> &block, Eigen::MatrixXd &matrix) const;
+  void add_transposed(const Field &y);
+  Field forces() const;
+  Field apply(const Field &y) const;
+  Field precondition(const Field &r) const;
+  Field conjugate_gradients(const Field &right, double tolerance) const;
+
+  std::vector<PatchBlock<dim>> &blocks_;
+  const double length_;                    // m, h
+  std::vector<Stiffness<dim>> projectors_; // per near node, on its states
+  Eigen::VectorXd diagonal_;               // per near node: sum of (V_b/h)^2
+  // Coarse level: hats over the overlap, per node the numbers and values of those that reach it.
+  std::vector<std::vector<std::pair<int, double>>> hats_;
+  int n_hats_ = 0;
+  Eigen::LLT<Eigen::MatrixXd> coarse_;
+  Eigen::VectorXd coarse_scale_;
+};
+} // namespace ligament::coupling
