@@ -1,6 +1,7 @@
 #include "dem/contact_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <unordered_map>
 
@@ -9,8 +10,10 @@ namespace ligament::dem
 template <int dim>
 ContactSearch<dim>::ContactSearch(const particles::Packing<dim> &packing, double face_area)
     : spacing_(packing.spacing), skin_(packing.spacing / 4), face_area_(face_area),
-      on_surface_(packing.size(), 0)
+      largest_(packing.spacing), diameter_(packing.diameter), on_surface_(packing.size(), 0)
 {
+  for (const double diameter : diameter_)
+    largest_ = std::max(largest_, diameter);
   for (const auto &face : packing.boundary_faces)
     add_surface_particle(face.i);
   for (const auto &face : packing.faces)
@@ -25,6 +28,13 @@ void ContactSearch<dim>::add_surface_particle(int i)
     return;
   on_surface_[i] = 1;
   surface_.push_back(i);
+}
+
+template <int dim>
+double ContactSearch<dim>::rest_distance(const Particles &p, int i, int j) const
+{
+  return std::min((diameter(i) + diameter(j)) / 2,
+                  (get(p.reference, i) - get(p.reference, j)).norm());
 }
 
 template <int dim>
@@ -47,7 +57,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
   searched_at_.clear();
   for (const int i : surface_)
     searched_at_.push_back(get(p.displacement, i));
-  const double reach = spacing_ + 2 * skin_;
+  const double reach = largest_ + 2 * skin_;
   contacts.drop_distant(p, reach);
 
   std::set<std::pair<int, int>> known;
@@ -91,7 +101,8 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
       if (it == cells.end())
         continue;
       for (const int j : it->second)
-        if (p.global_id[i] < p.global_id[j] && (position(j) - x).norm() < reach &&
+        if (p.global_id[i] < p.global_id[j] && 
+            (position(j) - x).norm() < rest_distance(p, i, j) + 2 * skin_ &&
             !known.count(key(i, j)))
           found.push_back({i, j});
     }
@@ -106,8 +117,10 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
     if (known.count(key(i, j)))
       continue;
     const Vector<dim> n = (position(j) - position(i)).normalized();
-    const Vector<dim> lever = spacing_ / 2 * n;
-    contacts.add({i, j, n, lever, -lever, face_area_, spacing_, 0, 0}, false);
+    const double distance = rest_distance(p, i, j), size = (diameter(i) + diameter(j)) / 2;
+    const Vector<dim> lever = distance * diameter(i) / (2 * size) * n;
+    const double area = face_area_ * std::pow(size / spacing_, dim - 1);
+    contacts.add({i, j, n, lever, lever - distance * n, area, distance, 0, 0}, false);
   }
 }
 

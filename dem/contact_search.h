@@ -12,21 +12,27 @@ class ContactSearch
 public:
   using Particles = particles::Particles<dim>;
 
-  /// New contacts have the distance d and the mean face of the lattice (m^2).
+  /// New contacts have the mean diameter of their particles as distance (d on lattices), or the
+  /// distance in the reference where that is less, and a face in proportion to `face_area` (m^2),
+  /// which belongs to d.
   ContactSearch(const particles::Packing<dim> &packing, double face_area);
 
   /// Particle i lies on a surface from now on; the next search is due at once.
   void add_surface_particle(int i);
 
-  /// Adds contacts between surface particles nearer than d + 2 skin that share neither bond nor
+  /// Adds contacts between surface particles nearer than their distance + 2 skin that share neither bond nor
   /// contact, once a surface particle has moved by the skin of d/4 since the last search; drops
   /// those found before that went apart. The order depends on global ids alone.
   void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
 private:
   bool due(const Particles &particles) const;
+  double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
+  /// Centre distance at which two particles touch.
+  double rest_distance(const Particles &particles, int i, int j) const;
 
-  double spacing_, skin_, face_area_;
+  double spacing_, skin_, face_area_, largest_;
+  std::vector<double> diameter_;
   std::vector<char> on_surface_;
   std::vector<int> surface_;             // particles on surfaces
   std::vector<Vector<dim>> searched_at_; // their displacements at the last search

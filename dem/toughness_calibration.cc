@@ -62,32 +62,33 @@ Vector<2> tip_between_faces(const particles::Packing<dim> &packing, double heigh
   }
   return (last_place + first_place) / 2;
 }
-} // namespace
-
+/// A box around the tip of a crack along x at (shift), of half width radius + 4 d.
 template <int dim>
-double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
-                        const DemMaterial &material, const CrackAxes<dim> &crack,
-                        const Vector<2> &shift, double radius)
+void lay_out(particles::SpecimenParameters<dim> &p, const Vector<2> &shift, double radius,
+             double depth)
 {
-  const double half = radius + 4, depth = 2 * std::sqrt(2.);
-  particles::LatticeParameters<dim> lattice;
-  lattice.kind = kind;
-  lattice.spacing = spacing;
-  lattice.orientation = in_crack_axes(orientation, crack);
-  lattice.lower.setConstant(-half);
-  lattice.upper.setConstant(half);
+  const double half = radius + 4;
+  p.spacing = spacing;
+  p.lower.setConstant(-half);
+  p.upper.setConstant(half);
   if constexpr (dim == 2)
-    lattice.cracks = {{{-2 * half, shift[1]}, {shift[0], shift[1]}}};
+    p.cracks = {{{-2 * half, shift[1]}, {shift[0], shift[1]}}};
   else {
-    lattice.lower[2] = -depth / 2, lattice.upper[2] = depth / 2;
+    p.lower[2] = -depth / 2, p.upper[2] = depth / 2;
     const double z = depth;
-    lattice.cracks = {{{-2 * half, shift[1], -z},
-                       {shift[0], shift[1], -z},
-                       {shift[0], shift[1], z},
-                       {-2 * half, shift[1], z}}};
+    p.cracks = {{{-2 * half, shift[1], -z},
+                 {shift[0], shift[1], -z},
+                 {shift[0], shift[1], z},
+                 {-2 * half, shift[1], z}}};
   }
-  const auto packing = particles::make_lattice_packing<dim>(lattice);
-  const Vector<2> tip = tip_between_faces(packing, shift[1], depth / 4);
+}
+
+/// Solves around the tip of the crack in the plane y = height of a packing laid out for it.
+template <int dim>
+double solve_tip(const particles::Packing<dim> &packing, const DemMaterial &material, double height,
+                 double radius, double depth)
+{
+  const Vector<2> tip = tip_between_faces(packing, height, depth / 4);
 
   DemMaterial scaled = material;
   scaled.youngs_modulus = modulus, scaled.density = 1;
@@ -139,6 +140,47 @@ double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientatio
   return force.max_tension(state, near) * std::sqrt(spacing) / k_one;
 }
 
+} // namespace
+
+template <int dim>
+double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+                        const DemMaterial &material, const CrackAxes<dim> &crack,
+                        const Vector<2> &shift, double radius)
+{
+  const double depth = 2 * std::sqrt(2.);
+  particles::LatticeParameters<dim> lattice;
+  lattice.kind = kind;
+  lattice.orientation = in_crack_axes(orientation, crack);
+  lay_out<dim>(lattice, shift, radius, depth);
+  return solve_tip<dim>(particles::make_lattice_packing<dim>(lattice), material, shift[1], radius,
+                        depth);
+}
+
+template <int dim>
+double crack_tip_factor(const particles::RandomParameters<dim> &packing, int seed,
+                        const DemMaterial &material, double radius)
+{
+  const double depth = 4;
+  particles::RandomParameters<dim> sample;
+  sample.seed = seed;
+  sample.relaxation_sweeps = packing.relaxation_sweeps;
+  sample.size_ratio = packing.size_ratio;
+  lay_out<dim>(sample, Vector<2>::Zero(), radius, depth);
+  return solve_tip<dim>(particles::make_random_packing<dim>(sample).packing, material, 0, radius,
+                        depth);
+}
+
+template <int dim>
+double calibrate_toughness(const particles::RandomParameters<dim> &packing,
+                           const DemMaterial &material)
+{
+  const int n = dim == 2 ? 16 : 4;
+  double sum = 0;
+  for (int k = 1; k <= n; ++k)
+    sum += crack_tip_factor<dim>(packing, packing.seed + 7919 * k, material, dim == 2 ? 8 : 5);
+  return sum / n;
+}
+
 template <int dim>
 double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, const CrackAxes<dim> &crack)
@@ -171,4 +213,10 @@ template double calibrate_toughness<2>(particles::LatticeKind, const Spin<2> &, 
                                        const CrackAxes<2> &);
 template double calibrate_toughness<3>(particles::LatticeKind, const Spin<3> &, const DemMaterial &,
                                        const CrackAxes<3> &);
+template double crack_tip_factor<2>(const particles::RandomParameters<2> &, int,
+                                    const DemMaterial &, double);
+template double crack_tip_factor<3>(const particles::RandomParameters<3> &, int,
+                                    const DemMaterial &, double);
+template double calibrate_toughness<2>(const particles::RandomParameters<2> &, const DemMaterial &);
+template double calibrate_toughness<3>(const particles::RandomParameters<3> &, const DemMaterial &);
 } // namespace ligament::dem

@@ -4,6 +4,7 @@
 
 #include "dem/material.h"
 #include "particles/lattice_packing.h"
+#include "particles/random_packing.h"
 
 namespace ligament::dem
 {
@@ -33,4 +34,16 @@ template <int dim>
 double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
                         const DemMaterial &material, const CrackAxes<dim> &crack,
                         const Vector<2> &shift, double radius);
+
+/// c for mode I on a random packing: the mean over 16 (3D: 4) crack tips, each in a sample of its own
+/// with the same relaxation and size ratio. Tips differ by some 10 %: a crack starts where it finds
+/// a weak one, and c says what a mean one carries. Within 8 d (3D: 5 d in a slab of 4 d).
+template <int dim>
+double calibrate_toughness(const particles::RandomParameters<dim> &packing,
+                           const DemMaterial &material);
+
+/// One tip, in the sample of this seed, within `radius` (units of d).
+template <int dim>
+double crack_tip_factor(const particles::RandomParameters<dim> &packing, int seed,
+                        const DemMaterial &material, double radius);
 } // namespace ligament::dem

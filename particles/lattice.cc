@@ -79,6 +79,7 @@ Lattice<dim>::Lattice(const LatticeParameters<dim> &parameters)
     : spacing(parameters.spacing), centre_((parameters.lower + parameters.upper) / 2)
 {
   const UnitCell<dim> cell = unit_cell(parameters.kind, parameters);
+  core::require(parameters.orientation.allFinite(), "the orientation of a packing must be finite");
   basis_ = spacing * rotation(parameters.orientation) * cell.basis;
   inverse_ = basis_.inverse();
   shift_ = cell.shift;

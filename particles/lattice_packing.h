@@ -2,6 +2,7 @@
 #pragma once
 
 #include "particles/packing.h"
+#include "particles/specimen.h"
 
 #include <string>
 
@@ -18,26 +19,6 @@ enum class LatticeKind
 /// Reads "square", "hexagonal", "simple_cubic" or "fcc"; throws core::InputError on others.
 LatticeKind lattice_kind(const std::string &name);
 
-/// 2D: a disc cut out of the specimen, in m; its radius must be at least the spacing.
-template <int dim>
-struct DiscHole
-{
-  Vector<dim> centre;
-  double radius;
-};
-
-/// A box cut out of the specimen, in m; each of its sides must be at least the spacing wide. A side
-/// on the surface of the specimen, or beyond it, opens the notch there.
-template <int dim>
-struct BoxNotch
-{
-  Vector<dim> lower, upper;
-};
-
-/// A cut without width: 2D a segment (two points), 3D a convex plane polygon, in m.
-template <int dim>
-using CrackPoints = std::vector<Vector<dim>>;
-
 /// The lattice, in lattice axes at orientation 0, turned about the centre of the specimen:
 ///   square, simple_cubic: rows along x, y, z;
 ///   hexagonal: close-packed rows along x, stacked along y at (d/2, sqrt(3)/2 d);
@@ -49,19 +30,10 @@ using CrackPoints = std::vector<Vector<dim>>;
 /// (d/4, d/4, d/sqrt(8)) (fcc). A crack through the centre along the rows (layers) thus runs midway
 /// between two of them and cuts bonds, not particles.
 template <int dim>
-struct LatticeParameters
+struct LatticeParameters : SpecimenParameters<dim>
 {
   LatticeKind kind = dim == 2 ? LatticeKind::hexagonal : LatticeKind::fcc;
-  double spacing = 0;                        // m, nearest-neighbour distance d
   Spin<dim> orientation = Spin<dim>::Zero(); // rad; 2D angle, 3D rotation vector
-  double thickness = 1;                      // m, 2D only
-  Vector<dim> lower = Vector<dim>::Zero();   // m, specimen
-  Vector<dim> upper = Vector<dim>::Zero();
-  std::vector<DiscHole<dim>> holes;
-  std::vector<BoxNotch<dim>> notches;
-  std::vector<CrackPoints<dim>> cracks;
-  Vector<dim> zone_lower = Vector<dim>::Constant(-1e300); // m, what is packed
-  Vector<dim> zone_upper = Vector<dim>::Constant(1e300);
 };
 
 /// Packs the zone of the specimen.

@@ -46,10 +46,12 @@ struct LatticeDirection
 template <int dim>
 struct Packing
 {
-  double spacing = 0;   // m, nearest-neighbour distance d
+  double spacing = 0;   // m, d: distance of nearest neighbours; random: of the lattice as dense
   double thickness = 1; // m, 2D only
   Components<dim> centre;
   std::vector<double> volume; // m^3, of the cell clipped by the specimen
+  /// m, distance at which particles of this size touch; empty: d for all.
+  std::vector<double> diameter;
   std::vector<Face<dim>> faces;
   std::vector<BoundaryFace<dim>> boundary_faces;
   std::vector<LatticeDirection<dim>> directions; // empty for random packings

@@ -125,12 +125,11 @@ bool CrackPlane<dim>::is_crossed_by(const Vector<dim> &a, const Vector<dim> &b) 
 }
 
 template <int dim>
-SpecimenShape<dim>::SpecimenShape(const LatticeParameters<dim> &p) : lower(p.lower), upper(p.upper)
+SpecimenShape<dim>::SpecimenShape(const SpecimenParameters<dim> &p) : lower(p.lower), upper(p.upper)
 {
   const double d = p.spacing;
   core::require(d > 0 && std::isfinite(d), "the spacing of a packing must be positive");
   core::require(p.thickness > 0, "the thickness of a packing must be positive");
-  core::require(p.orientation.allFinite(), "the orientation of a packing must be finite");
   for (int a = 0; a < dim; ++a)
     core::require(
         upper[a] - lower[a] >= 2 * d,

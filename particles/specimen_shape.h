@@ -1,7 +1,7 @@
 // The shape of a specimen for a packing: a box, the voids cut out of it, and cracks.
 #pragma once
 
-#include "particles/lattice_packing.h"
+#include "particles/specimen.h"
 
 namespace ligament::particles
 {
@@ -60,7 +60,7 @@ template <int dim>
 struct SpecimenShape
 {
   /// Checks the parameters; throws core::InputError with reason and remedy.
-  explicit SpecimenShape(const LatticeParameters<dim> &parameters);
+  explicit SpecimenShape(const SpecimenParameters<dim> &parameters);
 
   /// From x to the nearest surface; negative outside the material.
   double distance(const Vector<dim> &x) const;

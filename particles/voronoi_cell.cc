@@ -202,6 +202,16 @@ double VoronoiCell<dim>::volume() const
   return sum / dim;
 }
 
+template <int dim>
+Vector<dim> VoronoiCell<dim>::moment() const
+{
+  // Pyramids from the origin over the faces.
+  Vector<dim> sum = Vector<dim>::Zero();
+  for (const Face &face : faces())
+    sum += face.area * face.distance / (dim + 1) * face.centroid;
+  return sum;
+}
+
 template class VoronoiCell<2>;
 template class VoronoiCell<3>;
 } // namespace ligament::particles

@@ -35,6 +35,8 @@ public:
   double max_radius() const { return max_radius_; }
   const std::vector<Vector<dim>> &vertices() const { return vertices_; }
   double volume() const;
+  /// Volume times centroid.
+  Vector<dim> moment() const;
   /// Degenerate faces may come with zero area; an id may come more than once.
   std::vector<Face> faces() const;
 

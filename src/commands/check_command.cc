@@ -1,6 +1,8 @@
 #include "src/commands/commands.h"
 
+#include "particles/packing_file.h"
 #include "src/output/picture.h"
+#include "src/output/run_folder.h"
 #include "src/simulation/body_fields.h"
 
 #include <fmt/format.h>
@@ -130,6 +132,11 @@ int check(const CommandLine &line, const ReadResult &input)
     const std::string file = folder + "/check.png";
     draw(body, scene, file);
     fmt::print("picture: {}\n", file);
+    if (body.seeds) {
+      const std::string packing = RunFolder{folder}.packing();
+      particles::write_packing_file(packing, *body.seeds);
+      fmt::print("packing: {}\n", packing);
+    }
   }
   const auto prediction = time_steps(body, timers);
   const double memory = resident_bytes() - memory_before;

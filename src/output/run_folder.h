@@ -11,6 +11,8 @@ struct RunFolder
 
   std::string record() const { return path + "/run.json"; }
   std::string resolved_scene() const { return path + "/scene.resolved.json"; }
+  /// Particles of an irregular packing, as /discrete_zone/packing_file reads them.
+  std::string packing() const { return path + "/packing.csv"; }
   std::string log() const { return path + "/run.log"; }
   std::string history() const { return path + "/history.csv"; }
   std::string broken_bonds() const { return path + "/broken_bonds.csv"; }

@@ -60,10 +60,39 @@ void check_models(const Scene &scene, Findings &f)
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }
 
+/// Keys that belong to another packing than the one that was chosen.
+void check_packing_keys(const Scene &scene, Findings &f)
+{
+  const std::string &packing = scene.zone.packing;
+  const auto refuse = [&](const std::string &name, const std::string &needed) {
+    const std::string key = zone_key + "/" + name;
+    if (packing != needed && f.given(key))
+      f.error(key, fmt::format("\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name, packing),
+              fmt::format("only the packing \"{}\" has one", needed),
+              fmt::format("remove it, or choose the packing \"{}\"", needed));
+  };
+  for (const char *name : {"seed", "relaxation_sweeps", "size_ratio"})
+    refuse(name, "random");
+  refuse("packing_file", "file");
+  if (packing == "file" && scene.zone.packing_file.empty())
+    f.error(zone_key + "/packing", "\"packing\" in /discrete_zone is \"file\", but there is no \"packing_file\"",
+            "the particles stand in a file", "add \"packing_file\"");
+  if (scene.zone.is_irregular() && f.given(zone_key + "/orientation"))
+    f.error(zone_key + "/orientation", fmt::format("\"orientation\" in /discrete_zone has no meaning for the packing \"{}\"", packing),
+            "only lattices have rows to turn", "remove it");
+  if (packing == "file" && f.given("/material/fracture/toughness"))
+    f.error("/material/fracture/toughness", "\"toughness\" in /material/fracture cannot be used with the packing \"file\"",
+            "the factor between toughness and strength is calibrated on samples of a packing, which a file cannot give",
+            "give the \"strength\" of a face");
+}
+
 void check_packing(const Scene &scene, Findings &f)
 {
   const std::string key = zone_key + "/packing";
-  if (!f.sound_and_given({"/discrete_zone/packing"}) || !f.sound({"/dimension"}))
+  if (!f.sound_and_given({"/discrete_zone/packing"}))
+    return;
+  check_packing_keys(scene, f);
+  if (!f.sound({"/dimension"}) || scene.zone.is_irregular())
     return;
   const bool plane = scene.zone.packing == "square" || scene.zone.packing == "hexagonal";
   if (plane != (scene.dimension == 2))
@@ -71,8 +100,8 @@ void check_packing(const Scene &scene, Findings &f)
             fmt::format("\"packing\" in /discrete_zone is \"{}\", which is not a packing in {}D",
                         scene.zone.packing, scene.dimension),
             fmt::format("/dimension is {}", scene.dimension),
-            scene.dimension == 2 ? "choose \"hexagonal\" or \"square\""
-                                 : "choose \"fcc\" or \"simple_cubic\"");
+            scene.dimension == 2 ? "choose \"hexagonal\", \"square\" or \"random\""
+                                 : "choose \"fcc\", \"simple_cubic\" or \"random\"");
 }
 
 void check_fracture(const Scene &scene, Findings &f)

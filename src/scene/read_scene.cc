@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -105,7 +106,11 @@ ReadResult read_scene(const std::string &file, const std::vector<std::string> &o
                              "there is no such file, or it may not be read", "check the path"});
     return result;
   }
-  return parse_scene(text.str(), file, overrides);
+  ReadResult result = parse_scene(text.str(), file, overrides);
+  if (result.scene && !result.scene->zone.packing_file.empty())
+    result.scene->zone.packing_file =
+        (std::filesystem::path(file).parent_path() / result.scene->zone.packing_file).string();
+  return result;
 }
 
 std::string explain(const std::string &key)

@@ -73,10 +73,17 @@ struct DiscreteZone
   /// m; sides that reach beyond the specimen are not coupled. Infinite only while it is read:
   /// afterwards such sides lie half a specimen outside.
   Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
-  std::string packing; // square, hexagonal (2D); simple_cubic, fcc (3D); empty: not given
+  /// square, hexagonal (2D); simple_cubic, fcc (3D); random, file; empty: not given
+  std::string packing;
+  std::string packing_file;   // for packing file; relative to the scene until it is read
+  int seed = 1;               // this and the next two: for packing random
+  int relaxation_sweeps = 10; // of Lloyd's relaxation
+  double size_ratio = 1;      // largest over smallest radius
   double spacing = 0;  // m, d; 0: not given, which only scenes without particles may do
   /// 2D: {angle}; 3D: rotation vector; rad. Close-packed rows lie along x at 0.
   Point orientation = {0, 0, 0};
+
+  bool is_irregular() const { return packing == "random" || packing == "file"; }
 };
 
 struct FarField

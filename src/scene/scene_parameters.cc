@@ -59,9 +59,13 @@ void declare_zone(Section &s, DiscreteZone &z)
 {
   s.add("extent", z.extent, "none: finite elements alone; all: discrete elements alone; box: the region below", {"none", "all", "box"});
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
-  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the others 3D").one_of({"square", "hexagonal", "simple_cubic", "fcc"}).required_unless("extent is none");
-  s.add("spacing", z.spacing, "distance d of nearest neighbours").in("m").above(0).required_unless("extent is none");
+  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file").one_of({"square", "hexagonal", "simple_cubic", "fcc", "random", "file"}).required_unless("extent is none");
+  s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").above(0).required_unless("extent is none");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").as_rotation();
+  s.add("seed", z.seed, "random packing: which one").at_least(0).at_most(1000000000);
+  s.add("relaxation_sweeps", z.relaxation_sweeps, "random packing: how often every particle moves to the centroid of its cell").at_least(0).at_most(1000);
+  s.add("size_ratio", z.size_ratio, "random packing: largest over smallest radius").at_least(1).at_most(5);
+  s.add("packing_file", z.packing_file, "packing file: CSV with the columns x, y, z, r, material and a row of units; relative to the scene");
   s.set_shorthand("extent");
   s.set_required();
 }

@@ -3,11 +3,13 @@
 #include "core/check.h"
 #include "dem/toughness_calibration.h"
 #include "particles/lattice_packing.h"
+#include "particles/packing_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ligament::program
 {
@@ -35,14 +37,27 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
   return loads;
 }
 
+/// The zone's sides inside the specimen, where the far field goes on.
 template <int dim>
-particles::LatticeParameters<dim> lattice_of(const Scene &scene)
+std::vector<coupling::CoupledSide> coupled_sides(const Scene &scene)
 {
-  particles::LatticeParameters<dim> p;
-  p.kind = particles::lattice_kind(scene.zone.packing);
+  std::vector<coupling::CoupledSide> sides;
+  if (scene.zone.extent != DiscreteZone::Extent::box)
+    return sides;
+  for (int c = 0; c < dim; ++c) {
+    const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
+    if (scene.zone.lower[c] > -half + tolerance)
+      sides.push_back({c, false, scene.zone.lower[c]});
+    if (scene.zone.upper[c] < half - tolerance)
+      sides.push_back({c, true, scene.zone.upper[c]});
+  }
+  return sides;
+}
+
+template <int dim>
+void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
+{
   p.spacing = scene.zone.spacing;
-  for (int c = 0; c < n_spins<dim>; ++c)
-    p.orientation[c] = scene.zone.orientation[c];
   p.thickness = scene.specimen.thickness;
   p.upper = to_vector<dim>(scene.specimen.size) / 2;
   p.lower = -p.upper;
@@ -55,6 +70,29 @@ particles::LatticeParameters<dim> lattice_of(const Scene &scene)
     for (const auto &point : crack.points)
       points.push_back(to_vector<dim>(point));
   }
+  for (const auto &side : coupled_sides<dim>(scene))
+    (side.upper ? p.zone_upper : p.zone_lower)[side.axis] = side.position;
+}
+
+template <int dim>
+particles::LatticeParameters<dim> lattice_of(const Scene &scene)
+{
+  particles::LatticeParameters<dim> p;
+  set_specimen<dim>(scene, p);
+  p.kind = particles::lattice_kind(scene.zone.packing);
+  for (int c = 0; c < n_spins<dim>; ++c)
+    p.orientation[c] = scene.zone.orientation[c];
+  return p;
+}
+
+template <int dim>
+particles::RandomParameters<dim> random_packing_of(const Scene &scene)
+{
+  particles::RandomParameters<dim> p;
+  set_specimen<dim>(scene, p);
+  p.seed = scene.zone.seed;
+  p.relaxation_sweeps = scene.zone.relaxation_sweeps;
+  p.size_ratio = scene.zone.size_ratio;
   return p;
 }
 
@@ -87,20 +125,32 @@ double material_volume(const Scene &scene)
   return volume * (scene.dimension == 2 ? scene.specimen.thickness : 1);
 }
 
-double lattice_cell_volume(const Scene &scene)
+double mean_cell_volume(const Scene &scene)
 {
-  const double d = scene.zone.spacing;
+  const double d = scene.zone.spacing, thickness = scene.specimen.thickness;
+  if (scene.zone.is_irregular())
+    return scene.dimension == 2 ? particles::mean_cell_volume<2>(d) * thickness
+                                : particles::mean_cell_volume<3>(d);
   switch (particles::lattice_kind(scene.zone.packing)) {
   case particles::LatticeKind::square:
-    return d * d * scene.specimen.thickness;
+    return d * d * thickness;
   case particles::LatticeKind::hexagonal:
-    return std::sqrt(3.) / 2 * d * d * scene.specimen.thickness;
+    return std::sqrt(3.) / 2 * d * d * thickness;
   case particles::LatticeKind::simple_cubic:
     return d * d * d;
   case particles::LatticeKind::fcc:
     return d * d * d / std::sqrt(2.);
   }
   return 0;
+}
+
+template <int dim>
+double toughness_factor(const Scene &scene)
+{
+  if (scene.zone.packing == "random")
+    return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material_of(scene));
+  const auto lattice = lattice_of<dim>(scene);
+  return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material_of(scene));
 }
 
 /// Strength from the scene, or from the toughness through the calibrated factor c.
@@ -115,9 +165,7 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
   if (p.strength)
     law.strength = *p.strength;
   else {
-    const auto lattice = lattice_of<dim>(scene);
-    const double c =
-        dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material_of(scene));
+    const double c = toughness_factor<dim>(scene);
     law.strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
     body.figures["toughness_factor"] = {c, ""};
     log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, law.strength,
@@ -127,31 +175,42 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
   return law;
 }
 
-/// The zone's sides inside the specimen, where the far field goes on.
+/// Seeds of an irregular packing, from their file or from random numbers.
 template <int dim>
-std::vector<coupling::CoupledSide> coupled_sides(const Scene &scene)
+particles::RandomPacking<dim> irregular_packing(const Scene &scene)
 {
-  std::vector<coupling::CoupledSide> sides;
-  if (scene.zone.extent != DiscreteZone::Extent::box)
-    return sides;
-  for (int c = 0; c < dim; ++c) {
-    const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
-    if (scene.zone.lower[c] > -half + tolerance)
-      sides.push_back({c, false, scene.zone.lower[c]});
-    if (scene.zone.upper[c] < half - tolerance)
-      sides.push_back({c, true, scene.zone.upper[c]});
-  }
-  return sides;
+  const auto parameters = random_packing_of<dim>(scene);
+  if (scene.zone.packing == "random")
+    return particles::make_random_packing<dim>(parameters);
+  auto packing = particles::pack_seeds<dim>(
+      parameters, particles::read_packing_file<dim>(scene.zone.packing_file));
+  const auto &cells = packing.packing.volume;
+  const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
+  const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
+  require(ratio > 0.9 && ratio < 1.1,
+          fmt::format("/discrete_zone/spacing: the packing of {} has the spacing {:.4g} m; give that",
+                      scene.zone.packing_file, ratio * scene.zone.spacing));
+  return packing;
+}
+
+template <int dim>
+particles::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+{
+  if (!scene.zone.is_irregular())
+    return particles::make_lattice_packing<dim>(lattice_of<dim>(scene));
+  auto irregular = irregular_packing<dim>(scene);
+  if (irregular.n_healed > 0)
+    log.info("{} radii made smaller, lest a neighbour's cell lose its centre", irregular.n_healed);
+  body.figures["healed_radii"] = {double(irregular.n_healed), ""};
+  body.seeds = std::move(irregular.seeds);
+  return std::move(irregular.packing);
 }
 
 template <int dim>
 void make_zone(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
-  auto lattice = lattice_of<dim>(scene);
-  for (const auto &side : coupled_sides<dim>(scene))
-    (side.upper ? lattice.zone_upper : lattice.zone_lower)[side.axis] = side.position;
   const auto fracture = fracture_of<dim>(scene, body, log);
-  auto packing = particles::make_lattice_packing<dim>(lattice);
+  auto packing = make_packing<dim>(scene, body, log);
   particles::Particles<dim> state;
   particles::fill_particles(packing, scene.material.density, state);
   body.n_cracked_faces = std::count_if(packing.faces.begin(), packing.faces.end(),
@@ -283,7 +342,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
   if (scene.zone.spacing > 0)
-    body.equivalent_particles = std::llround(material_volume(scene) / lattice_cell_volume(scene));
+    body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
     make_zone(scene, body, log);
   if (scene.zone.extent != DiscreteZone::Extent::all)

@@ -4,7 +4,7 @@
 #include "core/log.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
-#include "particles/packing.h"
+#include "particles/random_packing.h"
 #include "src/output/run_record.h"
 #include "src/scene/scene.h"
 
@@ -18,6 +18,7 @@ struct CoupledBody
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
+  std::optional<particles::Seeds<dim>> seeds; // of an irregular packing
 
   dem::ManyBodyForce<dim> *force = nullptr;       // of the zone
   coupling::FineScaleSplit<dim> *split = nullptr; // the coupler, when it is one

@@ -1,6 +1,7 @@
 #include "src/simulation/simulation.h"
 
 #include "core/version.h"
+#include "particles/packing_file.h"
 #include "src/output/verdict.h"
 
 #include <fmt/chrono.h>
@@ -17,6 +18,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       body_(make_body<dim>(scene_, log_, timers_)), damping_(scene_.damping), clock_(clock_of()),
       recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps)
 {
+  if (body_.seeds)
+    particles::write_packing_file(folder_.packing(), *body_.seeds);
 }
 
 template <int dim>

@@ -3,6 +3,8 @@
 #include "src/verification/linear_motion.h"
 #include "src/verification/unit_bodies.h"
 
+#include <functional>
+
 namespace ligament::program
 {
 namespace
@@ -90,40 +92,66 @@ void pull(Scene scene, Deviation &worst)
   }
 }
 
+/// What makes a specimen another one than a plain box of a lattice.
+using Change = std::function<void(Scene &)>;
+
 template <int dim>
-std::vector<Result> moduli()
+void add_moduli(const std::string &name, const Change &change, double must,
+                std::vector<Result> &results)
 {
-  const auto packings = dim == 2 ? std::vector<std::string>{"square", "hexagonal"}
-                                 : std::vector<std::string>{"simple_cubic", "fcc"};
+  Deviation worst;
+  for (const double nu : {-0.2, 0., 0.2, 0.22, 0.3, 0.45, 0.49})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+      if (dim == 3 && plane == PlaneMode::stress)
+        continue;
+      Scene scene = unit_scene(dim, dim == 2 ? Point{10.3, 9.1, 0} : Point{5.3, 4.6, 4.9}, nu);
+      scene.plane = plane;
+      change(scene);
+      pull<dim>(scene, worst);
+    }
+  results.push_back({name + "/youngs_modulus", worst.youngs_modulus, must, {}});
+  results.push_back({name + "/poissons_ratio", worst.poissons_ratio, must, {}});
+  results.push_back({name + "/residual", worst.residual, must, {}});
+}
+
+std::vector<Result> lattices()
+{
   std::vector<Result> results;
-  for (const auto &packing : packings) {
-    Deviation worst;
-    for (const double nu : {-0.2, 0., 0.22, 0.3, 0.45, 0.49})
-      for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
-        if (dim == 3 && plane == PlaneMode::stress)
-          continue;
-        Scene scene = unit_scene(dim, dim == 2 ? Point{10.3, 9.1, 0} : Point{5.3, 4.6, 4.9}, nu);
-        scene.zone.packing = packing;
-        scene.plane = plane;
-        pull<dim>(scene, worst);
-      }
-    const std::string name = "moduli/" + packing;
-    results.push_back({name + "/youngs_modulus", worst.youngs_modulus, 1e-12, {}});
-    results.push_back({name + "/poissons_ratio", worst.poissons_ratio, 1e-12, {}});
-    results.push_back({name + "/residual", worst.residual, 1e-12, {}});
-  }
+  const auto choose = [](const char *packing) {
+    return [=](Scene &scene) { scene.zone.packing = packing; };
+  };
+  for (const char *packing : {"square", "hexagonal"})
+    add_moduli<2>(std::string("moduli/") + packing, choose(packing), 1e-12, results);
+  for (const char *packing : {"simple_cubic", "fcc"})
+    add_moduli<3>(std::string("moduli/") + packing, choose(packing), 1e-12, results);
+  return results;
+}
+
+/// Random packings: nearly unrelaxed, relaxed, and with radii from 1 to 5.
+template <int dim>
+std::vector<Result> random_packings()
+{
+  const std::string name = dim == 2 ? "moduli_random_2d" : "moduli_random_3d";
+  std::vector<Result> results;
+  const auto choose = [](int sweeps, double ratio) {
+    return [=](Scene &scene) {
+      scene.zone.packing = "random";
+      scene.zone.relaxation_sweeps = sweeps;
+      scene.zone.size_ratio = ratio;
+    };
+  };
+  add_moduli<dim>(name + "/rough", choose(1, 1), 1e-9, results);
+  add_moduli<dim>(name + "/equal", choose(10, 1), 1e-9, results);
+  add_moduli<dim>(name + "/ratio_5", choose(10, 5), 1e-9, results);
   return results;
 }
 } // namespace
 
 std::vector<Case> moduli_cases()
 {
-  return {
-      {"moduli", "E and nu of clipped specimens in uniaxial stress, nu -0.2 to 0.49", false, [] {
-         auto results = moduli<2>();
-         for (const auto &result : moduli<3>())
-           results.push_back(result);
-         return results;
-       }}};
+  const std::string text = "E and nu of clipped specimens in uniaxial stress, nu -0.2 to 0.49";
+  return {{"moduli", text, false, lattices},
+          {"moduli_random_2d", text + ", random", false, random_packings<2>},
+          {"moduli_random_3d", text + ", random", false, random_packings<3>}};
 }
 } // namespace ligament::program

@@ -52,15 +52,31 @@ std::vector<Result> report(const std::string &name, const Deviation &worst)
           {name + "/strain", worst.strain, 1e-12, 1e-14}};
 }
 
+/// The arrangement of the particles: a lattice turned by an angle (2D), or a random packing.
+struct Arrangement
+{
+  double angle = 0;
+  double random_ratio = 0; // size ratio of a random packing; 0: the lattice
+
+  void apply(Scene &scene) const
+  {
+    scene.zone.orientation[0] = angle;
+    if (random_ratio > 0) {
+      scene.zone.packing = "random";
+      scene.zone.size_ratio = random_ratio;
+    }
+  }
+};
+
 /// Band across the specimen, overlap ends at free edges; uniaxial stress along it.
-std::vector<Result> band_2d(const std::string &name, double cell_size, double angle)
+std::vector<Result> band_2d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
   for (const double nu : {0., 0.22, 0.45})
     for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
       Scene scene = unit_scene(2, {25, 94, 0}, nu);
       scene.plane = plane;
-      scene.zone.orientation[0] = angle;
+      packing.apply(scene);
       add_far_field(scene, {0, 34, 0}, cell_size);
       scene.coupling.transition_cells = 2;
       load<2>(scene, {2, 3}, {0, 1, 0}, worst);
@@ -69,14 +85,14 @@ std::vector<Result> band_2d(const std::string &name, double cell_size, double an
 }
 
 /// Zone inside the specimen, closed overlap with corners; a stress with all components.
-std::vector<Result> ring_2d(const std::string &name, double cell_size, double angle)
+std::vector<Result> ring_2d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
   for (const double nu : {0., 0.22, 0.45})
     for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
       Scene scene = unit_scene(2, {79, 81, 0}, nu);
       scene.plane = plane;
-      scene.zone.orientation[0] = angle;
+      packing.apply(scene);
       add_far_field(scene, {35, 33, 0}, cell_size);
       scene.coupling.transition_cells = 2;
       load<2>(scene, {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
@@ -84,11 +100,12 @@ std::vector<Result> ring_2d(const std::string &name, double cell_size, double an
   return report(name, worst);
 }
 
-std::vector<Result> band_3d(const std::string &name, double cell_size)
+std::vector<Result> band_3d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
   for (const double nu : {0., 0.3}) {
     Scene scene = unit_scene(3, {9.3, 8.7, 56}, nu);
+    packing.apply(scene);
     add_far_field(scene, {0, 0, 25}, cell_size);
     scene.coupling.transition_cells = 2;
     load<3>(scene, {4, 5}, {0, 0, 1, 0, 0, 0}, worst);
@@ -96,11 +113,12 @@ std::vector<Result> band_3d(const std::string &name, double cell_size)
   return report(name, worst);
 }
 
-std::vector<Result> ring_3d(const std::string &name, double cell_size)
+std::vector<Result> ring_3d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
   for (const double nu : {0., 0.3}) {
     Scene scene = unit_scene(3, {45, 44, 46}, nu);
+    packing.apply(scene);
     add_far_field(scene, {23, 22, 24}, cell_size);
     scene.coupling.transition_cells = 1;
     load<3>(scene, {0, 1, 2, 3, 4, 5}, {0.8, -0.5, 0.6, 0.3, -0.2, 0.4}, worst);
@@ -112,18 +130,29 @@ std::vector<Result> ring_3d(const std::string &name, double cell_size)
 std::vector<Case> patch_cases()
 {
   constexpr double turned = 15 * M_PI / 180;
+  const Arrangement equal{0, 1}, unequal{0, 3};
   const std::string band = "overlap that ends at free edges", ring = "closed overlap with corners";
   return {{"patch_band_2d", band + ", hexagonal, h/d 4.1", false,
-           [] { return band_2d("patch_band_2d", 4.1, 0); }},
+           [] { return band_2d("patch_band_2d", 4.1, {}); }},
           {"patch_band_2d_turned", band + ", hexagonal turned by 15 degrees, h/d 3.07", false,
-           [] { return band_2d("patch_band_2d_turned", 3.07, turned); }},
+           [] { return band_2d("patch_band_2d_turned", 3.07, {turned}); }},
           {"patch_ring_2d", ring + ", hexagonal, h/d 4.1", false,
-           [] { return ring_2d("patch_ring_2d", 4.1, 0); }},
+           [] { return ring_2d("patch_ring_2d", 4.1, {}); }},
           {"patch_ring_2d_turned", ring + ", hexagonal turned by 15 degrees, h/d 3.07", false,
-           [] { return ring_2d("patch_ring_2d_turned", 3.07, turned); }},
+           [] { return ring_2d("patch_ring_2d_turned", 3.07, {turned}); }},
+          {"patch_band_2d_random", band + ", random, h/d 4.1", false,
+           [=] { return band_2d("patch_band_2d_random", 4.1, equal); }},
+          {"patch_band_2d_ratio_3", band + ", random, radii 1 to 3, h/d 4.1", false,
+           [=] { return band_2d("patch_band_2d_ratio_3", 4.1, unequal); }},
+          {"patch_ring_2d_random", ring + ", random, h/d 3.07", false,
+           [=] { return ring_2d("patch_ring_2d_random", 3.07, equal); }},
           {"patch_band_3d", band + ", FCC, h/d 3.1", false,
-           [] { return band_3d("patch_band_3d", 3.1); }},
+           [] { return band_3d("patch_band_3d", 3.1, {}); }},
+          {"patch_band_3d_random", band + ", random, h/d 3.1", false,
+           [=] { return band_3d("patch_band_3d_random", 3.1, equal); }},
+          {"patch_ring_3d_random", ring + ", random, h/d 3.07", true,
+           [=] { return ring_3d("patch_ring_3d_random", 3.07, equal); }},
           {"patch_ring_3d", ring + ", FCC, h/d 3.07", true,
-           [] { return ring_3d("patch_ring_3d", 3.07); }}};
+           [] { return ring_3d("patch_ring_3d", 3.07, {}); }}};
 }
 } // namespace ligament::program
