@@ -101,7 +101,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
       if (it == cells.end())
         continue;
       for (const int j : it->second)
-        if (p.global_id[i] < p.global_id[j] && 
+        if (p.global_id[i] < p.global_id[j] &&
             (position(j) - x).norm() < rest_distance(p, i, j) + 2 * skin_ &&
             !known.count(key(i, j)))
           found.push_back({i, j});

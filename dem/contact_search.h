@@ -20,9 +20,9 @@ public:
   /// Particle i lies on a surface from now on; the next search is due at once.
   void add_surface_particle(int i);
 
-  /// Adds contacts between surface particles nearer than their distance + 2 skin that share neither bond nor
-  /// contact, once a surface particle has moved by the skin of d/4 since the last search; drops
-  /// those found before that went apart. The order depends on global ids alone.
+  /// Adds contacts between surface particles nearer than their distance + 2 skin that share neither
+  /// bond nor contact, once a surface particle has moved by the skin of d/4 since the last search;
+  /// drops those found before that went apart. The order depends on global ids alone.
   void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
 private:

@@ -35,9 +35,9 @@ double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientatio
                         const DemMaterial &material, const CrackAxes<dim> &crack,
                         const Vector<2> &shift, double radius);
 
-/// c for mode I on a random packing: the mean over 16 (3D: 4) crack tips, each in a sample of its own
-/// with the same relaxation and size ratio. Tips differ by some 10 %: a crack starts where it finds
-/// a weak one, and c says what a mean one carries. Within 8 d (3D: 5 d in a slab of 4 d).
+/// c for mode I on a random packing: the mean over 16 (3D: 4) crack tips, each in a sample of its
+/// own with the same relaxation and size ratio. Tips differ by some 10 %: a crack starts where it
+/// finds a weak one, and c says what a mean one carries. Within 8 d (3D: 5 d in a slab of 4 d).
 template <int dim>
 double calibrate_toughness(const particles::RandomParameters<dim> &packing,
                            const DemMaterial &material);

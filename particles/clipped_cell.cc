@@ -76,8 +76,8 @@ void clip_by_sides(VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape, cons
 
 template <int dim>
 std::pair<double, Vector<dim>> clipped_volume(const VoronoiCell<dim> &cell,
-                                              const SpecimenShape<dim> &shape,
-                                              const Vector<dim> &x, double spacing)
+                                              const SpecimenShape<dim> &shape, const Vector<dim> &x,
+                                              double spacing)
 {
   std::pair<double, Vector<dim>> sum{0, Vector<dim>::Zero()};
   for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &part, double sign) {
@@ -123,8 +123,7 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
       parts.push_back(
           {-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area, sum.moment});
     else // area and moment of what was taken away are negative, the normal leads out of the void
-      parts.push_back(
-          {-1, inner_surface<dim>, -sum.normal, -sum.distance, -sum.area, -sum.moment});
+      parts.push_back({-1, inner_surface<dim>, -sum.normal, -sum.distance, -sum.area, -sum.moment});
   }
 }
 
@@ -155,12 +154,10 @@ ClippedCell<dim>::ClippedCell(const Lattice<dim> &lattice, const SpecimenShape<d
 
 template void clip_by_sides(VoronoiCell<2> &, const SpecimenShape<2> &, const Vector<2> &);
 template void clip_by_sides(VoronoiCell<3> &, const SpecimenShape<3> &, const Vector<3> &);
-template std::pair<double, Vector<2>> clipped_volume(const VoronoiCell<2> &,
-                                                     const SpecimenShape<2> &, const Vector<2> &,
-                                                     double);
-template std::pair<double, Vector<3>> clipped_volume(const VoronoiCell<3> &,
-                                                     const SpecimenShape<3> &, const Vector<3> &,
-                                                     double);
+template std::pair<double, Vector<2>>
+clipped_volume(const VoronoiCell<2> &, const SpecimenShape<2> &, const Vector<2> &, double);
+template std::pair<double, Vector<3>>
+clipped_volume(const VoronoiCell<3> &, const SpecimenShape<3> &, const Vector<3> &, double);
 template struct ClippedCell<2>;
 template struct ClippedCell<3>;
 } // namespace ligament::particles

@@ -54,8 +54,8 @@ struct ClippedCell
   /// Whether a part is not closed by neighbours and surfaces, or lies behind a void.
   bool reaches_through(const SpecimenShape<dim> &shape, const Vector<dim> &x, double spacing) const;
 
-  double volume = 0; // m^dim
-  double radius = 0; // m, of the farthest corner in the material
+  double volume = 0;    // m^dim
+  double radius = 0;    // m, of the farthest corner in the material
   bool is_open = false; // a part of the start cube is left
   std::vector<Part> parts;
   /// Smallest box around the cell, about the centre, in m.
@@ -65,6 +65,6 @@ struct ClippedCell
 /// Volume and volume times centroid (about the centre) of what the voids leave of a cell around x.
 template <int dim>
 std::pair<double, Vector<dim>> clipped_volume(const VoronoiCell<dim> &cell,
-                                              const SpecimenShape<dim> &shape,
-                                              const Vector<dim> &x, double spacing);
+                                              const SpecimenShape<dim> &shape, const Vector<dim> &x,
+                                              double spacing);
 } // namespace ligament::particles

@@ -81,7 +81,8 @@ public:
     } catch (const std::invalid_argument &) {
     }
     throw core::InputError(
-        place() + fmt::format("the unit \"{}\" of \"{}\" is no length, such as m or mm", unit, column));
+        place() +
+        fmt::format("the unit \"{}\" of \"{}\" is no length, such as m or mm", unit, column));
   }
 
   double number(const std::string &column) const

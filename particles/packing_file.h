@@ -15,8 +15,8 @@ void write_packing_file(const std::string &path, const Seeds<dim> &seeds);
 
 /// Reads such a file; the columns may come in any order and in other units of length, columns with
 /// other names are passed over, z may be missing in 2D and material altogether. Lines that begin
-/// with # are comments. Ids are the numbers of the rows. Throws core::EnvironmentError when there is
-/// no such file, core::InputError with file:line for everything else.
+/// with # are comments. Ids are the numbers of the rows. Throws core::EnvironmentError when there
+/// is no such file, core::InputError with file:line for everything else.
 template <int dim>
 Seeds<dim> read_packing_file(const std::string &path);
 } // namespace ligament::particles

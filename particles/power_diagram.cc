@@ -22,8 +22,12 @@ PowerDiagram<dim>::PowerDiagram(const Seeds<dim> &seeds, double bin) : seeds_(se
     upper = upper.cwiseMax(seeds.centre[i]);
     largest_radius_ = std::max(largest_radius_, seeds.radius[i]);
   }
-  for (int a = 0; a < dim; ++a)
+  // Bins lie on one grid whatever the seeds, so that cells are cut in the same order to the same
+  // last bit in a part of the specimen and in the whole.
+  for (int a = 0; a < dim; ++a) {
+    lower_[a] = bin * std::floor(lower_[a] / bin);
     n_bins_[a] = int((upper[a] - lower_[a]) / bin) + 1;
+  }
   const auto place = [&](int i) {
     const Index k = bin_of(seeds.centre[i]);
     int bin_number = k[dim - 1];
@@ -116,9 +120,10 @@ void PowerDiagram<dim>::cut(VoronoiCell<dim> &cell, int i) const
   });
 }
 
-// The weight of j may exceed that of i by D^2 - 2 D q at most, or the face between them comes nearer
-// than q to i. Seeds in the order of their weights, smallest first, bound the weights of the others:
-// the shortest-path algorithm of E. W. Dijkstra (1959), with one answer whatever the order of equals.
+// The weight of j may exceed that of i by D^2 - 2 D q at most, or the face between them comes
+// nearer than q to i. Seeds in the order of their weights, smallest first, bound the weights of the
+// others: the shortest-path algorithm of E. W. Dijkstra (1959), with one answer whatever the order
+// of equals.
 template <int dim>
 int heal_radii(Seeds<dim> &seeds, double bin)
 {
@@ -140,7 +145,9 @@ int heal_radii(Seeds<dim> &seeds, double bin)
     if (w > weight[i])
       continue;
     const double half = radius[i] / 2;
-    const auto allowed = [&](double r) { return std::max(0., r * r - 2 * r * std::min(half, r / 4)); };
+    const auto allowed = [&](double r) {
+      return std::max(0., r * r - 2 * r * std::min(half, r / 4));
+    };
     diagram.for_each_near(
         i, [&](double r) { return w + allowed(r) < largest; },
         [&](int j, const Vector<dim> &, double r) {

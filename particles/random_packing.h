@@ -19,7 +19,7 @@ struct RandomPacking
 {
   Packing<dim> packing;
   /// Of all cells and of the neighbours that are left out at coupled sides: from these
-  /// pack_seeds makes the same packing again.
+  /// pack_seeds makes the same packing again, to round-off.
   Seeds<dim> seeds;
   int n_healed = 0; // seeds whose radius was made smaller, see heal_radii
 };

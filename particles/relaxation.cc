@@ -29,9 +29,9 @@ Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin)
 }
 
 template <int dim>
-void move_to_centroids(Seeds<dim> &seeds, const Seeds<dim> &present, const SpecimenShape<dim> &shape,
-                       double spacing, double bin, const Vector<dim> &lower,
-                       const Vector<dim> &upper, double margin)
+void move_to_centroids(Seeds<dim> &seeds, const Seeds<dim> &present,
+                       const SpecimenShape<dim> &shape, double spacing, double bin,
+                       const Vector<dim> &lower, const Vector<dim> &upper, double margin)
 {
   const PowerDiagram<dim> diagram(present, bin);
   for (int i = 0; i < present.size(); ++i) {

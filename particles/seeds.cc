@@ -54,8 +54,7 @@ Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
   const double side = std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
   const double log_ratio = std::log(size_ratio);
   // Mean of (r / r_min)^dim for r / r_min = size_ratio^u, u uniform in [0, 1].
-  const double mean =
-      log_ratio > 0 ? (std::pow(size_ratio, dim) - 1) / (dim * log_ratio) : 1.;
+  const double mean = log_ratio > 0 ? (std::pow(size_ratio, dim) - 1) / (dim * log_ratio) : 1.;
   const double smallest = spacing / 2 / std::pow(mean, 1. / dim);
 
   const Vector<dim> origin = (shape.lower + shape.upper) / 2;

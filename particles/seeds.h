@@ -23,12 +23,12 @@ struct Seeds
   }
 };
 
-/// Seeds drawn in [lower, upper], in m: one in every cube (square) of the volume that belongs to the
-/// spacing, anywhere in it with equal probability; those in the material are kept. Radii lie between
-/// one and `size_ratio` times the smallest, their logarithms with equal probability; the mean of
-/// radius^dim is (d/2)^dim. Every seed follows from `seed` and its cube alone, so that a part of the
-/// specimen gets the seeds that the whole specimen has there. Sorted by id, which is the Z-order of
-/// the cubes.
+/// Seeds drawn in [lower, upper], in m: one in every cube (square) of the volume that belongs to
+/// the spacing, anywhere in it with equal probability; those in the material are kept. Radii lie
+/// between one and `size_ratio` times the smallest, their logarithms with equal probability; the
+/// mean of radius^dim is (d/2)^dim. Every seed follows from `seed` and its cube alone, so that a
+/// part of the specimen gets the seeds that the whole specimen has there. Sorted by id, which is
+/// the Z-order of the cubes.
 template <int dim>
 Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed, double size_ratio,
                       const Vector<dim> &lower, const Vector<dim> &upper);

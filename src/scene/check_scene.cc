@@ -67,7 +67,9 @@ void check_packing_keys(const Scene &scene, Findings &f)
   const auto refuse = [&](const std::string &name, const std::string &needed) {
     const std::string key = zone_key + "/" + name;
     if (packing != needed && f.given(key))
-      f.error(key, fmt::format("\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name, packing),
+      f.error(key,
+              fmt::format("\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name,
+                          packing),
               fmt::format("only the packing \"{}\" has one", needed),
               fmt::format("remove it, or choose the packing \"{}\"", needed));
   };
@@ -75,14 +77,19 @@ void check_packing_keys(const Scene &scene, Findings &f)
     refuse(name, "random");
   refuse("packing_file", "file");
   if (packing == "file" && scene.zone.packing_file.empty())
-    f.error(zone_key + "/packing", "\"packing\" in /discrete_zone is \"file\", but there is no \"packing_file\"",
+    f.error(zone_key + "/packing",
+            "\"packing\" in /discrete_zone is \"file\", but there is no \"packing_file\"",
             "the particles stand in a file", "add \"packing_file\"");
   if (scene.zone.is_irregular() && f.given(zone_key + "/orientation"))
-    f.error(zone_key + "/orientation", fmt::format("\"orientation\" in /discrete_zone has no meaning for the packing \"{}\"", packing),
+    f.error(zone_key + "/orientation",
+            fmt::format("\"orientation\" in /discrete_zone has no meaning for the packing \"{}\"",
+                        packing),
             "only lattices have rows to turn", "remove it");
   if (packing == "file" && f.given("/material/fracture/toughness"))
-    f.error("/material/fracture/toughness", "\"toughness\" in /material/fracture cannot be used with the packing \"file\"",
-            "the factor between toughness and strength is calibrated on samples of a packing, which a file cannot give",
+    f.error("/material/fracture/toughness",
+            "\"toughness\" in /material/fracture cannot be used with the packing \"file\"",
+            "the factor between toughness and strength is calibrated on samples of a packing, "
+            "which a file cannot give",
             "give the \"strength\" of a face");
 }
 

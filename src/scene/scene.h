@@ -79,7 +79,7 @@ struct DiscreteZone
   int seed = 1;               // this and the next two: for packing random
   int relaxation_sweeps = 10; // of Lloyd's relaxation
   double size_ratio = 1;      // largest over smallest radius
-  double spacing = 0;  // m, d; 0: not given, which only scenes without particles may do
+  double spacing = 0;         // m, d; 0: not given, which only scenes without particles may do
   /// 2D: {angle}; 3D: rotation vector; rad. Close-packed rows lie along x at 0.
   Point orientation = {0, 0, 0};
 

@@ -187,9 +187,10 @@ particles::RandomPacking<dim> irregular_packing(const Scene &scene)
   const auto &cells = packing.packing.volume;
   const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
   const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
-  require(ratio > 0.9 && ratio < 1.1,
-          fmt::format("/discrete_zone/spacing: the packing of {} has the spacing {:.4g} m; give that",
-                      scene.zone.packing_file, ratio * scene.zone.spacing));
+  require(
+      ratio > 0.9 && ratio < 1.1,
+      fmt::format("/discrete_zone/spacing: the packing of {} has the spacing {:.4g} m; give that",
+                  scene.zone.packing_file, ratio * scene.zone.spacing));
   return packing;
 }
 

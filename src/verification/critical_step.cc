@@ -66,11 +66,36 @@ std::vector<Result> critical_step()
   report("critical_step/fcc", three, results);
   return results;
 }
+
+std::vector<Result> random_packings()
+{
+  std::vector<Result> results;
+  Measured equal, unequal, three;
+  for (const double nu : {0., 0.22, 0.45}) {
+    Scene band = unit_scene(2, {25, 94, 0}, nu);
+    band.zone.packing = "random";
+    add_far_field(band, {0, 34, 0}, 4.1);
+    band.coupling.transition_cells = 3;
+    measure<2>(band, equal);
+    band.zone.size_ratio = 3;
+    measure<2>(band, unequal);
+  }
+  report("critical_step_random/equal_2d", equal, results);
+  report("critical_step_random/ratio_3_2d", unequal, results);
+  Scene band = unit_scene(3, {9.3, 8.7, 56}, 0.3);
+  band.zone.packing = "random";
+  add_far_field(band, {0, 0, 25}, 3.1);
+  band.coupling.transition_cells = 2;
+  measure<3>(band, three);
+  report("critical_step_random/equal_3d", three, results);
+  return results;
+}
 } // namespace
 
 std::vector<Case> critical_step_cases()
 {
   return {{"critical_step", "largest frequency of the step operator, coupled and plain discrete",
-           false, critical_step}};
+           false, critical_step},
+          {"critical_step_random", "the same of random packings", true, random_packings}};
 }
 } // namespace ligament::program

@@ -93,6 +93,12 @@ Scene band_3d()
   return scene;
 }
 
+Scene made_random(Scene scene)
+{
+  scene.zone.packing = "random";
+  return scene;
+}
+
 template <int dim>
 std::vector<Result> undamped(const std::string &name, const Scene &scene, double amplitude,
                              long n_steps)
@@ -127,6 +133,12 @@ std::vector<Case> drift_cases()
            [] { return undamped<2>("drift", band_2d(1), 1e-8, 5000); }},
           {"drift_3d", text + "FCC, strain 1e-8, 2e3 steps", false,
            [] { return undamped<3>("drift_3d", band_3d(), 1e-8, 2000); }},
+          {"drift_random", text + "random, strain 1e-8, 5e3 steps", false,
+           [] { return undamped<2>("drift_random", made_random(band_2d(1)), 1e-8, 5000); }},
+          {"drift_random_3d", text + "random, strain 1e-8, 2e3 steps", true,
+           [] { return undamped<3>("drift_random_3d", made_random(band_3d()), 1e-8, 2000); }},
+          {"drift_long_random", text + "random, strain 1e-6, 1e5 steps", true,
+           [] { return undamped<2>("drift_long_random", made_random(band_2d(1)), 1e-6, 100000); }},
           {"drift_ratio", text + "step ratio 4, strain 1e-8, 1e4 steps", true,
            [] { return undamped<2>("drift_ratio", band_2d(4), 1e-8, 10000); }},
           {"drift_long", text + "strain 1e-6, 1e5 steps", true,

@@ -32,14 +32,16 @@ void turn(particles::Particles<3> &zone, std::mt19937 &random)
 }
 
 template <int dim>
-void rotate(std::vector<Result> &results)
+void rotate(const std::string &packing, std::vector<Result> &results)
 {
   const Point size = dim == 2 ? Point{20.3, 17.1, 0} : Point{8.3, 7.6, 6.9};
   std::mt19937 random(7);
   double force = 0, energy = 0;
   for (const double nu : {0., 0.3, 0.49})
     for (int repeat = 0; repeat < (dim == 2 ? 1 : 3); ++repeat) {
-      UnitBody<dim> unit(unit_scene(dim, size, nu));
+      Scene scene = unit_scene(dim, size, nu);
+      scene.zone.packing = packing;
+      UnitBody<dim> unit(scene);
       auto &zone = unit.body.zone->state;
       turn(zone, random);
       unit.body.zone->compute_forces(0);
@@ -51,7 +53,8 @@ void rotate(std::vector<Result> &results)
       }
       keep_worst(energy, unit.body.zone->potential_energy() / (unit.c11() * volume));
     }
-  const std::string name = dim == 2 ? "rotation/hexagonal" : "rotation/fcc";
+  const std::string name =
+      "rotation/" + packing + (packing == "random" ? dim == 2 ? "_2d" : "_3d" : "");
   results.push_back({name + "/force", force, 1e-12, {}});
   results.push_back({name + "/energy", energy, 1e-12, {}});
 }
@@ -61,8 +64,10 @@ std::vector<Case> rotation_cases()
 {
   return {{"rotation", "a discrete body turned by 90 degrees", false, [] {
              std::vector<Result> results;
-             rotate<2>(results);
-             rotate<3>(results);
+             rotate<2>("hexagonal", results);
+             rotate<3>("fcc", results);
+             rotate<2>("random", results);
+             rotate<3>("random", results);
              return results;
            }}};
 }

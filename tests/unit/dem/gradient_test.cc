@@ -1,4 +1,5 @@
 // The force is minus the gradient of the energy, walls and tractions included.
+#include "particles/random_packing.h"
 #include "tests/unit/dem/body.h"
 
 #include <gtest/gtest.h>
@@ -35,11 +36,25 @@ std::vector<core::BoundaryLoad<dim>> some_loads()
   return {pull, hold, press};
 }
 
+/// Radii from 1 to 3, hardly relaxed.
+template <int dim>
+Packing<dim> small_random_packing()
+{
+  particles::RandomParameters<dim> p;
+  p.spacing = 0.5;
+  p.thickness = dim == 2 ? 0.7 : 1;
+  p.size_ratio = 3;
+  p.relaxation_sweeps = 2;
+  p.upper.setConstant(dim == 2 ? 2.4 : 1.4);
+  return particles::make_random_packing<dim>(p).packing;
+}
+
 TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)
 {
   constexpr int dim = TypeParam::value;
-  for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
-    const auto packing = ragged_lattice<dim>(4, 7);
+  for (const bool random : {false, true}) {
+    const auto packing = random ? small_random_packing<dim>() : ragged_lattice<dim>(4, 7);
+    const PlaneMode plane = random ? PlaneMode::stress : PlaneMode::strain;
     DemMaterial material;
     material.poissons_ratio = 0.3, material.plane = plane;
     ManyBodyForce<dim> force(packing, material, some_loads<dim>());
