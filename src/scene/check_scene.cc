@@ -60,32 +60,35 @@ void check_models(const Scene &scene, Findings &f)
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }
 
-/// Keys that belong to another packing than the one that was chosen.
+/// Keys that belong to another packing than the one that was chosen; their defaults do no harm.
 void check_packing_keys(const Scene &scene, Findings &f)
 {
-  const std::string &packing = scene.zone.packing;
-  const auto refuse = [&](const std::string &name, const std::string &needed) {
+  const DiscreteZone &zone = scene.zone, plain;
+  const std::string &packing = zone.packing;
+  const auto refuse = [&](const std::string &name, const std::string &needed, bool differs) {
     const std::string key = zone_key + "/" + name;
-    if (packing != needed && f.given(key))
+    if (packing != needed && differs && f.sound({key}))
       f.error(key,
               fmt::format("\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name,
                           packing),
               fmt::format("only the packing \"{}\" has one", needed),
               fmt::format("remove it, or choose the packing \"{}\"", needed));
   };
-  for (const char *name : {"seed", "relaxation_sweeps", "size_ratio"})
-    refuse(name, "random");
-  refuse("packing_file", "file");
-  if (packing == "file" && scene.zone.packing_file.empty())
+  refuse("seed", "random", zone.seed != plain.seed);
+  refuse("relaxation_sweeps", "random", zone.relaxation_sweeps != plain.relaxation_sweeps);
+  refuse("size_ratio", "random", zone.size_ratio != plain.size_ratio);
+  refuse("packing_file", "file", !zone.packing_file.empty());
+  if (packing == "file" && zone.packing_file.empty() && f.sound({zone_key + "/packing_file"}))
     f.error(zone_key + "/packing",
             "\"packing\" in /discrete_zone is \"file\", but there is no \"packing_file\"",
             "the particles stand in a file", "add \"packing_file\"");
-  if (scene.zone.is_irregular() && f.given(zone_key + "/orientation"))
+  if (zone.is_irregular() && zone.orientation != plain.orientation &&
+      f.sound({zone_key + "/orientation"}))
     f.error(zone_key + "/orientation",
             fmt::format("\"orientation\" in /discrete_zone has no meaning for the packing \"{}\"",
                         packing),
             "only lattices have rows to turn", "remove it");
-  if (packing == "file" && f.given("/material/fracture/toughness"))
+  if (packing == "file" && scene.material.fracture.toughness)
     f.error("/material/fracture/toughness",
             "\"toughness\" in /material/fracture cannot be used with the packing \"file\"",
             "the factor between toughness and strength is calibrated on samples of a packing, "
