@@ -1,5 +1,7 @@
 #include "core/json.h"
 
+#include <nlohmann/json.hpp>
+
 #include <charconv>
 #include <system_error>
 #include <utility>
@@ -38,6 +40,33 @@ std::string name_of(JsonValue::Kind kind)
     return "an object {..}";
   }
   return "";
+}
+
+std::string to_text(const JsonValue &value)
+{
+  const auto quoted = [](const std::string &text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  };
+  std::string text;
+  switch (value.kind) {
+  case JsonValue::Kind::null:
+    return "null";
+  case JsonValue::Kind::boolean:
+    return value.boolean ? "true" : "false";
+  case JsonValue::Kind::number:
+    return value.text;
+  case JsonValue::Kind::string:
+    return quoted(value.text);
+  case JsonValue::Kind::array:
+    for (const JsonValue &element : value.elements)
+      text += (text.empty() ? "" : ", ") + to_text(element);
+    return "[" + text + "]";
+  case JsonValue::Kind::object:
+    for (const JsonMember &member : value.members)
+      text += (text.empty() ? "" : ", ") + quoted(member.key) + ": " + to_text(member.value);
+    return "{" + text + "}";
+  }
+  return text;
 }
 
 std::vector<std::string> pointer_parts(std::string_view pointer)

@@ -53,6 +53,9 @@ std::string name_of(JsonValue::Kind kind);
 JsonValue parse_json(std::string_view text, const std::string &origin,
                      std::vector<Diagnostic> &errors);
 
+/// The value as JSON on one line; numbers as they were written.
+std::string to_text(const JsonValue &value);
+
 /// Parts of a JSON pointer ("/loads/0/ramp"), with ~1 and ~0 decoded.
 std::vector<std::string> pointer_parts(std::string_view pointer);
 

@@ -67,6 +67,12 @@ Json value_json(const Parameter &p, int dimension)
     }
     return any ? list : Json();
   }
+  if (auto *x = std::get_if<std::vector<JsonMember> *>(&p.target)) {
+    Json object = Json::object();
+    for (const JsonMember &member : **x)
+      object[member.key] = Json::parse(to_text(member.value));
+    return object;
+  }
   Json list = Json::array();
   if (auto *x = std::get_if<std::vector<Point> *>(&p.target))
     for (const Point &point : **x)
@@ -207,6 +213,8 @@ Json value_schema(const Parameter &p)
   }
   case Kind::points:
     return {{"type", "array"}, {"items", vector_schema(p)}};
+  case Kind::members:
+    return {{"type", "object"}};
   case Kind::list:
     return {{"type", "array"}, {"items", section_schema(*p.section)}};
   case Kind::section:
@@ -330,10 +338,10 @@ Json explain_json(const ParameterSection &root, const std::string &key)
   return list;
 }
 
-std::string markdown_tables(const ParameterSection &root)
+std::string markdown_tables(const ParameterSection &root, const std::string &title)
 {
   std::string out;
-  table(root, "", "The scene as a whole", out);
+  table(root, "", title, out);
   return out;
 }
 

@@ -19,8 +19,8 @@ std::string explain(const ParameterSection &root, const std::string &key);
 /// The same as JSON: a list of {key, type, unit, default, range, text}.
 nlohmann::ordered_json explain_json(const ParameterSection &root, const std::string &key);
 
-/// Tables of all keys in Markdown, one per section.
-std::string markdown_tables(const ParameterSection &root);
+/// Tables of all keys in Markdown, one per section; `title` says what the root is.
+std::string markdown_tables(const ParameterSection &root, const std::string &title);
 
 /// JSON schema (draft 7) of the input, for editors.
 nlohmann::ordered_json schema(const ParameterSection &root);

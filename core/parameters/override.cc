@@ -46,13 +46,12 @@ JsonValue value_of(const std::string &text, const Place &place, std::vector<Diag
   return value;
 }
 
-class Override
+/// Walks table and input along the path of an override.
+class Path
 {
 public:
-  Override(std::vector<std::string> parts, JsonValue value, Place place,
-           std::vector<Diagnostic> &errors)
-      : parts_(std::move(parts)), value_(std::move(value)), place_(std::move(place)),
-        errors_(errors)
+  Path(const Override &o, std::vector<Diagnostic> &errors)
+      : parts_(pointer_parts(o.pointer)), value_(o.value), place_(o.place), errors_(errors)
   {
   }
 
@@ -177,6 +176,17 @@ private:
 };
 } // namespace
 
+void apply_override(const ParameterSection &root, const Override &o, JsonValue &json,
+                    std::vector<Diagnostic> &errors)
+{
+  if (o.pointer.size() < 2 || o.pointer[0] != '/')
+    errors.push_back(
+        {o.place, "", fmt::format("cannot read \"{}\" as the path of a key", o.pointer),
+         "a key of the scene is named by its path", "write for example /coupling/overlap_cells"});
+  else
+    Path(o, errors).into_section(root, json, 0);
+}
+
 void apply_override(const ParameterSection &root, const std::string &text, JsonValue &json,
                     std::vector<Diagnostic> &errors)
 {
@@ -189,7 +199,7 @@ void apply_override(const ParameterSection &root, const std::string &text, JsonV
                       "write for example --set /coupling/overlap_cells=4"});
     return;
   }
-  Override(pointer_parts(pointer), value_of(text.substr(equals + 1), place, errors), place, errors)
-      .into_section(root, json, 0);
+  const JsonValue value = value_of(text.substr(equals + 1), place, errors);
+  apply_override(root, Override{pointer, value, place}, json, errors);
 }
 } // namespace ligament::core

@@ -117,6 +117,8 @@ std::string Parameter::type(int dimension) const
                             : "a number (2D) or a list of 3 numbers (3D)" + unit_text;
   case Kind::points:
     return "a list of points, each " + components;
+  case Kind::members:
+    return "an object of keys and values";
   case Kind::section: {
     std::vector<std::string> words;
     if (!section->shorthand().empty())

@@ -1,6 +1,7 @@
 // One key of an input: the value it fills, and all that is known about it.
 #pragma once
 
+#include "core/json.h"
 #include "core/units.h"
 
 #include <array>
@@ -57,6 +58,7 @@ struct Parameter
     vector,   // one number per dimension
     rotation, // 2D: an angle, 3D: a rotation vector
     points,   // list of vectors
+    members,  // keys of another table with their values, kept as they were written
     section,
     list // of sections
   };
@@ -66,9 +68,9 @@ struct Parameter
     required,
     conditional // checked where the condition is known; absent values are zero or empty
   };
-  using Target =
-      std::variant<std::monostate, double *, int *, bool *, std::string *, std::optional<double> *,
-                   Point *, PartialPoint *, std::vector<Point> *, Choice>;
+  using Target = std::variant<std::monostate, double *, int *, bool *, std::string *,
+                              std::optional<double> *, Point *, PartialPoint *,
+                              std::vector<Point> *, std::vector<JsonMember> *, Choice>;
 
   std::string key;
   Kind kind = Kind::ignored;

@@ -25,6 +25,8 @@ public:
   Parameter &add(const std::string &key, Point &target, const std::string &text);
   Parameter &add(const std::string &key, PartialPoint &target, const std::string &text);
   Parameter &add(const std::string &key, std::vector<Point> &target, const std::string &text);
+  /// Keys of another table, for the program to read later.
+  Parameter &add(const std::string &key, std::vector<JsonMember> &target, const std::string &text);
 
   /// An enum whose values 0, 1, ... are written as these words.
   template <typename Enum>

@@ -56,7 +56,7 @@ public:
     if (!json.is(JsonKind::object)) {
       error(json.place, path,
             fmt::format("{} is {}, expected an object {{..}}",
-                        path.empty() ? "the scene" : "\"" + path + "\"", name_of(json.kind)),
+                        path.empty() ? "the file" : "\"" + path + "\"", name_of(json.kind)),
             "", "write the keys of this section between { and }");
       return;
     }
@@ -128,6 +128,11 @@ private:
       return list(p, json, path, label);
     case Kind::points:
       return points(p, json, path, label);
+    case Kind::members:
+      if (!json.is(JsonKind::object))
+        return wrong_type(p, json, path, label);
+      *std::get<std::vector<JsonMember> *>(p.target) = json.members;
+      return;
     case Kind::rotation:
       if (dimension_ == 2 || (dimension_ == 0 && !json.is(JsonKind::array))) {
         if (const auto value = number(p, json, path, label))

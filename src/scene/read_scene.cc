@@ -61,10 +61,10 @@ void complete(Scene &scene)
         load.value = value;
       }
 }
-} // namespace
 
-ReadResult parse_scene(const std::string &text, const std::string &name,
-                       const std::vector<std::string> &overrides)
+/// Overrides are of either form that apply_override() takes.
+template <typename Overrides>
+ReadResult parse(const std::string &text, const std::string &name, const Overrides &overrides)
 {
   ReadResult result;
   core::JsonValue json = core::parse_json(text, name, result.errors);
@@ -74,10 +74,11 @@ ReadResult parse_scene(const std::string &text, const std::string &name,
   Scene scene;
   core::ParameterSection table;
   declare_scene(table, scene);
-  for (const std::string &override_text : overrides)
-    core::apply_override(table, override_text, json, result.errors);
+  for (const auto &o : overrides)
+    core::apply_override(table, o, json, result.errors);
   const int dimension = dimension_of(json);
   core::read_parameters(table, json, "", dimension, table, result.errors);
+  result.keys_are_right = result.errors.empty();
   apply_far_field_word(json, scene);
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
@@ -93,7 +94,8 @@ ReadResult parse_scene(const std::string &text, const std::string &name,
   return result;
 }
 
-ReadResult read_scene(const std::string &file, const std::vector<std::string> &overrides)
+template <typename Overrides>
+ReadResult read(const std::string &file, const Overrides &overrides)
 {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
@@ -106,11 +108,28 @@ ReadResult read_scene(const std::string &file, const std::vector<std::string> &o
                              "there is no such file, or it may not be read", "check the path"});
     return result;
   }
-  ReadResult result = parse_scene(text.str(), file, overrides);
+  ReadResult result = parse(text.str(), file, overrides);
   if (result.scene && !result.scene->zone.packing_file.empty())
     result.scene->zone.packing_file =
         (std::filesystem::path(file).parent_path() / result.scene->zone.packing_file).string();
   return result;
+}
+} // namespace
+
+ReadResult parse_scene(const std::string &text, const std::string &name,
+                       const std::vector<std::string> &overrides)
+{
+  return parse(text, name, overrides);
+}
+
+ReadResult read_scene(const std::string &file, const std::vector<std::string> &overrides)
+{
+  return read(file, overrides);
+}
+
+ReadResult read_scene(const std::string &file, const std::vector<core::Override> &overrides)
+{
+  return read(file, overrides);
 }
 
 std::string explain(const std::string &key)
@@ -157,6 +176,6 @@ std::string reference_markdown()
          "divides by the next\n"
          "factor only, `^0.5` and `sqrt(..)` are powers. Any key can be given on the command line: "
          "`--set /path=value`.\n" +
-         core::markdown_tables(table);
+         core::markdown_tables(table, "The scene as a whole");
 }
 } // namespace ligament::program

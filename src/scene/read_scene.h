@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/diagnostic.h"
+#include "core/parameters/override.h"
 #include "src/scene/scene.h"
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@ struct ReadResult
 {
   std::optional<Scene> scene; // without value when there are errors
   std::vector<core::Diagnostic> errors, warnings;
+  /// Keys, types and bounds are right; what may be wrong then is how values go together.
+  bool keys_are_right = false;
   /// Every value, defaults included, in SI units; reading it gives the same scene. Null with
   /// errors.
   nlohmann::ordered_json resolved;
@@ -21,6 +24,9 @@ struct ReadResult
 /// checks everything that can be checked without building the bodies. Does not throw for wrong
 /// input.
 ReadResult read_scene(const std::string &file, const std::vector<std::string> &overrides = {});
+
+/// The same with values that were read elsewhere; their places appear in the messages.
+ReadResult read_scene(const std::string &file, const std::vector<core::Override> &overrides);
 
 /// The same for text; `name` is its name in messages.
 ReadResult parse_scene(const std::string &text, const std::string &name,
