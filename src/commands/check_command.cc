@@ -1,6 +1,7 @@
 #include "src/commands/commands.h"
 
 #include "particles/packing_file.h"
+#include "src/commands/peak_memory.h"
 #include "src/output/picture.h"
 #include "src/output/run_folder.h"
 #include "src/simulation/body_fields.h"
@@ -10,21 +11,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 namespace ligament::program
 {
 namespace
 {
-/// Present resident memory of this process, in bytes.
-double resident_bytes()
-{
-  std::ifstream statm("/proc/self/statm");
-  double size = 0, resident = 0;
-  statm >> size >> resident;
-  return resident * 4096;
-}
-
 struct Prediction
 {
   double seconds_per_step = 0; // of the whole body
@@ -124,8 +115,8 @@ int check(const CommandLine &line, const ReadResult &input)
   const Scene &scene = *input.scene;
   core::Log log;
   core::Timers timers;
-  const double memory_before = resident_bytes();
   auto body = make_body<dim>(scene, log, timers);
+  const double setup_seconds = timers.total();
   if (line.draw) {
     const std::string folder = output_folder(line);
     std::filesystem::create_directories(folder);
@@ -139,9 +130,9 @@ int check(const CommandLine &line, const ReadResult &input)
     }
   }
   const auto prediction = time_steps(body, timers);
-  const double memory = resident_bytes() - memory_before;
+  const double memory = peak_memory();
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
-  const double seconds = steps * prediction.seconds_per_step;
+  const double seconds = setup_seconds + steps * prediction.seconds_per_step;
   const int particles = body.zone ? body.zone->state.n_owned : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const int overlap = body.split ? body.split->report().overlap_particles : 0;
@@ -159,7 +150,8 @@ int check(const CommandLine &line, const ReadResult &input)
                body.coupler->step_ratio(), body.dt_far);
   fmt::print("  steps                {:>12}\n", steps);
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
-  fmt::print("  predicted time       {:>12}\n", duration_text(seconds));
+  fmt::print("  predicted time       {:>12}{}\n", duration_text(seconds),
+             scene.time.stop_when == "end" ? "" : ", less if it breaks earlier");
   double saving = 0;
   if (body.split) {
     saving = prediction.discrete_share * double(body.equivalent_particles) / particles;
@@ -179,6 +171,8 @@ int check(const CommandLine &line, const ReadResult &input)
                                    {"steps", steps},
                                    {"memory_bytes", memory},
                                    {"predicted_seconds", seconds},
+                                   {"seconds_per_step", prediction.seconds_per_step},
+                                   {"setup_seconds", setup_seconds},
                                    {"predicted_saving", saving},
                                    {"errors", nlohmann::json::array()}};
     fmt::print("{}\n", json.dump());

@@ -1,5 +1,6 @@
 #include "src/commands/commands.h"
 
+#include "src/commands/peak_memory.h"
 #include "src/output/report.h"
 #include "src/output/verdict.h"
 #include "src/simulation/simulation.h"
@@ -56,11 +57,16 @@ int run_command(const CommandLine &line, const ReadResult &input)
   const std::string report = write_report(folder.path);
   fmt::print("{}\n{}\n{}\nreport: {}\n", record.reason, headline(record), record.verdict, report);
   if (line.json) {
-    nlohmann::ordered_json json = {
-        {"status", record.status},    {"reason", record.reason},
-        {"steps", record.steps},      {"wall_seconds", record.wall_seconds},
-        {"peak_load", nullptr},       {"broken_bonds", record.broken_bonds},
-        {"energy_residual", nullptr}, {"output", folder.path}};
+    nlohmann::ordered_json json = {{"status", record.status},
+                                   {"reason", record.reason},
+                                   {"steps", record.steps},
+                                   {"wall_seconds", record.wall_seconds},
+                                   {"setup_seconds", record.setup_seconds},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"peak_load", nullptr},
+                                   {"broken_bonds", record.broken_bonds},
+                                   {"energy_residual", nullptr},
+                                   {"output", folder.path}};
     if (record.peak_load)
       json["peak_load"] = *record.peak_load;
     if (record.energy_residual)

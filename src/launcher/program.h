@@ -1,0 +1,27 @@
+// What both programs share: exit codes, and how mistakes and exceptions are told.
+#pragma once
+
+#include "core/diagnostic.h"
+#include "src/launcher/command_line.h"
+
+namespace ligament::program
+{
+enum class ExitCode
+{
+  done = 0,
+  wrong_input = 2,
+  stopped_by_guard = 3,
+  bad_environment = 4
+};
+
+/// The main function of a program: reads the command line, calls `dispatch`, and turns what that
+/// throws into a message on standard error, with --json into an object on standard output too, and
+/// into the exit code.
+int run_program(int argc, char **argv,
+                int (*dispatch)(const CommandLine &line, int argc, char **argv));
+
+/// Prints all errors of an input file and returns the exit code for wrong input.
+int refuse(const CommandLine &line, const std::string &file,
+           const std::vector<core::Diagnostic> &errors,
+           const std::vector<core::Diagnostic> &warnings = {});
+} // namespace ligament::program
