@@ -49,11 +49,27 @@ void declare(CLI::App &app, CommandLine &line)
       ->required()
       ->type_name("REFERENCE");
 
+  CLI::App &sweep = *app.add_subcommand("sweep", "computes a study: many variants of a scene");
+  sweep.add_option("study", line.study, "study file")->required()->type_name("STUDY");
+  sweep
+      .add_option("--jobs,-j", line.jobs,
+                  "runs at the same time; 1, the default, measures clean times")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  sweep.add_flag("--dry-run", line.dry_run,
+                 "lists the cases and what is finished, computes nothing");
+  sweep
+      .add_option("--output,-o", line.output,
+                  "folder for the results; finished runs in it are kept")
+      ->type_name("DIR");
+
   CLI::App &explain = *app.add_subcommand("explain", "default, unit, bounds and meaning of a key");
   explain.add_option("key", line.key, "such as /coupling/overlap_cells; without it: all keys")
       ->type_name("KEY");
   explain.add_flag("--markdown", line.markdown, "all keys, as the page of the manual");
   explain.add_flag("--schema", line.schema, "all keys, as JSON schema for editors");
+
+  explain.add_flag("--study", line.explain_study, "the keys of study files")->excludes("key");
 
   CLI::App &report = *app.add_subcommand("report", "writes the HTML report of a run again");
   report.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");

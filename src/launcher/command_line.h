@@ -9,18 +9,22 @@ namespace ligament::program
 {
 struct CommandLine
 {
-  std::string command; // run check compare explain report verify
+  std::string command; // run check compare sweep explain report verify
   bool json = false;   // end with one JSON object on the last line of standard output
 
   std::string scene;                  // run, check: file
   std::vector<std::string> overrides; // run, check: "/path=value", in their order
-  std::string output;                 // run, check: folder; empty: chosen from the scene's name
+  std::string output;                 // run, check, sweep: folder; empty: chosen from the name
   int ranks = 1;                      // run, check
   bool draw = false;                  // check: also a picture
+  std::string study;                  // sweep: file
+  int jobs = 1;                       // sweep: runs at the same time
+  bool dry_run = false;               // sweep: list the cases only
   std::string run, reference;         // compare, report: folders (the reference may be a curve)
   std::string key;                    // explain; empty: all keys
   bool markdown = false;              // explain: the page of the manual
   bool schema = false;                // explain: the JSON schema
+  bool explain_study = false;         // explain: of study files
   std::string verify_case;            // verify; empty: all
   bool full = false;                  // verify: also the slow ones
 

@@ -16,13 +16,18 @@
 
 namespace ligament::program
 {
-void start_solver(int argc, char *const *argv)
+std::string solver_path()
 {
   std::error_code failed;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", failed);
   core::require<core::EnvironmentError>(!failed,
                                         "cannot find the own program: " + failed.message());
-  const std::string solver = (self.parent_path() / "ligament-solver").string();
+  return (self.parent_path() / "ligament-solver").string();
+}
+
+void start_solver(int argc, char *const *argv)
+{
+  const std::string solver = solver_path();
   std::string name = solver;
   std::vector<char *> arguments(argv, argv + argc);
   arguments[0] = name.data();

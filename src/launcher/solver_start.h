@@ -5,6 +5,9 @@
 
 namespace ligament::program
 {
+/// Path of the solver, beside this program. Throws core::EnvironmentError.
+std::string solver_path();
+
 /// Replaces this process by the solver with the same arguments; returns only by an exception.
 /// Throws core::EnvironmentError when the solver cannot be started.
 [[noreturn]] void start_solver(int argc, char *const *argv);

@@ -199,6 +199,15 @@ std::vector<BrokenBond> part(const std::vector<BrokenBond> &bonds, double time, 
   return chosen;
 }
 
+/// When the faces broke, on average: the crack's timetable in one figure.
+double mean_time(const std::vector<BrokenBond> &bonds)
+{
+  double sum = 0;
+  for (const BrokenBond &b : bonds)
+    sum += b.time;
+  return sum / double(bonds.size());
+}
+
 class Comparison
 {
 public:
@@ -270,6 +279,10 @@ private:
       r_.notes.push_back("crack path: not in both runs a face broke");
       return;
     }
+    const double ta_mean = mean_time(a), tb_mean = mean_time(b);
+    r_.breaking_time_error = relative_error(ta_mean, tb_mean);
+    line("mean time of breaking", text(ta_mean, "s"), text(tb_mean, "s"),
+         percent(r_.breaking_time_error));
     const double d = run_.record->spacing;
     const auto all = crack_distance(a, a, b, b, d);
     r_.crack_distance_mean = all.mean;

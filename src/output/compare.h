@@ -25,9 +25,10 @@ struct CompareResult
   /// sees it, before the news of it reaches the grips.
   std::optional<double> crack_distance_mean_to_onset, crack_distance_max_to_onset;
   std::optional<double> crack_distance_mean_after_onset, crack_distance_max_after_onset;
-  std::optional<double> energy_error;   // external work at the peak
-  std::optional<double> time_ratio;     // wall time of the reference over that of the run
-  std::optional<double> particle_ratio; // particles of the reference over those of the run
+  std::optional<double> energy_error;        // external work at the peak
+  std::optional<double> breaking_time_error; // mean time at which the faces broke
+  std::optional<double> time_ratio;          // wall time of the reference over that of the run
+  std::optional<double> particle_ratio;      // particles of the reference over those of the run
   /// Over particles at the same reference position, at the peak of each run, relative to the
   /// reference: |difference|_2/|reference|_2 and largest difference over largest value.
   std::optional<double> displacement_error, displacement_error_max;

@@ -44,6 +44,7 @@ nlohmann::json to_json(const CompareResult &r)
   put("crack_distance_mean_after_onset", r.crack_distance_mean_after_onset);
   put("crack_distance_max_after_onset", r.crack_distance_max_after_onset);
   put("energy_error", r.energy_error);
+  put("breaking_time_error", r.breaking_time_error);
   put("time_ratio", r.time_ratio);
   put("particle_ratio", r.particle_ratio);
   put("displacement_error", r.displacement_error);

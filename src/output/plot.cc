@@ -178,6 +178,24 @@ std::string axes(const Plot &plot, const Scale &x, const Scale &y, const Frame &
   return text;
 }
 
+std::string marker(const Series &series, const char *color, double px, double py)
+{
+  const std::string look =
+      series.hollow ? fmt::format("r=\"5\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", color)
+                    : fmt::format("r=\"3.5\" fill=\"{}\"", color);
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" {}/>\n", px, py, look);
+}
+
+/// Text beside a point, on the side where there is room.
+std::string note(const std::string &text, const char *color, double px, double py,
+                 const Frame &frame)
+{
+  const bool to_the_left = px + 7. * double(text.size()) + 12 > frame.left + frame.width;
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\" fill=\"{}\"{}>{}</text>\n",
+                     px + (to_the_left ? -8 : 8), py + 4, color,
+                     to_the_left ? " text-anchor=\"end\"" : "", escape_xml(text));
+}
+
 std::string curve(const Series &series, const char *color, const Scale &x, const Scale &y,
                   const Frame &frame)
 {
@@ -186,12 +204,16 @@ std::string curve(const Series &series, const char *color, const Scale &x, const
     text +=
         fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>\n", color,
                     series.dashed ? " stroke-dasharray=\"7 4\"" : "", path(series, x, y, frame));
-  if (series.markers)
-    for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i)
-      if (x.shows(series.x[i]) && y.shows(series.y[i]))
-        text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n",
-                            frame.left + frame.width * x(series.x[i]),
-                            frame.top + frame.height * (1 - y(series.y[i])), color);
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+    if (!x.shows(series.x[i]) || !y.shows(series.y[i]))
+      continue;
+    const double px = frame.left + frame.width * x(series.x[i]);
+    const double py = frame.top + frame.height * (1 - y(series.y[i]));
+    if (series.markers)
+      text += marker(series, color, px, py);
+    if (i < series.notes.size() && !series.notes[i].empty())
+      text += note(series.notes[i], color, px, py, frame);
+  }
   return text;
 }
 } // namespace
@@ -237,11 +259,14 @@ std::string svg(const Plot &plot)
         column = 0;
       }
       const int px = left_margin + column, py = top + 16 * rows - 4;
-      legend += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{} {}h22\"/>"
-                            "<text x=\"{}\" y=\"{}\">{}</text>\n",
-                            colors[s % colors.size()],
-                            plot.series[s].dashed ? " stroke-dasharray=\"7 4\"" : "", px, py - 4,
-                            px + 27, py, escape_xml(plot.series[s].label));
+      if (!plot.series[s].line)
+        legend += marker(plot.series[s], colors[s % colors.size()], px + 11, py - 4);
+      else
+        legend += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{} {}h22\"/>",
+                              colors[s % colors.size()],
+                              plot.series[s].dashed ? " stroke-dasharray=\"7 4\"" : "", px, py - 4);
+      legend += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px + 27, py,
+                            escape_xml(plot.series[s].label));
       column += width;
     }
   }

@@ -13,6 +13,8 @@ struct Series
   bool dashed = false;
   bool markers = false; // a dot at every point
   bool line = true;
+  bool hollow = false;                 // markers are rings
+  std::vector<std::string> notes = {}; // text beside a point; may be shorter than x
 };
 
 struct PlotAxis

@@ -16,6 +16,8 @@
 namespace
 {
 const std::string program = LIGAMENT_PROGRAM;
+const std::string wrong_study =
+    LIGAMENT_SOURCE_DIR "/tests/support/wrong_studies/several_at_once.json";
 const std::string plate = LIGAMENT_SOURCE_DIR "/tests/support/scenes/plate.json";
 
 struct Outcome
@@ -57,7 +59,7 @@ bool has(const std::string &text, const std::string &part)
 TEST(Launcher, HelpVersionAndExplain)
 {
   EXPECT_EQ(start("--help").code, 0);
-  for (const char *command : {"run", "check", "compare", "explain", "report", "verify"}) {
+  for (const char *command : {"run", "check", "compare", "sweep", "explain", "report", "verify"}) {
     EXPECT_TRUE(has(start("--help").text, command));
     EXPECT_EQ(start(std::string(command) + " --help").code, 0);
   }
@@ -93,6 +95,17 @@ TEST(Launcher, WrongScenesArePrintedWithAllErrors)
   }
 }
 
+TEST(Launcher, WrongStudiesArePrintedWithAllErrors)
+{
+  const Outcome outcome = start("sweep " + wrong_study + " --json");
+  EXPECT_EQ(outcome.code, 2);
+  for (const char *place : {":4:3: error: ", ":5:25: error: ", ":6:14: error: "})
+    EXPECT_TRUE(has(errors(), place)) << errors();
+  EXPECT_TRUE(has(outcome.text, "\"errors\":[{")) << outcome.text;
+  EXPECT_EQ(start("sweep no_such_study.json").code, 2);
+  EXPECT_EQ(start("sweep " + wrong_study + " --jobs 0").code, 2);
+}
+
 TEST(Launcher, SeveralRanksAreRefused)
 {
   EXPECT_EQ(start("run " + plate + " -n 2").code, 2);
@@ -116,7 +129,8 @@ TEST(Launcher, MissingSolverIsAMatterOfTheEnvironment)
 TEST(Launcher, AnswersAtOnce)
 {
   for (const std::string &arguments :
-       {std::string("--help"), std::string("explain"), "run " + plate + " --set /dimension=4"})
+       {std::string("--help"), std::string("explain"), "run " + plate + " --set /dimension=4",
+        "sweep " + wrong_study + " --json"})
   {
     double fastest = 1;
     for (int k = 0; k < 5; ++k)

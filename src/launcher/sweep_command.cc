@@ -1,0 +1,95 @@
+#include "src/launcher/sweep_command.h"
+
+#include "src/launcher/program.h"
+#include "src/launcher/solver_start.h"
+#include "src/sweep/summary.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+/// study.json in a folder of its own is named after the folder.
+std::string default_folder(const std::string &study)
+{
+  const std::filesystem::path file = std::filesystem::absolute(study);
+  const std::string name =
+      file.stem() == "study" ? file.parent_path().filename().string() : file.stem().string();
+  return name + "-sweep";
+}
+
+int list_cases(const CommandLine &line, const CaseList &list, const std::string &folder)
+{
+  const auto finished = finished_runs(folder);
+  auto json = nlohmann::ordered_json::array();
+  for (const Case &c : list.cases) {
+    const bool done = c.refused.empty() && finished.count(scene_text(c.scene));
+    const std::string state = !c.refused.empty() ? "refused" : done ? "finished" : "open";
+    fmt::print("{:<8}  {:<16}  {}{}\n", state, c.id, c.name,
+               c.refused.empty() ? "" : " (" + c.refused + ")");
+    json.push_back({{"name", c.name}, {"id", c.id}, {"state", state}, {"reason", c.refused}});
+  }
+  if (line.json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"cases", json}, {"output", folder}}.dump());
+  return int(ExitCode::done);
+}
+
+int count(const std::vector<CaseResult> &results, CaseEnd::Status status)
+{
+  int n = 0;
+  for (const CaseResult &r : results)
+    n += r.end.status == status;
+  return n;
+}
+
+int compute(const CommandLine &line, const Study &study, const CaseList &list,
+            const std::string &path)
+{
+  StudyFolder folder(path);
+  const auto ends = Sweep(list, folder, solver_path(), line.jobs, stderr).run();
+  std::vector<std::string> notes;
+  const auto results = evaluate(study, list, ends, notes);
+  write_table(folder.table(), list, results);
+  write_summary(folder, study, list, results, notes);
+  for (const std::string &note : notes)
+    fmt::print(stderr, "{}\n", note);
+  const int failed = count(results, CaseEnd::Status::failed);
+  fmt::print("{} cases: {} done, {} stopped by a guard, {} refused, {} failed\n", results.size(),
+             count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::guard),
+             count(results, CaseEnd::Status::refused), failed);
+  fmt::print("table: {}\nsummary: {}\n", folder.table(), folder.summary());
+  if (line.json) {
+    int reused = 0;
+    for (const auto &[id, end] : ends)
+      reused += end.reused;
+    fmt::print("{}\n", nlohmann::ordered_json{{"status", failed == 0 ? "done" : "failed"},
+                                              {"cases", results.size()},
+                                              {"done", count(results, CaseEnd::Status::done)},
+                                              {"guard", count(results, CaseEnd::Status::guard)},
+                                              {"refused", count(results, CaseEnd::Status::refused)},
+                                              {"failed", failed},
+                                              {"reused", reused},
+                                              {"table", folder.table()},
+                                              {"summary", folder.summary()},
+                                              {"output", folder.path()}}
+                           .dump());
+  }
+  return int(failed == 0 ? ExitCode::done : ExitCode::bad_environment);
+}
+} // namespace
+
+int sweep_command(const CommandLine &line)
+{
+  const StudyResult read = read_study(line.study);
+  if (!read.study)
+    return refuse(line, line.study, read.errors);
+  const CaseList list = make_cases(*read.study, read.json);
+  if (!list.errors.empty())
+    return refuse(line, line.study, list.errors);
+  const std::string folder = line.output.empty() ? default_folder(line.study) : line.output;
+  return line.dry_run ? list_cases(line, list, folder) : compute(line, *read.study, list, folder);
+}
+} // namespace ligament::program

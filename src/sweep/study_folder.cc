@@ -1,0 +1,113 @@
+#include "src/sweep/study_folder.h"
+
+#include "core/check.h"
+#include "core/files.h"
+#include "src/output/run_record.h"
+#include "src/sweep/cases.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace ligament::program
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+/// Text of the scene when the run ended by itself.
+std::optional<std::string> finished_scene(const RunFolder &run)
+{
+  if (!run.holds_a_run() || !std::filesystem::exists(run.resolved_scene()))
+    return {};
+  try {
+    const RunRecord record = read_run_record(run.record());
+    if (record.status != "done" && record.status != "guard")
+      return {};
+    return scene_text(Json::parse(core::read_file(run.resolved_scene())));
+  } catch (const core::InputError &) {
+    return {}; // damaged: the run is done again, this folder is kept
+  } catch (const Json::exception &) {
+    return {};
+  }
+}
+
+std::string cost_file(const RunFolder &run)
+{
+  return run.path + "/cost.json";
+}
+} // namespace
+
+std::map<std::string, std::string> finished_runs(const std::string &study_folder)
+{
+  std::map<std::string, std::string> finished;
+  std::error_code none;
+  for (const auto &entry : std::filesystem::directory_iterator(study_folder + "/runs", none))
+    if (const auto scene = finished_scene({entry.path()}))
+      finished.emplace(*scene, entry.path());
+  return finished;
+}
+
+StudyFolder::StudyFolder(std::string path) : path_(std::move(path))
+{
+  for (const char *folder : {"/runs", "/cases"}) {
+    std::error_code error;
+    std::filesystem::create_directories(path_ + folder, error);
+    core::require<core::EnvironmentError>(!error, "cannot make the folder " + path_ + folder +
+                                                      ": " + error.message());
+  }
+  lock_ = open((path_ + "/lock").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  core::require<core::EnvironmentError>(lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0,
+                                        path_ + ": another sweep works in this folder (" +
+                                            std::strerror(errno) + "); wait, or give --output");
+  finished_ = finished_runs(path_);
+}
+
+StudyFolder::~StudyFolder()
+{
+  close(lock_);
+}
+
+std::string StudyFolder::case_file(const std::string &id, const std::string &name) const
+{
+  const std::string folder = path_ + "/cases/" + id;
+  std::filesystem::create_directories(folder);
+  return folder + "/" + name;
+}
+
+std::optional<RunFolder> StudyFolder::finished(const std::string &scene) const
+{
+  const auto found = finished_.find(scene);
+  return found == finished_.end() ? std::nullopt : std::optional(RunFolder{found->second});
+}
+
+void StudyFolder::look_at(const RunFolder &run)
+{
+  if (const auto scene = finished_scene(run))
+    finished_.emplace(*scene, run.path);
+}
+
+void write_cost(const RunFolder &run, const RunCost &cost)
+{
+  const Json json = {{"core_seconds", cost.core_seconds},
+                     {"peak_memory_bytes", cost.peak_memory},
+                     {"jobs", cost.jobs}};
+  core::write_file(cost_file(run), json.dump(2) + "\n");
+}
+
+std::optional<RunCost> read_cost(const RunFolder &run)
+{
+  try {
+    const Json json = Json::parse(core::read_file(cost_file(run)));
+    return RunCost{json.at("core_seconds"), json.at("peak_memory_bytes"), json.at("jobs")};
+  } catch (const core::EnvironmentError &) {
+    return {};
+  } catch (const Json::exception &) {
+    return {};
+  }
+}
+} // namespace ligament::program
