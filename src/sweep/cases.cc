@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 
 namespace ligament::program
@@ -128,7 +129,10 @@ CaseList make_cases(const Study &study, const JsonValue &json)
     const ReadResult read = read_scene(study.scene, c.overrides);
     if (read.scene) {
       c.scene = read.resolved;
-      c.id = text_id(scene_text(read.resolved));
+      // The case's scene lies elsewhere: relative paths in it would lead nowhere.
+      if (const std::string &file = read.scene->zone.packing_file; !file.empty())
+        c.scene["discrete_zone"]["packing_file"] = std::filesystem::absolute(file).string();
+      c.id = text_id(scene_text(c.scene));
       any = true;
       continue;
     }
