@@ -99,7 +99,7 @@ TEST(Launcher, WrongStudiesArePrintedWithAllErrors)
 {
   const Outcome outcome = start("sweep " + wrong_study + " --json");
   EXPECT_EQ(outcome.code, 2);
-  for (const char *place : {":4:3: error: ", ":5:25: error: ", ":6:14: error: "})
+  for (const char *place : {":4:3: error: ", ":5:26: error: ", ":6:14: error: "})
     EXPECT_TRUE(has(errors(), place)) << errors();
   EXPECT_TRUE(has(outcome.text, "\"errors\":[{")) << outcome.text;
   EXPECT_EQ(start("sweep no_such_study.json").code, 2);
