@@ -87,7 +87,7 @@ std::vector<std::string> runs(const std::string &status)
 
 bool wait_for(const std::function<bool()> &condition)
 {
-  for (int k = 0; k < 3000; ++k) {
+  for (int k = 0; k < 30000; ++k) {
     if (condition())
       return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -102,11 +102,11 @@ TEST(Sweep, SurvivesAKillAndComputesNothingTwice)
   core::write_file("study.json", study("[2, 3, 6]"));
 
   const pid_t killed = start_sweep();
-  ASSERT_TRUE(wait_for([] { return runs("done").size() == 1 && runs("running").size() == 1; }));
+  ASSERT_TRUE(wait_for([] { return !runs("done").empty() && runs("running").size() == 1; }));
   kill(killed, SIGKILL);
   waitpid(killed, nullptr, 0);
   const auto done = runs("done"), running = runs("running");
-  ASSERT_EQ(done.size(), 1u);
+  ASSERT_GE(done.size(), 1u);
   ASSERT_EQ(running.size(), 1u);
   const std::string first = core::read_file(done[0] + "/run.json");
 
@@ -115,7 +115,7 @@ TEST(Sweep, SurvivesAKillAndComputesNothingTwice)
   EXPECT_EQ(resumed["cases"], 4);
   EXPECT_EQ(resumed["done"], 3);
   EXPECT_EQ(resumed["refused"], 1);
-  EXPECT_EQ(resumed["reused"], 1);
+  EXPECT_EQ(resumed["reused"], done.size());
   EXPECT_EQ(core::read_file(done[0] + "/run.json"), first); // not written over
   EXPECT_EQ(runs("done").size(), 3u);
   EXPECT_EQ(runs("running"), std::vector<std::string>{running[0] + ".1"}); // kept, not counted
