@@ -10,7 +10,7 @@
 namespace ligament::coupling
 {
 template <int dim>
-FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters &overlap,
+FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
                                     const FineScaleSplitParameters &parameters, double dt,
                                     core::Timers &timers)
     : Coupler<dim>(timers), parameters_(parameters),

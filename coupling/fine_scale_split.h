@@ -38,7 +38,7 @@ class FineScaleSplit : public Coupler<dim>
 {
 public:
   /// Takes the overlap's and the transition's cells over from the far field. dt in s.
-  FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters &overlap,
+  FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
                  const FineScaleSplitParameters &parameters, double dt, core::Timers &timers);
 
   void drift(Bodies<dim> &bodies, const StepTime &step) override;

@@ -12,10 +12,10 @@ namespace ligament::coupling
 template <int dim>
 Overlap<dim>::Overlap(const particles::Particles<dim> &particles,
                       const particles::ParticleForce<dim> &force, const fem::Mesh<dim> &mesh,
-                      const OverlapParameters &parameters)
+                      const OverlapParameters<dim> &parameters)
     : mesh(mesh), parameters(parameters)
 {
-  core::require(!parameters.sides.empty(), "the discrete zone has no coupled side");
+  core::require(!parameters.zone.boxes.empty(), "the discrete zone has no coupled side");
   find_members(particles, force);
   find_cells();
 }
@@ -23,11 +23,7 @@ Overlap<dim>::Overlap(const particles::Particles<dim> &particles,
 template <int dim>
 double Overlap<dim>::distance_to_edge(const Vector<dim> &x) const
 {
-  double distance = std::numeric_limits<double>::max();
-  for (const auto &side : parameters.sides)
-    distance = std::min(distance,
-                        side.upper ? side.position - x[side.axis] : x[side.axis] - side.position);
-  return distance;
+  return parameters.zone.distance(x);
 }
 
 template <int dim>
@@ -128,14 +124,8 @@ void Overlap<dim>::find_cells()
         node_layer[node] = l;
   };
   for (int c = 0; c < mesh.n_cells(); ++c) {
-    bool inside = true;
-    for (const auto &side : parameters.sides) {
-      const double lower = mesh.cell_lower[c][side.axis];
-      const double size = mesh.cell_size[c][side.axis];
-      const double reach = side.upper ? side.position - lower : lower + size - side.position;
-      inside &= reach > 1e-8 * size;
-    }
-    if (inside)
+    const Vector<dim> &lower = mesh.cell_lower[c], &size = mesh.cell_size[c];
+    if (parameters.zone.meets(lower, lower + size, 1e-8 * size.minCoeff()))
       take(c, 0);
   }
   for (const auto &m : members)

@@ -2,6 +2,7 @@
 // and the interpolation from nodes to particles.
 #pragma once
 
+#include "core/box_union.h"
 #include "fem/mesh.h"
 #include "particles/particle_force.h"
 
@@ -10,31 +11,25 @@
 
 namespace ligament::coupling
 {
-/// A side of the discrete zone behind which the mesh goes on: an axis-parallel plane at the edge
-/// of the packing.
-struct CoupledSide
-{
-  int axis;
-  bool upper;      // the zone lies below (true) or above (false) the plane
-  double position; // m
-};
-
+template <int dim>
 struct OverlapParameters
 {
-  std::vector<CoupledSide> sides;
-  double length;        // m, L: from the edge of the packing to the inner edge of the mesh
-  double spacing;       // m, d
-  int transition_cells; // layers of cells over which the mass goes from consistent to lumped
+  core::BoxUnion<dim> zone; // its sides are the edge of the packing; infinite where it reaches
+                            // through the specimen
+  double length;            // m, L: from the edge of the packing to the inner edge of the mesh
+  double spacing;           // m, d
+  int transition_cells;     // layers of cells over which the mass goes from consistent to lumped
   /// m; the body repeats itself in the directions where this is not 0: neighbours of the particles
   /// and nodes of the cells at one side of the period are those at its other side.
   std::array<double, 3> period = {};
 };
 
-/// The overlap of one discrete zone with the mesh (theory.md, "Overlap and weights").
+/// The overlap of the discrete zone, in one or several pieces, with the mesh (theory.md, "Overlap
+/// and weights").
 ///
-/// A point is a distance away from the edge of the packing, the smallest over the coupled sides;
-/// s rises from 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the
-/// mesh ends. The share of the discrete model is a = 3 s^2 - 2 s^3.
+/// A point is a distance away from the edge of the packing (core::BoxUnion::distance); s rises from
+/// 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the mesh ends. The
+/// share of the discrete model is a = 3 s^2 - 2 s^3.
 template <int dim>
 class Overlap
 {
@@ -44,7 +39,7 @@ public:
   /// Throws core::InputError when pad particles reach out of the mesh, when the overlap is too
   /// thin for them, or when its cells touch hanging nodes.
   Overlap(const particles::Particles<dim> &particles, const particles::ParticleForce<dim> &force,
-          const fem::Mesh<dim> &mesh, const OverlapParameters &parameters);
+          const fem::Mesh<dim> &mesh, const OverlapParameters<dim> &parameters);
 
   /// Distance of a point from the edge of the packing, in m; negative beyond it.
   double distance_to_edge(const Vector<dim> &x) const;
@@ -82,7 +77,7 @@ public:
   double depth = 0;                    // m
   double cell_size = 0;                // m, smallest edge of the overlap's cells
   const fem::Mesh<dim> &mesh;
-  const OverlapParameters parameters;
+  const OverlapParameters<dim> parameters;
 
   int n_nodes() const { return int(near_nodes.size()); }
 

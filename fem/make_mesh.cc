@@ -19,15 +19,51 @@ namespace ligament::fem
 namespace
 {
 using Index = SectionedAxis::Index;
-using Grid = std::vector<SectionedAxis>; // one per direction
 
 template <int dim>
 using Lattice = std::array<Index, dim>;
 
+/// The directions, and what is left out, in indices.
 template <int dim>
-bool has_inner_box(const MeshParameters<dim> &p)
+struct Grid
 {
-  return (p.inner_upper - p.inner_lower).minCoeff() > 0;
+  struct Part
+  {
+    Lattice<dim> begin, end;
+  };
+  std::vector<SectionedAxis> axes;
+  std::vector<Part> inner;
+
+  const SectionedAxis &operator[](int k) const { return axes[k]; }
+
+  /// Distance of a cell from a part, 0 where they meet.
+  static Index distance(const Part &part, const Lattice<dim> &lower, Index size)
+  {
+    Index d = 0;
+    for (int k = 0; k < dim; ++k)
+      d = std::max({d, part.begin[k] - (lower[k] + size), lower[k] - part.end[k]});
+    return d;
+  }
+
+  bool is_inner(const Lattice<dim> &lower, Index size) const
+  {
+    return std::any_of(inner.begin(), inner.end(), [&](const Part &part) {
+      for (int k = 0; k < dim; ++k)
+        if (lower[k] < part.begin[k] || lower[k] + size > part.end[k])
+          return false;
+      return true;
+    });
+  }
+};
+
+template <int dim>
+std::vector<InnerBox<dim>> inner_boxes(const MeshParameters<dim> &p)
+{
+  std::vector<InnerBox<dim>> boxes;
+  for (const auto &box : p.inner)
+    if ((box.upper - box.lower).minCoeff() > 0)
+      boxes.push_back(box);
+  return boxes;
 }
 
 constexpr const char *axis_name = "xyz";
@@ -53,61 +89,86 @@ void check_parameters(const MeshParameters<dim> &p)
 /// Sections that get cells must not be thinner than their largest cells: squeezed cells would
 /// govern the time step and refinement could not follow the requested distances.
 template <int dim>
-void check_sections(const Grid &grid, const MeshParameters<dim> &p, double base_size)
+void check_section(const SectionedAxis::Section &s, int k, const MeshParameters<dim> &p,
+                   double base_size)
 {
-  for (int k = 0; k < dim; ++k) {
-    bool others_leave_room = false;
-    for (int l = 0; l < dim; ++l)
-      others_leave_room |= l != k && grid[l].leaves_room();
-    for (const auto &s : grid[k].sections()) {
-      const double length = s.upper - s.lower;
-      if ((s.inner && !others_leave_room) || length >= 0.75 * base_size)
-        continue;
-      const int levels = int(std::floor(std::log2(length / (0.75 * p.cell_size))));
-      throw core::InputError(fmt::format(
-          "far-field mesh: the section {} = {:.6g} m to {:.6g} m is {:.6g} m wide, thinner than "
-          "one cell of {:.6g} m (cell size {:.6g} m, {} levels); {}",
-          axis_name[k], s.lower, s.upper, length, base_size, p.cell_size, p.levels,
-          levels >= 0 ? fmt::format("use at most {} levels or widen the section", levels)
-                      : "use smaller cells or widen the section"));
+  const double length = s.upper - s.lower;
+  if (length >= 0.75 * base_size)
+    return;
+  const int levels = int(std::floor(std::log2(length / (0.75 * p.cell_size))));
+  throw core::InputError(fmt::format(
+      "far-field mesh: the section {} = {:.6g} m to {:.6g} m is {:.6g} m wide, thinner than "
+      "one cell of {:.6g} m (cell size {:.6g} m, {} levels); {}",
+      axis_name[k], s.lower, s.upper, length, base_size, p.cell_size, p.levels,
+      levels >= 0 ? fmt::format("use at most {} levels or widen the section", levels)
+                  : "use smaller cells or widen the section"));
+}
+
+/// Checks the sections beside every block of the grid that gets cells.
+template <int dim>
+void check_sections(const Grid<dim> &grid, const MeshParameters<dim> &p, double base_size)
+{
+  std::size_t n_blocks = 1;
+  for (const auto &axis : grid.axes)
+    n_blocks *= axis.sections().size();
+  bool leaves_room = false;
+  for (std::size_t block = 0; block < n_blocks; ++block) {
+    std::array<const SectionedAxis::Section *, dim> sections;
+    Lattice<dim> lower;
+    std::size_t rest = block;
+    for (int k = 0; k < dim; ++k) {
+      const auto &all = grid[k].sections();
+      sections[k] = &all[rest % all.size()];
+      rest /= all.size();
+      lower[k] = sections[k]->begin;
     }
+    if (grid.is_inner(lower, 1))
+      continue;
+    leaves_room = true;
+    for (int k = 0; k < dim; ++k)
+      check_section(*sections[k], k, p, base_size);
   }
+  core::require(leaves_room, "far-field mesh: the discrete zone fills the whole specimen; make it "
+                             "smaller or do without far field");
 }
 
 template <int dim>
-Grid make_grid(const MeshParameters<dim> &p, int levels)
+Grid<dim> make_grid(const MeshParameters<dim> &p, int levels)
 {
   const double base_size = std::ldexp(p.cell_size, levels);
-  const bool inner = has_inner_box(p);
-  Grid grid;
+  const auto boxes = inner_boxes(p);
+  Grid<dim> grid;
   double n_base = 1;
   for (int k = 0; k < dim; ++k) {
     n_base *= std::max(1., (p.upper[k] - p.lower[k]) / base_size);
     core::require(n_base < 1e8, fmt::format("far-field mesh: more than 1e8 cells of {:.6g} m; use "
                                             "larger cells or more levels",
                                             base_size));
-    grid.emplace_back(p.lower[k], p.upper[k], inner ? p.inner_lower[k] : p.upper[k],
-                      inner ? p.inner_upper[k] : p.lower[k], base_size, levels);
-  }
-  if (inner) {
-    bool leaves_room = false;
-    for (int k = 0; k < dim; ++k) {
-      core::require(grid[k].meets_inner_box(),
+    std::vector<double> cuts;
+    for (const auto &box : boxes) {
+      core::require(box.lower[k] < p.upper[k] && box.upper[k] > p.lower[k],
                     fmt::format("far-field mesh: the discrete zone ({:.6g} m to {:.6g} m in {}) "
                                 "lies outside the specimen; move it inside",
-                                p.inner_lower[k], p.inner_upper[k], axis_name[k]));
-      leaves_room |= grid[k].leaves_room();
+                                box.lower[k], box.upper[k], axis_name[k]));
+      cuts.push_back(box.lower[k]);
+      cuts.push_back(box.upper[k]);
     }
-    core::require(leaves_room, "far-field mesh: the discrete zone fills the whole specimen; make "
-                               "it smaller or do without far field");
+    grid.axes.emplace_back(p.lower[k], p.upper[k], cuts, base_size, levels);
+  }
+  for (const auto &box : boxes) {
+    auto &part = grid.inner.emplace_back();
+    for (int k = 0; k < dim; ++k) {
+      part.begin[k] = grid[k].index(std::max(box.lower[k], p.lower[k]));
+      part.end[k] = grid[k].index(std::min(box.upper[k], p.upper[k]));
+    }
   }
   check_sections<dim>(grid, p, base_size);
   return grid;
 }
 
-/// Base cells outside the inner box.
+/// Base cells outside the inner boxes.
 template <int dim>
-void make_base_mesh(const Grid &grid, Index base, dealii::Triangulation<dim> &triangulation)
+void make_base_mesh(const Grid<dim> &grid, Index base, dealii::Triangulation<dim> &triangulation)
 {
   Lattice<dim> n_points;
   Index n_cells = 1, total_points = 1;
@@ -122,14 +183,14 @@ void make_base_mesh(const Grid &grid, Index base, dealii::Triangulation<dim> &tr
   std::vector<dealii::CellData<dim>> cells;
   for (Index c = 0; c < n_cells; ++c) {
     Lattice<dim> lower;
-    bool inside = true;
+    Lattice<dim> finest;
     Index rest = c;
     for (int k = 0; k < dim; ++k) {
       lower[k] = rest % (n_points[k] - 1);
       rest /= n_points[k] - 1;
-      inside = inside && grid[k].in_inner_box(lower[k] * base, base);
+      finest[k] = lower[k] * base;
     }
-    if (inside)
+    if (grid.is_inner(finest, base))
       continue;
     cells.emplace_back();
     for (int v = 0; v < n_cell_nodes<dim>; ++v) {
@@ -151,7 +212,7 @@ void make_base_mesh(const Grid &grid, Index base, dealii::Triangulation<dim> &tr
 }
 
 template <int dim>
-Lattice<dim> lattice_point(const Grid &grid, const dealii::Point<dim> &p)
+Lattice<dim> lattice_point(const Grid<dim> &grid, const dealii::Point<dim> &p)
 {
   Lattice<dim> i;
   for (int k = 0; k < dim; ++k)
@@ -159,10 +220,10 @@ Lattice<dim> lattice_point(const Grid &grid, const dealii::Point<dim> &p)
   return i;
 }
 
-/// Refines what is nearer to the inner box than its size allows. The first distance has one cell
+/// Refines what is nearer to an inner box than its size allows. The first distance has one cell
 /// more than asked for: hanging nodes then lie beyond the fine region, not on its border.
 template <int dim>
-void refine(const Grid &grid, const MeshParameters<dim> &p, int levels,
+void refine(const Grid<dim> &grid, const MeshParameters<dim> &p, int levels,
             dealii::Triangulation<dim> &triangulation)
 {
   for (int level = levels; level > 0; --level) {
@@ -173,11 +234,9 @@ void refine(const Grid &grid, const MeshParameters<dim> &p, int levels,
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->level() == levels - level) {
         const Lattice<dim> lower = lattice_point<dim>(grid, cell->vertex(0));
-        Index distance = 0;
-        for (int k = 0; k < dim; ++k)
-          distance = std::max(distance, grid[k].distance(lower[k], size));
-        if (distance < required)
-          cell->set_refine_flag();
+        for (const auto &part : grid.inner)
+          if (grid.distance(part, lower, size) < required)
+            cell->set_refine_flag();
       }
     triangulation.execute_coarsening_and_refinement();
   }
@@ -197,8 +256,8 @@ std::vector<int> row_order(const std::vector<Lattice<dim>> &points)
 }
 
 template <int dim>
-void add_cells(const Grid &grid, int levels, const dealii::DoFHandler<dim> &dofs, Mesh<dim> &mesh,
-               std::vector<int> &node_of_dof)
+void add_cells(const Grid<dim> &grid, int levels, const dealii::DoFHandler<dim> &dofs,
+               Mesh<dim> &mesh, std::vector<int> &node_of_dof)
 {
   std::vector<Lattice<dim>> node_points(dofs.n_dofs()), cell_points;
   std::vector<int> cell_levels;
@@ -238,10 +297,7 @@ void add_cells(const Grid &grid, int levels, const dealii::DoFHandler<dim> &dofs
         else {
           Lattice<dim> beyond = lower;
           beyond[k] += side ? size : -size;
-          bool inside = true;
-          for (int l = 0; l < dim; ++l)
-            inside = inside && grid[l].in_inner_box(beyond[l], size);
-          if (inside)
+          if (grid.is_inner(beyond, size))
             mesh.boundary_faces.push_back({mesh.n_cells(), normal, inner_surface<dim>});
         }
       }
@@ -278,8 +334,8 @@ template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters)
 {
   check_parameters(parameters);
-  const int levels = has_inner_box(parameters) ? parameters.levels : 0;
-  const Grid grid = make_grid(parameters, levels);
+  const int levels = inner_boxes(parameters).empty() ? 0 : parameters.levels;
+  const Grid<dim> grid = make_grid(parameters, levels);
 
   dealii::Triangulation<dim> triangulation(
       dealii::Triangulation<dim>::limit_level_difference_at_vertices);

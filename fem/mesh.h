@@ -1,7 +1,7 @@
 // The far-field mesh as plain arrays: axis-parallel Q1 cells, hanging nodes, boundary faces.
 #pragma once
 
-#include "core/types.h"
+#include "core/box_union.h"
 
 #include <vector>
 
@@ -26,17 +26,20 @@ struct CellFace
                 // zone
 };
 
-/// What to mesh: a box, minus an inner box that the discrete zone fills alone. The inner box may
-/// reach through the specimen (a band) or lie inside it (a ring).
+template <int dim>
+using InnerBox = typename core::BoxUnion<dim>::Box;
+
+/// What to mesh: a box, minus inner boxes that the discrete zone fills alone. They may reach
+/// through the specimen (a band), lie inside it (a ring), touch each other or lie apart.
 template <int dim>
 struct MeshParameters
 {
-  Vector<dim> lower, upper;             // m, specimen
-  Vector<dim> inner_lower, inner_upper; // m, left out; empty (lower >= upper): mesh everything
-  double cell_size;                     // m, h beside the zone; adapted per direction to fit
-  int levels = 0;                       // largest cells have size h 2^levels
-  int fine_cells = 0;                   // cells of size h on every path out of the inner box
-  int cells_per_level = 4;              // then as many cells on each coarser level
+  Vector<dim> lower, upper;         // m, specimen
+  std::vector<InnerBox<dim>> inner; // left out; boxes without extent are not
+  double cell_size;                 // m, h beside the zone; adapted per direction to fit
+  int levels = 0;                   // largest cells have size h 2^levels
+  int fine_cells = 0;               // cells of size h on every path out of the inner box
+  int cells_per_level = 4;          // then as many cells on each coarser level
 };
 
 template <int dim>
@@ -55,7 +58,7 @@ struct Mesh
 };
 
 /// Builds the mesh with deal.II (local refinement, hanging nodes). Every section beside or between
-/// the faces of the inner box is filled with whole cells, so sizes differ a little from the ones
+/// the faces of inner boxes is filled with whole cells, so sizes differ a little from the ones
 /// asked for, within 3/4 and 3/2 in a section of one large cell. There are no hanging nodes within
 /// `fine_cells` cells of the inner box, its border included. Without inner box all cells have size
 /// h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError with reason and

@@ -17,25 +17,22 @@ const SectionedAxis::Section &find_section(const std::vector<SectionedAxis::Sect
 }
 } // namespace
 
-SectionedAxis::SectionedAxis(double lower, double upper, double inner_lower, double inner_upper,
-                             double base_size, int levels)
+SectionedAxis::SectionedAxis(double lower, double upper, std::vector<double> cuts, double base_size,
+                             int levels)
 {
-  // A face of the box that touches the specimen's side up to round-off doesn't cut it.
+  // A face of a box that touches the specimen's side, or another box's face, up to round-off
+  // doesn't cut.
   const double margin = 1e-9 * (upper - lower);
+  std::sort(cuts.begin(), cuts.end());
   std::vector<double> ends{lower};
-  for (const double cut : {inner_lower, inner_upper})
-    if (inner_lower < inner_upper && cut > lower + margin && cut < upper - margin)
+  for (const double cut : cuts)
+    if (cut > ends.back() + margin && cut < upper - margin)
       ends.push_back(cut);
   ends.push_back(upper);
   for (std::size_t s = 0; s + 1 < ends.size(); ++s) {
-    const double length = ends[s + 1] - ends[s], middle = ends[s] + length / 2;
-    const bool inner = middle > inner_lower && middle < inner_upper;
+    const double length = ends[s + 1] - ends[s];
     const Index n = std::max<Index>(1, std::llround(length / base_size)) << levels;
-    sections_.push_back({ends[s], ends[s + 1], n_, n, inner});
-    if (inner) {
-      inner_begin_ = n_;
-      inner_end_ = n_ + n;
-    }
+    sections_.push_back({ends[s], ends[s + 1], n_, n});
     n_ += n;
   }
 }
@@ -60,8 +57,4 @@ double SectionedAxis::finest_size(Index i) const
   return (s.upper - s.lower) / double(s.n);
 }
 
-SectionedAxis::Index SectionedAxis::distance(Index i, Index n) const
-{
-  return std::max({Index(0), inner_begin_ - (i + n), i - inner_end_});
-}
 } // namespace ligament::fem

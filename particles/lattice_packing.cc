@@ -60,6 +60,7 @@ private:
   const double thickness_;
   Vector<dim> zone_lower_, zone_upper_;
   std::array<std::array<bool, 2>, dim> coupled_;
+  const core::BoxUnion<dim> parts_;
 
   std::vector<Row<dim>> rows_;
   Index first_row_, n_rows_; // component 0 unused
@@ -70,7 +71,8 @@ private:
 
 template <int dim>
 Packer<dim>::Packer(const LatticeParameters<dim> &p)
-    : shape_(p), lattice_(p), tolerance_(1e-9 * p.spacing), thickness_(dim == 2 ? p.thickness : 1)
+    : shape_(p), lattice_(p), tolerance_(1e-9 * p.spacing), thickness_(dim == 2 ? p.thickness : 1),
+      parts_(p.zone_parts)
 {
   for (int a = 0; a < dim; ++a) {
     coupled_[a] = {p.zone_lower[a] > p.lower[a] + tolerance_,
@@ -153,7 +155,7 @@ bool Packer<dim>::is_in_zone(const Vector<dim> &x, const Vector<dim> &lower,
     if ((coupled_[a][0] && x[a] + lower[a] < zone_lower_[a] - tolerance_) ||
         (coupled_[a][1] && x[a] + upper[a] > zone_upper_[a] + tolerance_))
       return false;
-  return true;
+  return parts_.boxes.empty() || parts_.covers(x + lower, x + upper, tolerance_);
 }
 
 template <int dim>

@@ -75,12 +75,14 @@ void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &f
   view.magnify = 0;
   view.title = scene.title;
   if (scene.zone.extent == DiscreteZone::Extent::box) {
-    std::array<double, 6> box = {};
-    for (int c = 0; c < dim; ++c) {
-      box[c] = std::max(scene.zone.lower[c], body.lower[c]);
-      box[3 + c] = std::min(scene.zone.upper[c], body.upper[c]);
+    for (const auto &part : zone_shape<dim>(scene).boxes) {
+      std::array<double, 6> box = {};
+      for (int c = 0; c < dim; ++c) {
+        box[c] = std::max(part.lower[c], body.lower[c]);
+        box[3 + c] = std::min(part.upper[c], body.upper[c]);
+      }
+      view.boxes.push_back(box);
     }
-    view.boxes.push_back(box);
   }
   auto picture =
       picture_of(particle_fields(body), cell_fields(body), {}, dim, body.spacing / 2, view);

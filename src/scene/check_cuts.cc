@@ -18,6 +18,20 @@ void check_in_zone(const Box &cut, const std::string &name, const std::string &k
   if (!layout.coupled)
     return;
   const double keep_off = layout.overlap + 2 * layout.cell_size;
+  if (!layout.boxes.boxes.empty()) {
+    Vector<3> lower = Vector<3>::Zero(), upper = Vector<3>::Zero();
+    for (int c = 0; c < layout.dim; ++c) {
+      lower[c] = cut.lower[c] - keep_off;
+      upper[c] = cut.upper[c] + keep_off;
+    }
+    if (!layout.boxes.covers(lower, upper, 1e-9 * keep_off))
+      f.error(key, fmt::format("{} is too near the edge of the discrete zone, or outside", name),
+              fmt::format("it must stay {:.4g} m inside the union of /discrete_zone/boxes: the "
+                          "overlap and two cells",
+                          keep_off),
+              "widen the boxes or move the cut");
+    return;
+  }
   for (int side = 0; side < 2 * layout.dim; ++side) {
     if (!layout.coupled_side[side])
       continue;

@@ -13,8 +13,9 @@ namespace
 using Extent = DiscreteZone::Extent;
 
 const std::string zone_key = "/discrete_zone", far_key = "/far_field",
-                  region_key = "/discrete_zone/region", spacing_key = "/discrete_zone/spacing",
-                  cell_key = "/far_field/cell_size", size_key = "/specimen/size";
+                  region_key = "/discrete_zone/region", boxes_key = "/discrete_zone/boxes",
+                  spacing_key = "/discrete_zone/spacing", cell_key = "/far_field/cell_size",
+                  size_key = "/specimen/size";
 
 constexpr const char *axis_names = "xyz";
 
@@ -50,7 +51,12 @@ void check_models(const Scene &scene, Findings &f)
             "the discrete zone is a part of the specimen, the rest needs finite elements",
             "add \"far_field\": {\"cell_size\": ..}, or \"far_field\": \"none\" for the pure "
             "discrete reference");
-  if (scene.zone.extent == Extent::box && !f.given(region_key) && f.sound({region_key}))
+  if (scene.zone.extent == Extent::box && f.given(region_key) && f.given(boxes_key))
+    f.error(boxes_key, "both \"region\" and \"boxes\" in /discrete_zone",
+            "they are two ways to say which part of the specimen is discrete",
+            "remove one of them");
+  if (scene.zone.extent == Extent::box && !f.given(region_key) && !f.given(boxes_key) &&
+      f.sound({region_key}))
     f.error(region_key, "missing key \"region\" in /discrete_zone",
             "it says which part of the specimen is discrete",
             "add \"region\": {\"lower\": [..], \"upper\": [..]}, or \"extent\": \"all\"");
@@ -220,7 +226,7 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
     layout.coupled_side[2 * c + 1] = upper < specimen.upper[c] - tolerance;
     any_side = any_side || layout.coupled_side[2 * c] || layout.coupled_side[2 * c + 1];
   }
-  if (!any_side && layout.coupled) {
+  if (!any_side && layout.coupled && scene.zone.boxes.empty()) {
     f.error(region_key,
             "\"region\" in /discrete_zone covers the whole specimen: no overlap with /far_field",
             "no place is left for the far field",
@@ -283,6 +289,48 @@ void check_widths(const Scene &scene, const Layout &layout, Findings &f)
   }
 }
 
+/// Each of several boxes for itself: inside the specimen, and wide enough.
+bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
+{
+  layout.boxes = zone_shape<3>(scene);
+  if (scene.zone.is_irregular()) {
+    f.error(boxes_key, "\"boxes\" in /discrete_zone with an irregular packing",
+            "only lattice packings can fill a zone of several boxes yet",
+            "choose a lattice packing, or one \"region\"");
+    return false;
+  }
+  const double d = scene.zone.spacing;
+  bool right = true;
+  for (std::size_t i = 0; i < scene.zone.boxes.size(); ++i) {
+    const std::string key = fmt::format("{}/{}", boxes_key, i);
+    const auto &box = layout.boxes.boxes[i];
+    const auto refuse = [&](int c, const std::string &what, const std::string &remedy) {
+      f.error(key, fmt::format("{} {} in {}", key, what, axis_names[c]),
+              fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m",
+                          scene.zone.boxes[i].lower[c], scene.zone.boxes[i].upper[c],
+                          layout.specimen.lower[c], layout.specimen.upper[c]),
+              remedy);
+      right = false;
+    };
+    for (int c = 0; c < layout.dim; ++c) {
+      const double width = box.upper[c] - box.lower[c];
+      const int n_overlaps = std::isfinite(box.lower[c]) + std::isfinite(box.upper[c]);
+      const double needed = n_overlaps * layout.overlap + 8 * d;
+      if (width <= 0)
+        refuse(c, "is empty", "give \"lower\" below \"upper\"");
+      else if (box.lower[c] >= layout.specimen.upper[c] || box.upper[c] <= layout.specimen.lower[c])
+        refuse(c, "is outside the specimen", "move it; the specimen is centred at the origin");
+      else if (std::min(box.upper[c], layout.specimen.upper[c]) -
+                   std::max(box.lower[c], layout.specimen.lower[c]) <=
+               needed)
+        refuse(c, "is too thin for its overlaps and 8 spacings between",
+               fmt::format("give more than {:.4g} m, or a smaller cell_size or overlap_cells",
+                           needed));
+    }
+  }
+  return right;
+}
+
 std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Findings &f)
 {
   if (!f.sound({zone_key + "/extent"}))
@@ -311,6 +359,8 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   layout->cell_size = scene.far_field->cell_size;
   layout->overlap = scene.coupling.overlap_cells * layout->cell_size;
+  if (!scene.zone.boxes.empty())
+    return check_boxes(scene, *layout, f) ? layout : std::nullopt;
   check_widths(scene, *layout, f);
   return f.sound({region_key}) ? layout : std::nullopt;
 }

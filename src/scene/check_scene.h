@@ -1,6 +1,7 @@
 // Checks that need more than one key: impossible geometry, contradictions, what is missing.
 #pragma once
 
+#include "core/box_union.h"
 #include "src/scene/findings.h"
 #include "src/scene/geometry.h"
 #include "src/scene/scene.h"
@@ -13,6 +14,7 @@ struct Layout
   int dim = 2;
   Box specimen;
   Box zone;                  // the discrete zone inside the specimen
+  core::BoxUnion<3> boxes;   // of a zone of several boxes, infinite where they reach through
   bool coupled = false;      // both models, joined along the sides below
   bool coupled_side[6] = {}; // numbered like the sides of the specimen, core/types.h
   double overlap = 0;        // m, width

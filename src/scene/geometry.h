@@ -1,6 +1,7 @@
 // Boxes, and what of a cut lies inside one.
 #pragma once
 
+#include "core/box_union.h"
 #include "src/scene/scene.h"
 
 namespace ligament::program
@@ -9,6 +10,26 @@ struct Box
 {
   Point lower, upper; // m
 };
+
+/// The discrete zone as a union of boxes: infinite where they reach the specimen's side or beyond.
+template <int dim>
+core::BoxUnion<dim> zone_shape(const Scene &scene)
+{
+  auto boxes = scene.zone.boxes;
+  if (boxes.empty())
+    boxes.push_back({scene.zone.lower, scene.zone.upper});
+  core::BoxUnion<dim> shape;
+  for (const ZoneBox &box : boxes) {
+    auto &part = shape.boxes.emplace_back();
+    for (int c = 0; c < dim; ++c) {
+      const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
+      const bool outside = c >= scene.dimension;
+      part.lower[c] = outside || box.lower[c] <= -half + tolerance ? -infinity : box.lower[c];
+      part.upper[c] = outside || box.upper[c] >= half - tolerance ? infinity : box.upper[c];
+    }
+  }
+  return shape;
+}
 
 /// Corners of the part of a segment or convex plane polygon inside the box, in the first dim
 /// directions; empty when there is none.

@@ -40,6 +40,17 @@ void apply_far_field_word(const core::JsonValue &json, Scene &scene)
     scene.zone.extent = DiscreteZone::Extent::all;
 }
 
+/// The corners around all boxes of the zone.
+void enclose_boxes(DiscreteZone &zone)
+{
+  for (std::size_t i = 0; i < zone.boxes.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const ZoneBox &box = zone.boxes[i];
+      zone.lower[c] = i == 0 ? box.lower[c] : std::min(zone.lower[c], box.lower[c]);
+      zone.upper[c] = i == 0 ? box.upper[c] : std::max(zone.upper[c], box.upper[c]);
+    }
+}
+
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
@@ -82,6 +93,9 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   apply_far_field_word(json, scene);
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
+    if (findings.sound_and_given({"/discrete_zone/boxes"}) &&
+        !findings.given("/discrete_zone/region"))
+      enclose_boxes(scene.zone);
     check_scene(scene, findings);
   }
   core::sort_by_place(result.errors);

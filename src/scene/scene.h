@@ -61,6 +61,12 @@ struct MaterialParameters
   FractureParameters fracture;
 };
 
+/// m; sides as those of DiscreteZone.
+struct ZoneBox
+{
+  Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
+};
+
 struct DiscreteZone
 {
   enum class Extent
@@ -73,6 +79,8 @@ struct DiscreteZone
   /// m; sides that reach beyond the specimen are not coupled. Infinite only while it is read:
   /// afterwards such sides lie half a specimen outside.
   Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
+  /// The zone is their union; `lower` and `upper` then are the corners around all. Empty: one box.
+  std::vector<ZoneBox> boxes;
   /// square, hexagonal (2D); simple_cubic, fcc (3D); random, file; empty: not given
   std::string packing;
   std::string packing_file;   // for packing file; relative to the scene until it is read

@@ -49,7 +49,8 @@ void declare_material(Section &s, MaterialParameters &m)
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
 }
 
-void declare_region(Section &s, DiscreteZone &z)
+template <typename Box>
+void declare_region(Section &s, Box &z)
 {
   s.add("lower", z.lower, "corner with the smallest coordinates; null: reaches through the specimen").in("m").null_means(-infinity);
   s.add("upper", z.upper, "corner with the largest coordinates; null: reaches through the specimen").in("m").null_means(infinity);
@@ -59,6 +60,7 @@ void declare_zone(Section &s, DiscreteZone &z)
 {
   s.add("extent", z.extent, "none: finite elements alone; all: discrete elements alone; box: the region below", {"none", "all", "box"});
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
+  s.list("boxes", z.boxes, "in place of region: several boxes; those that overlap or touch are one zone, others are separate zones", declare_region<ZoneBox>);
   s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file").one_of({"square", "hexagonal", "simple_cubic", "fcc", "random", "file"}).required_unless("extent is none");
   s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").above(0).required_unless("extent is none");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").as_rotation();

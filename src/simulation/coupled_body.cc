@@ -4,6 +4,7 @@
 #include "dem/toughness_calibration.h"
 #include "particles/lattice_packing.h"
 #include "particles/packing_file.h"
+#include "src/scene/geometry.h"
 
 #include <fmt/format.h>
 
@@ -37,23 +38,6 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
   return loads;
 }
 
-/// The zone's sides inside the specimen, where the far field goes on.
-template <int dim>
-std::vector<coupling::CoupledSide> coupled_sides(const Scene &scene)
-{
-  std::vector<coupling::CoupledSide> sides;
-  if (scene.zone.extent != DiscreteZone::Extent::box)
-    return sides;
-  for (int c = 0; c < dim; ++c) {
-    const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
-    if (scene.zone.lower[c] > -half + tolerance)
-      sides.push_back({c, false, scene.zone.lower[c]});
-    if (scene.zone.upper[c] < half - tolerance)
-      sides.push_back({c, true, scene.zone.upper[c]});
-  }
-  return sides;
-}
-
 template <int dim>
 void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
 {
@@ -70,8 +54,16 @@ void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
     for (const auto &point : crack.points)
       points.push_back(to_vector<dim>(point));
   }
-  for (const auto &side : coupled_sides<dim>(scene))
-    (side.upper ? p.zone_upper : p.zone_lower)[side.axis] = side.position;
+  if (scene.zone.extent != DiscreteZone::Extent::box)
+    return;
+  // The corners around all boxes; the default reaches through.
+  const Vector<dim> through = p.zone_upper;
+  p.zone_lower = through;
+  p.zone_upper = -through;
+  for (const auto &box : zone_shape<dim>(scene).boxes) {
+    p.zone_lower = p.zone_lower.cwiseMin(box.lower).cwiseMax(-through);
+    p.zone_upper = p.zone_upper.cwiseMax(box.upper).cwiseMin(through);
+  }
 }
 
 template <int dim>
@@ -79,6 +71,8 @@ particles::LatticeParameters<dim> lattice_of(const Scene &scene)
 {
   particles::LatticeParameters<dim> p;
   set_specimen<dim>(scene, p);
+  if (scene.zone.extent == DiscreteZone::Extent::box && scene.zone.boxes.size() > 1)
+    p.zone_parts = zone_shape<dim>(scene);
   p.kind = particles::lattice_kind(scene.zone.packing);
   for (int c = 0; c < n_spins<dim>; ++c)
     p.orientation[c] = scene.zone.orientation[c];
@@ -237,14 +231,11 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   // A ring of cells beyond the transition keeps hanging nodes away from it.
   p.fine_cells = scene.coupling.overlap_cells + scene.coupling.transition_cells + 2;
   const double overlap = scene.coupling.overlap_cells * p.cell_size;
-  p.inner_lower = body.lower - Vector<dim>::Ones() * overlap;
-  p.inner_upper = body.upper + Vector<dim>::Ones() * overlap;
-  const auto sides = coupled_sides<dim>(scene);
-  for (const auto &side : sides)
-    (side.upper ? p.inner_upper : p.inner_lower)[side.axis] =
-        side.position + (side.upper ? -overlap : overlap);
-  if (sides.empty()) // no zone: everything is mesh
-    p.inner_upper = p.inner_lower;
+  if (scene.zone.extent == DiscreteZone::Extent::box) {
+    p.inner = zone_shape<dim>(scene).eroded(overlap).boxes;
+    require(!p.inner.empty(), "the discrete zone is nowhere wider than its two overlaps; widen it "
+                              "or lower /coupling/overlap_cells");
+  }
   const auto constants = material_of(scene).elastic_constants<dim>();
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
@@ -281,8 +272,8 @@ void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log, co
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
     return;
   }
-  coupling::OverlapParameters overlap;
-  overlap.sides = coupled_sides<dim>(scene);
+  coupling::OverlapParameters<dim> overlap;
+  overlap.zone = zone_shape<dim>(scene);
   overlap.length = scene.coupling.overlap_cells * scene.far_field->cell_size;
   overlap.spacing = scene.zone.spacing;
   overlap.transition_cells = scene.coupling.transition_cells;

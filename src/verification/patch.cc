@@ -100,6 +100,47 @@ std::vector<Result> ring_2d(const std::string &name, double cell_size, const Arr
   return report(name, worst);
 }
 
+/// Several boxes, each given by lower and upper corner, in a closed overlap.
+void set_boxes(Scene &scene, const std::vector<ZoneBox> &boxes)
+{
+  auto &zone = scene.zone;
+  zone.boxes = boxes;
+  zone.lower = boxes[0].lower;
+  zone.upper = boxes[0].upper;
+  for (const ZoneBox &box : boxes)
+    for (int c = 0; c < 3; ++c) {
+      zone.lower[c] = std::min(zone.lower[c], box.lower[c]);
+      zone.upper[c] = std::max(zone.upper[c], box.upper[c]);
+    }
+}
+
+std::vector<Result> boxes_2d(const std::string &name, const Point &size,
+                             const std::vector<ZoneBox> &boxes)
+{
+  Deviation worst;
+  for (const double nu : {0., 0.3, 0.45}) {
+    Scene scene = unit_scene(2, size, nu);
+    add_far_field(scene, {35, 33, 0}, 3.1);
+    set_boxes(scene, boxes);
+    scene.coupling.transition_cells = 2;
+    load<2>(scene, {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
+  }
+  return report(name, worst);
+}
+
+std::vector<Result> boxes_3d(const std::string &name, const Point &size,
+                             const std::vector<ZoneBox> &boxes)
+{
+  Deviation worst;
+  Scene scene = unit_scene(3, size, 0.3);
+  add_far_field(scene, {23, 22, 24}, 3.07);
+  set_boxes(scene, boxes);
+  scene.coupling.overlap_cells = 2;
+  scene.coupling.transition_cells = 1;
+  load<3>(scene, {0, 1, 2, 3, 4, 5}, {0.8, -0.5, 0.6, 0.3, -0.2, 0.4}, worst);
+  return report(name, worst);
+}
+
 std::vector<Result> band_3d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
@@ -146,6 +187,26 @@ std::vector<Case> patch_cases()
            [=] { return band_2d("patch_band_2d_ratio_3", 4.1, unequal); }},
           {"patch_ring_2d_random", ring + ", random, h/d 3.07", false,
            [=] { return ring_2d("patch_ring_2d_random", 3.07, equal); }},
+          {"patch_l_shape_2d", "zone of two boxes with a re-entrant corner, hexagonal", false,
+           [] {
+             return boxes_2d("patch_l_shape_2d", {100, 96, 0},
+                             {{{-32, -30, 0}, {31, 1, 0}}, {{-32, -30, 0}, {0, 30, 0}}});
+           }},
+          {"patch_two_zones_2d", "two zones whose transitions meet, hexagonal", false,
+           [] {
+             return boxes_2d("patch_two_zones_2d", {106, 60, 0},
+                             {{{-40, -15, 0}, {-7, 15, 0}}, {{6, -15, 0}, {40, 15, 0}}});
+           }},
+          {"patch_l_shape_3d", "zone of two boxes with a re-entrant edge, FCC, h/d 3.07", true,
+           [] {
+             return boxes_3d("patch_l_shape_3d", {49, 48, 38},
+                             {{{-17, -16, -11}, {17, 6, 11}}, {{-17, -16, -11}, {5, 16, 11}}});
+           }},
+          {"patch_two_zones_3d", "two zones, FCC, h/d 3.07", true,
+           [] {
+             return boxes_3d("patch_two_zones_3d", {72, 37, 37},
+                             {{{-28, -11, -11}, {-6, 11, 11}}, {{6, -11, -11}, {28, 11, 11}}});
+           }},
           {"patch_band_3d", band + ", FCC, h/d 3.1", false,
            [] { return band_3d("patch_band_3d", 3.1, {}); }},
           {"patch_band_3d_random", band + ", random, h/d 3.1", false,

@@ -139,8 +139,11 @@ Strip<dim> make_strip(const StripParameters &p)
       make_periodic_mesh<dim>(p.cells_across, far_layers, p.cell_size, strip.mesh_begin), body,
       std::vector<core::BoundaryLoad<dim>>());
 
-  coupling::OverlapParameters overlap;
-  overlap.sides = {{dim - 1, true, edge}};
+  coupling::OverlapParameters<dim> overlap;
+  auto &zone = overlap.zone.boxes.emplace_back();
+  zone.upper = Vector<dim>::Constant(std::numeric_limits<double>::infinity());
+  zone.lower = -zone.upper;
+  zone.upper[dim - 1] = edge;
   overlap.length = overlap_length;
   overlap.spacing = 1;
   overlap.transition_cells = p.transition_cells;

@@ -32,9 +32,10 @@ struct CoupledBodiesParameters
   particles::LatticeKind kind =
       dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero();
-  Vector<dim> size;       // specimen, centred at the origin
-  Vector<dim> zone_size;  // beyond the specimen: not coupled there
-  double cell_size = 4.1; // h/d, incommensurate with the packing
+  Vector<dim> size;         // specimen, centred at the origin
+  Vector<dim> zone_size;    // beyond the specimen: not coupled there
+  core::BoxUnion<dim> zone; // in place of zone_size when it has boxes
+  double cell_size = 4.1;   // h/d, incommensurate with the packing
   int overlap_cells = 3;
   int transition_cells = 6;
   int levels = 0;
@@ -58,22 +59,26 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   mesh.cell_size = p.cell_size;
   mesh.levels = p.levels;
   mesh.fine_cells = p.overlap_cells + p.transition_cells + 2;
-  mesh.inner_upper = mesh.upper + Vector<dim>::Ones();
-  mesh.inner_lower = -mesh.inner_upper;
-  coupling::OverlapParameters overlap;
+  coupling::OverlapParameters<dim> overlap;
   overlap.length = p.overlap_cells * p.cell_size;
   overlap.spacing = 1;
   overlap.transition_cells = p.transition_cells;
-  for (int c = 0; c < dim; ++c)
-    if (p.zone_size[c] < p.size[c]) {
-      const double edge = p.zone_size[c] / 2;
-      lattice.zone_lower[c] = -edge;
-      lattice.zone_upper[c] = edge;
-      overlap.sides.push_back({c, false, -edge});
-      overlap.sides.push_back({c, true, edge});
-      mesh.inner_lower[c] = -edge + overlap.length;
-      mesh.inner_upper[c] = edge - overlap.length;
-    }
+  overlap.zone = p.zone;
+  if (p.zone.boxes.empty()) {
+    auto &box = overlap.zone.boxes.emplace_back();
+    box.upper = Vector<dim>::Constant(std::numeric_limits<double>::infinity());
+    for (int c = 0; c < dim; ++c)
+      if (p.zone_size[c] < p.size[c])
+        box.upper[c] = p.zone_size[c] / 2;
+    box.lower = -box.upper;
+  }
+  lattice.zone_lower = lattice.zone_upper = overlap.zone.boxes[0].lower;
+  for (const auto &box : overlap.zone.boxes) {
+    lattice.zone_lower = lattice.zone_lower.cwiseMin(box.lower);
+    lattice.zone_upper = lattice.zone_upper.cwiseMax(box.upper);
+  }
+  lattice.zone_parts = p.zone;
+  mesh.inner = overlap.zone.eroded(overlap.length).boxes;
   auto packing = particles::make_lattice_packing<dim>(lattice);
   particles::Particles<dim> state;
   particles::fill_particles(packing, p.material.density, state);

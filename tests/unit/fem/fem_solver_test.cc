@@ -262,7 +262,7 @@ void check_uniaxial_stress()
   for (int k = 1; k < dim; ++k)
     area *= p.upper[k] - p.lower[k];
   area *=
-      1 - (p.inner_upper[dim - 1] - p.inner_lower[dim - 1]) / (p.upper[dim - 1] - p.lower[dim - 1]);
+      1 - (p.inner[0].upper[dim - 1] - p.inner[0].lower[dim - 1]) / (p.upper[dim - 1] - p.lower[dim - 1]);
   EXPECT_NEAR(solver.reaction(0)[0], -sigma / 2 * area, 1e-12 * sigma * area);
   EXPECT_NEAR(solver.reaction(1)[0], sigma / 2 * area, 1e-12 * sigma * area);
   const double scale = (lambda + 2 * shear) * strain[0] * std::pow(p.cell_size, dim - 1);

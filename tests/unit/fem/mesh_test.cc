@@ -21,7 +21,7 @@ double box_volume(const Vector<dim> &lower, const Vector<dim> &upper)
 template <int dim>
 double distance(const MeshParameters<dim> &p, const Vector<dim> &lower, const Vector<dim> &upper)
 {
-  return (p.inner_lower - upper).cwiseMax(lower - p.inner_upper).cwiseMax(0.).maxCoeff();
+  return (p.inner[0].lower - upper).cwiseMax(lower - p.inner[0].upper).cwiseMax(0.).maxCoeff();
 }
 
 template <int dim>
@@ -33,7 +33,7 @@ void check_volume_and_surface(const MeshParameters<dim> &p)
     volume += h.prod();
   const double expected =
       box_volume<dim>(p.lower, p.upper) -
-      box_volume<dim>(p.lower.cwiseMax(p.inner_lower), p.upper.cwiseMin(p.inner_upper));
+      box_volume<dim>(p.lower.cwiseMax(p.inner[0].lower), p.upper.cwiseMin(p.inner[0].upper));
   EXPECT_NEAR(volume, expected, 1e-12 * expected);
 
   // Gauss: the integral of x_k n_k over the surface is the volume, so no face is missing.
@@ -182,19 +182,19 @@ TEST(Mesh, without_inner_box_is_uniform)
 TEST(Mesh, refuses_what_cannot_be_meshed)
 {
   auto thin = band<2>();
-  thin.upper[1] = thin.inner_upper[1] + 0.2; // half a base cell
+  thin.upper[1] = thin.inner[0].upper[1] + 0.2; // half a base cell
   EXPECT_TRUE(contains(message(thin), "use at most 1 levels")) << message(thin);
-  thin.upper[1] = thin.inner_upper[1] + 0.05;
+  thin.upper[1] = thin.inner[0].upper[1] + 0.05;
   EXPECT_TRUE(contains(message(thin), "use smaller cells")) << message(thin);
 
   auto full = band<2>();
-  full.inner_lower[1] = full.lower[1];
-  full.inner_upper[1] = full.upper[1];
+  full.inner[0].lower[1] = full.lower[1];
+  full.inner[0].upper[1] = full.upper[1];
   EXPECT_TRUE(contains(message(full), "fills the whole specimen"));
 
   auto outside = ring<3>();
-  outside.inner_lower[2] += 100;
-  outside.inner_upper[2] += 100;
+  outside.inner[0].lower[2] += 100;
+  outside.inner[0].upper[2] += 100;
   EXPECT_TRUE(contains(message(outside), "outside the specimen"));
 
   auto bad = ring<2>();

@@ -25,11 +25,12 @@ MeshParameters<dim> ring()
 {
   MeshParameters<dim> p;
   p.cell_size = 0.1;
+  p.inner.resize(1);
   for (int k = 0; k < dim; ++k) {
-    p.inner_lower[k] = -0.4;
-    p.inner_upper[k] = k == 0 ? 0.8 : 0.4;
-    p.lower[k] = p.inner_lower[k] - (dim == 2 ? 2.4 : 1.2);
-    p.upper[k] = p.inner_upper[k] + (dim == 2 ? 2 : 1.2) + 0.4 * k;
+    p.inner[0].lower[k] = -0.4;
+    p.inner[0].upper[k] = k == 0 ? 0.8 : 0.4;
+    p.lower[k] = p.inner[0].lower[k] - (dim == 2 ? 2.4 : 1.2);
+    p.upper[k] = p.inner[0].upper[k] + (dim == 2 ? 2 : 1.2) + 0.4 * k;
   }
   p.levels = 2;
   p.fine_cells = dim == 2 ? 5 : 3;
@@ -42,8 +43,8 @@ MeshParameters<dim> band()
 {
   MeshParameters<dim> p = ring<dim>();
   for (int k = 0; k + 1 < dim; ++k) {
-    p.inner_lower[k] = p.lower[k] - 1;
-    p.inner_upper[k] = p.upper[k] + 1;
+    p.inner[0].lower[k] = p.lower[k] - 1;
+    p.inner[0].upper[k] = p.upper[k] + 1;
   }
   return p;
 }
@@ -55,8 +56,8 @@ MeshParameters<dim> incommensurate(MeshParameters<dim> p)
   for (int k = 0; k < dim; ++k) {
     p.lower[k] -= 0.0713 * (k + 1);
     p.upper[k] += 0.0291 * (k + 1);
-    p.inner_lower[k] += 0.0173;
-    p.inner_upper[k] -= 0.0137;
+    p.inner[0].lower[k] += 0.0173;
+    p.inner[0].upper[k] -= 0.0137;
   }
   return p;
 }
@@ -67,8 +68,7 @@ MeshParameters<dim> box(const Vector<dim> &size, double cell_size)
   MeshParameters<dim> p;
   p.lower.setZero();
   p.upper = size;
-  p.inner_lower.setZero();
-  p.inner_upper.setZero();
+  p.inner.push_back({Vector<dim>::Zero(), Vector<dim>::Zero()});
   p.cell_size = cell_size;
   return p;
 }

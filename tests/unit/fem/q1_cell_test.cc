@@ -107,7 +107,7 @@ void check_locator(const MeshParameters<dim> &p)
     }
   EXPECT_EQ(locator.find(Vector<dim>::Constant(NAN)), -1);
   EXPECT_EQ(locator.find(Vector<dim>::Constant(1e300)), -1);
-  EXPECT_EQ(locator.find((p.inner_lower + p.inner_upper) / 2), -1);
+  EXPECT_EQ(locator.find((p.inner[0].lower + p.inner[0].upper) / 2), -1);
 }
 } // namespace
 

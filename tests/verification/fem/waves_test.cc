@@ -125,8 +125,8 @@ void check_mode_of_a_graded_strip()
 {
   check_second_order([&](int refinement) {
     MeshParameters<dim> p = band<dim>();
-    p.lower[dim - 1] = p.inner_lower[dim - 1] - 1; // nothing below: only the upper strip counts
-    p.inner_lower[dim - 1] = p.lower[dim - 1] - 1;
+    p.lower[dim - 1] = p.inner[0].lower[dim - 1] - 1; // nothing below: only the upper strip counts
+    p.inner[0].lower[dim - 1] = p.lower[dim - 1] - 1;
     for (int k = 0; k + 1 < dim; ++k)
       p.upper[k] = p.lower[k] + 0.8;
     p.cell_size = 0.1 / refinement;
@@ -135,7 +135,7 @@ void check_mode_of_a_graded_strip()
     FemSolver<dim> solver(make_mesh(p), {isotropic<dim>(lambda, shear), density, 1},
                           rollers<dim>(0, 2 * dim - 2));
     EXPECT_FALSE(solver.mesh().hanging.empty());
-    const double y = p.inner_upper[dim - 1];
+    const double y = p.inner[0].upper[dim - 1];
     const double k = 2.5 * M_PI / (p.upper[dim - 1] - y);
     const double quotient = rayleigh_quotient<dim>(solver, [&](const Vector<dim> &x) {
       return Vector<dim>(std::cos(k * (x[dim - 1] - y)) * Vector<dim>::Unit(dim - 1));
