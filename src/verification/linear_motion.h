@@ -3,6 +3,9 @@
 
 #include "src/simulation/coupled_body.h"
 
+#include <cmath>
+#include <utility>
+
 namespace ligament::program
 {
 /// Small motions x = (particle displacements, rotation vectors, nodal displacements) of an undamped
@@ -28,7 +31,11 @@ public:
   Eigen::VectorXd solve();
 
   /// Largest eigenfrequency in rad/s by Lanczos iteration without loads.
-  double largest_frequency(int iterations = 200);
+  double largest_frequency() { return std::sqrt(squared_frequencies().second); }
+
+  /// Least and largest eigenvalue of x -> -accelerations(x) that Lanczos iteration finds, in
+  /// rad^2/s^2.
+  std::pair<double, double> squared_frequencies(int iterations = 200);
 
   /// Some admissible motion of unit norm: smooth in no way.
   Eigen::VectorXd noise();
@@ -41,9 +48,14 @@ public:
   /// their distance, after the best rigid motion is taken out of x.
   double largest_strain(const Eigen::VectorXd &x) const;
 
+  /// The body's present velocities and spins.
+  Eigen::VectorXd velocities() const;
+
+  /// Puts the body at rest in its reference state.
+  void rest() { set_state(Eigen::VectorXd::Zero(size())); }
+
 private:
   void set_state(const Eigen::VectorXd &x);
-  Eigen::VectorXd velocities() const;
   /// The motion that the program makes of x: v = Phi V + w, Phi^T M w = 0, pads carried along.
   Eigen::VectorXd admissible(const Eigen::VectorXd &x);
   Vector<dim> particle(const Eigen::VectorXd &x, int i) const;
