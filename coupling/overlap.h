@@ -2,6 +2,7 @@
 // and the interpolation from nodes to particles.
 #pragma once
 
+#include "coupling/scheme.h"
 #include "fem/mesh.h"
 #include "particles/particle_force.h"
 
@@ -28,13 +29,17 @@ struct OverlapParameters
   /// m; the body repeats itself in the directions where this is not 0: neighbours of the particles
   /// and nodes of the cells at one side of the period are those at its other side.
   std::array<double, 3> period = {};
+  WeightShape shape = WeightShape::cubic;
+  /// Particles at the edge of the packing, whose cells are not closed, move with the mesh. Without
+  /// pads `depth` lies half a spacing outside the outermost centre.
+  bool has_pads = true;
 };
 
 /// The overlap of one discrete zone with the mesh (theory.md, "Overlap and weights").
 ///
 /// A point is a distance away from the edge of the packing, the smallest over the coupled sides;
 /// s rises from 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the
-/// mesh ends. The share of the discrete model is a = 3 s^2 - 2 s^3.
+/// mesh ends. The share of the discrete model is a = 3 s^2 - 2 s^3, or another function of s.
 template <int dim>
 class Overlap
 {
@@ -93,6 +98,8 @@ public:
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
 
 private:
+  std::vector<char> find_pads(const particles::Particles<dim> &particles,
+                              const particles::ParticleForce<dim> &force) const;
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
   void find_cells();

@@ -283,6 +283,28 @@ void check_widths(const Scene &scene, const Layout &layout, Findings &f)
   }
 }
 
+/// Keys that only some schemes read, and what the scheme cannot do.
+void check_scheme(const Scene &scene, Findings &f)
+{
+  if (!f.sound({"/coupling/scheme"}))
+    return;
+  const bool weighted = coupling::is_energy_weighted(scene.coupling.scheme);
+  const std::string name = coupling::scheme_names[int(scene.coupling.scheme)];
+  if (weighted && f.sound({"/coupling/step_ratio"}) && scene.coupling.step_ratio > 1)
+    f.error("/coupling/step_ratio",
+            fmt::format("\"step_ratio\" in /coupling is {}, but \"{}\" takes no steps of its own "
+                        "in the far field",
+                        scene.coupling.step_ratio, name),
+            "its constraint joins all velocities in every step", "give 1");
+  const std::vector<std::string> split = {"gap_filter", "patch_fit"},
+                                 literature = {"weight", "damper_form", "multiplier_cells",
+                                               "ghost_force_correction"};
+  for (const std::string &key : weighted ? split : literature)
+    if (f.given("/coupling/" + key))
+      f.warning("/coupling/" + key, fmt::format("\"{}\" in /coupling is not used", key),
+                fmt::format("the scheme is \"{}\"", name), "");
+}
+
 std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Findings &f)
 {
   if (!f.sound({zone_key + "/extent"}))
@@ -302,7 +324,8 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
   if (!spacing || !f.sound({cell_key}))
     return {};
   check_ratio(scene, f);
-  if (scene.coupling.scheme == "none")
+  check_scheme(scene, f);
+  if (scene.coupling.scheme == coupling::Scheme::none)
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",

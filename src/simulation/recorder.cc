@@ -34,8 +34,9 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
       history_interval_(scene.output.history_interval > 0 ? scene.output.history_interval
                                                           : scene.time.duration / 2000)
 {
-  if (body.split && body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
-    for (const auto &m : body.split->overlap().members)
+  if (body.coupler->overlap() &&
+      body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
+    for (const auto &m : body.coupler->overlap()->members)
       guarded_.push_back(m.particle);
 }
 
@@ -133,8 +134,9 @@ Recorder<dim>::overlap_leaves_its_range(const CoupledBody<dim> &body) const
                          "near it; make /discrete_zone/region larger",
                          100 * tension / strength);
   double rotation = 0;
-  for (const auto &m : body.split->overlap().members)
-    if (m.pad)
+  const auto &overlap = *body.coupler->overlap();
+  for (const auto &m : overlap.members)
+    if (m.pad || !overlap.parameters.has_pads)
       for (int c = dim == 2 ? 0 : 1; c < particles::Particles<dim>::n_rotations; ++c)
         rotation = std::max(rotation, (dim == 2 ? 1 : 2) * std::abs(state.rotation[c][m.particle]));
   if (rotation > guarded_rotation)
@@ -148,7 +150,7 @@ template <int dim>
 std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
                                                 const coupling::StepTime &step)
 {
-  if (body.split && !warned_)
+  if (body.coupler->overlap() && !warned_)
     if (const auto finding = overlap_leaves_its_range(body)) {
       warned_ = true;
       const std::string reason = fmt::format("at {:.4g} s {}", step.time, *finding);

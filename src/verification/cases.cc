@@ -16,6 +16,7 @@ std::vector<Case> all_cases()
   add(critical_step_cases());
   add(drift_cases());
   add(wave_cases());
+  add(scheme_cases());
   add(kirsch_cases());
   add(beam_cases());
   return cases;

@@ -42,6 +42,7 @@ std::vector<Case> rotation_cases();
 std::vector<Case> drift_cases();
 std::vector<Case> critical_step_cases();
 std::vector<Case> wave_cases();
+std::vector<Case> scheme_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
 

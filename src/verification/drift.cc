@@ -22,7 +22,7 @@ void start_noise(CoupledBody<dim> &body, double amplitude)
   fill(body.far->velocity);
   body.far->distribute();
   auto bodies = body.bodies();
-  body.split->take_velocities(bodies);
+  body.coupler->take_velocities(bodies);
 }
 
 /// Mechanical energy of the body (theory.md, "The energy ledger") every `interval` steps.
