@@ -372,8 +372,7 @@ make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim>
   assembly.add_cells();
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;
-  result.stiffness.resize(dim * n, dim * n);
-  result.stiffness.setFromTriplets(assembly.stiffness.begin(), assembly.stiffness.end());
+  result.stiffness = assembly.stiffness.to_sparse();
   result.mass.resize(n, n);
   result.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
   return result;
