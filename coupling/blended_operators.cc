@@ -15,6 +15,10 @@ namespace
 using Triplets = std::vector<Eigen::Triplet<double>>;
 using core::require;
 
+constexpr const char *loaded_side =
+    "the overlap reaches a loaded or held side of the specimen, where it can't end yet; keep the "
+    "discrete zone away from that side";
+
 // Gauss points and weights on [0, 1]; four points integrate the cubic weight times the quadratic
 // strain products exactly where s is linear.
 constexpr double gauss_point[4] = {0.069431844202973712, 0.33000947820757187, 0.66999052179242813,
@@ -131,9 +135,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
                                    [&](int i) { return overlap_.member_of_particle[i] >= 0; });
   if (!touches)
     return;
-  require(term.kind != particles::QuadraticTerm<dim>::Kind::wall,
-          "the overlap reaches a loaded or held side of the specimen, where it can't end yet; keep "
-          "the discrete zone away from that side");
+  require(term.kind != particles::QuadraticTerm<dim>::Kind::wall, loaded_side);
 
   // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads.
   // Translations do nothing: the first member stands still.
@@ -290,6 +292,58 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   return result;
 }
 
+template <int dim>
+BlendedOperators<dim>
+make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                    const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
+{
+  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+    for (const int i : term.members)
+      require(overlap.member_of_particle[i] < 0 ||
+                  term.kind != particles::QuadraticTerm<dim>::Kind::wall,
+              loaded_side);
+  });
+  Assembly<dim> assembly(overlap, particles, force, body);
+  assembly.add_cells();
+  const int n = overlap.n_nodes();
+  BlendedOperators<dim> result;
+  result.stiffness = assembly.stiffness.to_sparse();
+  result.mass.resize(n, n);
+  result.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
+  return result;
+}
+
+template <int dim>
+Eigen::SparseMatrix<double> take_over_cells(const Overlap<dim> &overlap, fem::FemSolver<dim> &far)
+{
+  std::vector<int> released;
+  for (const auto &cell : overlap.cells)
+    released.push_back(cell.cell);
+  far.release_cells(released);
+  const int n = overlap.n_nodes();
+  Triplets entries;
+  for (int i = 0; i < n; ++i) {
+    entries.emplace_back(i, i, far.lumped_mass()[overlap.near_nodes[i]]);
+    for (int c = 0; c < dim; ++c)
+      require(!far.is_held(overlap.near_nodes[i], c),
+              "the overlap or its transition reaches a held side of the specimen; keep the zone "
+              "away from it or lower /coupling/transition_cells");
+  }
+  Eigen::SparseMatrix<double> mass(n, n);
+  mass.setFromTriplets(entries.begin(), entries.end());
+  return mass;
+}
+
+template Eigen::SparseMatrix<double> take_over_cells(const Overlap<2> &, fem::FemSolver<2> &);
+template Eigen::SparseMatrix<double> take_over_cells(const Overlap<3> &, fem::FemSolver<3> &);
+template BlendedOperators<2> make_cell_operators(const Overlap<2> &,
+                                                 const particles::Particles<2> &,
+                                                 const particles::ParticleForce<2> &,
+                                                 const fem::Body<2> &);
+template BlendedOperators<3> make_cell_operators(const Overlap<3> &,
+                                                 const particles::Particles<3> &,
+                                                 const particles::ParticleForce<3> &,
+                                                 const fem::Body<3> &);
 template BlendedOperators<2> make_blended_operators(const Overlap<2> &,
                                                     const particles::Particles<2> &,
                                                     const particles::ParticleForce<2> &,

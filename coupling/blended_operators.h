@@ -44,6 +44,19 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
                                             const typename Overlap<dim>::Cell &cell,
                                             const fem::Body<dim> &body);
 
+/// The cells' part alone: stiffness weighted by 1 - a, without the subtracted terms, and mass,
+/// without the particles' share. Residual, mass bound and normals stay empty. Throws
+/// core::InputError where the overlap reaches a loaded or held side.
+template <int dim>
+BlendedOperators<dim>
+make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                    const particles::ParticleForce<dim> &force, const fem::Body<dim> &body);
+
+/// Releases the overlap's and the transition's cells from the far field; what mass its own cells
+/// still have at near nodes comes back, in kg. Throws core::InputError where a near node is held.
+template <int dim>
+Eigen::SparseMatrix<double> take_over_cells(const Overlap<dim> &overlap, fem::FemSolver<dim> &far);
+
 /// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
 template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k);

@@ -2,8 +2,11 @@
 #pragma once
 
 #include "core/timers.h"
+#include "coupling/overlap.h"
 #include "fem/fem_solver.h"
 #include "particles/particle_solver.h"
+
+#include <Eigen/SparseCore>
 
 #include <memory>
 #include <string>
@@ -63,6 +66,16 @@ public:
   /// Steps between two actions of the far field: positions agree everywhere, and observers look, at
   /// multiples of it.
   virtual int step_ratio() const { return 1; }
+
+  /// Makes the particles' present velocities (at half steps) ones that the coupler carries; the
+  /// nodes' velocities beyond the particles' reach are taken as they are. For runs that start in
+  /// motion.
+  virtual void take_velocities(Bodies<dim> &) {}
+
+  /// Null when the halves don't overlap.
+  virtual const Overlap<dim> *overlap() const { return nullptr; }
+  /// Scalar mass of the overlap's near nodes including the far field's share, kg.
+  virtual Eigen::SparseMatrix<double> near_mass() const { return {}; }
 
 protected:
   core::Timers &timers_;

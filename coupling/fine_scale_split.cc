@@ -40,20 +40,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   }
   coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
 
-  std::vector<int> released;
-  for (const auto &cell : overlap_.cells)
-    released.push_back(cell.cell);
-  far.release_cells(released);
-  std::vector<Eigen::Triplet<double>> far_mass;
-  for (int i = 0; i < n; ++i) {
-    far_mass.emplace_back(i, i, far.lumped_mass()[overlap_.near_nodes[i]]);
-    for (int c = 0; c < dim; ++c)
-      core::require(!far.is_held(overlap_.near_nodes[i], c),
-                    "the overlap or its transition reaches a held side of the specimen; keep the "
-                    "zone away from it or lower /coupling/transition_cells");
-  }
-  Eigen::SparseMatrix<double> mass(n, n);
-  mass.setFromTriplets(far_mass.begin(), far_mass.end());
+  Eigen::SparseMatrix<double> mass = take_over_cells(overlap_, far);
   mass += operators.mass;
   mass_solver_->factorise(mass);
   mass_ = mass;

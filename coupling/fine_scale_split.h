@@ -50,9 +50,8 @@ public:
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
   int step_ratio() const override { return parameters_.step_ratio; }
 
-  /// Splits the particles' present velocities (at half steps) into V and w; the nodes' velocities
-  /// beyond the particles' reach are taken as they are. For runs that start in motion.
-  void take_velocities(Bodies<dim> &bodies);
+  /// Splits the velocities into V and w.
+  void take_velocities(Bodies<dim> &bodies) override;
 
   /// From now on both halves move in this regime; forces must be computed again before the next
   /// kick. The energy jumps by what the regimes differ in the present motion. Throws
@@ -66,11 +65,11 @@ public:
   }
 
   const SplitReport &report() const { return report_; }
-  const Overlap<dim> &overlap() const { return overlap_; }
+  const Overlap<dim> *overlap() const override { return &overlap_; }
   /// Coarse stiffness K_near including the patch fit, N/m.
   const Eigen::SparseMatrix<double> &near_stiffness() const { return stiffness_; }
-  /// Coarse mass M_c including the far field's share, kg.
-  Eigen::SparseMatrix<double> near_mass() const { return mass_; }
+  /// M_c
+  Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
 
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }

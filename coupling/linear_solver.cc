@@ -33,9 +33,32 @@ public:
     const auto &permutation = cholesky.permutationP().indices();
     place_.assign(permutation.data(), permutation.data() + permutation.size());
     inverse_diagonal_.resize(place_.size());
+    negative_.clear();
     for (std::size_t j = 0; j < place_.size(); ++j)
       inverse_diagonal_[j] = 1 / lower_.valuePtr()[lower_.outerIndexPtr()[j]];
     work_.resize(3 * place_.size());
+  }
+
+  // Such a matrix has P A P^T = L D L^T without pivoting, with D of both signs: kept as
+  // (L |D|^1/2) sign(D) (L |D|^1/2)^T.
+  void factorise_constrained(const Eigen::SparseMatrix<double> &matrix) override
+  {
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(matrix);
+    const Eigen::VectorXd d = cholesky.vectorD();
+    core::require(cholesky.info() == Eigen::Success && d.cwiseAbs().minCoeff() > 0,
+                  "the multipliers of the overlap depend on each other; raise "
+                  "/far_field/cell_size or /coupling/overlap_cells");
+    const Eigen::SparseMatrix<double> unit = cholesky.matrixL();
+    lower_ = unit * d.cwiseAbs().cwiseSqrt().asDiagonal();
+    lower_.makeCompressed();
+    const auto &permutation = cholesky.permutationP().indices();
+    place_.assign(permutation.data(), permutation.data() + permutation.size());
+    inverse_diagonal_ = d.cwiseAbs().cwiseSqrt().cwiseInverse();
+    work_.resize(3 * place_.size());
+    negative_.clear();
+    for (int j = 0; j < d.size(); ++j)
+      if (d[j] < 0)
+        negative_.push_back(j);
   }
 
   void solve(double *x, int n_columns) const override
@@ -67,6 +90,9 @@ private:
         for (int c = 0; c < columns; ++c)
           y[row[k] * columns + c] -= value[k] * solved[c];
     }
+    for (const int j : negative_)
+      for (int c = 0; c < columns; ++c)
+        y[j * columns + c] *= -1;
     for (int j = n - 1; j >= 0; --j) {
       double sum[columns];
       for (int c = 0; c < columns; ++c)
@@ -84,7 +110,8 @@ private:
 
   Eigen::SparseMatrix<double> lower_; // its first entry in each column is the diagonal
   std::vector<int> place_;            // of an unknown in the order of elimination
-  std::vector<double> inverse_diagonal_;
+  Eigen::VectorXd inverse_diagonal_;
+  std::vector<int> negative_; // entries of D below 0
   mutable std::vector<double> work_;
 };
 
@@ -111,6 +138,11 @@ public:
         solver_->SymbolicFactorization() == 0 && solver_->NumericFactorization() == 0,
         "an overlap system is singular: the overlap holds too few particles for its cells; "
         "raise /far_field/cell_size or /coupling/overlap_cells");
+  }
+
+  void factorise_constrained(const Eigen::SparseMatrix<double> &matrix) override
+  {
+    factorise(matrix); // LU: signs don't matter
   }
 
   void solve(double *x, int n_columns) const override

@@ -37,6 +37,16 @@ template <int dim>
 double Overlap<dim>::weight(const Vector<dim> &x) const
 {
   const double s = position(x);
+  switch (parameters.shape) {
+  case WeightShape::linear:
+    return s;
+  case WeightShape::cosine:
+    return (1 - std::cos(M_PI * s)) / 2;
+  case WeightShape::constant:
+    return s < 1 ? 0.5 : 1;
+  case WeightShape::cubic:
+    break;
+  }
   return s * s * (3 - 2 * s);
 }
 
@@ -67,10 +77,11 @@ double Overlap<dim>::subtracted_share(const Vector<dim> &location,
 // Pad particles: those whose cell the faces do not close (a neighbour is missing at the edge of the
 // packing; faces on the specimen's surface do close), and all their neighbours.
 template <int dim>
-void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
-                                const particles::ParticleForce<dim> &force)
+std::vector<char> Overlap<dim>::find_pads(const particles::Particles<dim> &particles,
+                                          const particles::ParticleForce<dim> &force) const
 {
   const int n = particles.n_owned;
+  std::vector<char> pad(n, 0);
   std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
   std::vector<double> surface(n, 0.);
   std::vector<std::vector<int>> neighbours(n);
@@ -80,13 +91,25 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     if (face.j >= 0)
       neighbours[face.i].push_back(face.j);
   });
-  std::vector<char> pad(n, 0);
   for (int i = 0; i < n; ++i)
     if (closure[i].norm() > 1e-8 * surface[i]) {
       pad[i] = 1;
       for (const int j : neighbours[i])
         pad[j] = 1;
     }
+  return pad;
+}
+
+template <int dim>
+void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
+                                const particles::ParticleForce<dim> &force)
+{
+  const int n = particles.n_owned;
+  std::vector<char> pad(n, 0);
+  if (parameters.has_pads)
+    pad = find_pads(particles, force);
+  else
+    depth = std::numeric_limits<double>::max();
 
   const fem::CellLocator<dim> locator(mesh);
   member_of_particle.assign(n, -1);
@@ -110,6 +133,8 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     members.push_back(m);
     if (pad[i])
       depth = std::max(depth, distance_to_edge(x));
+    else if (!parameters.has_pads)
+      depth = std::min(depth, distance_to_edge(x) - parameters.spacing / 2);
   }
   core::require(!members.empty(), "no particle lies in the mesh: the zones do not overlap");
   core::require(

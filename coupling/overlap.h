@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/box_union.h"
+#include "coupling/scheme.h"
 #include "fem/mesh.h"
 #include "particles/particle_force.h"
 
@@ -22,6 +23,10 @@ struct OverlapParameters
   /// m; the body repeats itself in the directions where this is not 0: neighbours of the particles
   /// and nodes of the cells at one side of the period are those at its other side.
   std::array<double, 3> period = {};
+  WeightShape shape = WeightShape::cubic;
+  /// Particles at the edge of the packing, whose cells are not closed, move with the mesh. Without
+  /// pads `depth` lies half a spacing outside the outermost centre.
+  bool has_pads = true;
 };
 
 /// The overlap of the discrete zone, in one or several pieces, with the mesh (theory.md, "Overlap
@@ -29,7 +34,7 @@ struct OverlapParameters
 ///
 /// A point is a distance away from the edge of the packing (core::BoxUnion::distance); s rises from
 /// 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the mesh ends. The
-/// share of the discrete model is a = 3 s^2 - 2 s^3.
+/// share of the discrete model is a = 3 s^2 - 2 s^3, or another function of s.
 template <int dim>
 class Overlap
 {
@@ -92,6 +97,8 @@ public:
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
 
 private:
+  std::vector<char> find_pads(const particles::Particles<dim> &particles,
+                              const particles::ParticleForce<dim> &force) const;
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
   void find_cells();

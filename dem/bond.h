@@ -13,7 +13,8 @@ struct Bond
   Vector<dim> normal;           // unit, i -> j, reference
   Vector<dim> lever_i, lever_j; // m, centre to face point, reference
   double area, distance;        // S in m^2, r0 in m
-  double bending, twist;        // k_b, k_t in N m
+  double bending, twist;        // k_b, k_t in N m, weight included
+  double weight = 1;            // share of the pair's energy that counts
 };
 
 /// Relative motion of a bonded face.

@@ -73,7 +73,13 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemM
   }
   intact_.assign(irregular_.size(), 1);
   find_segments(offset);
+  index_table();
+}
 
+template <int dim>
+void BondNetwork<dim>::index_table()
+{
+  const int n = n_particles();
   first_irregular_.assign(n + 1, 0);
   for (const auto &b : irregular_)
     ++first_irregular_[b.i + 1], ++first_irregular_[b.j + 1];
@@ -83,6 +89,28 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemM
   std::vector<int> next(first_irregular_.begin(), first_irregular_.end() - 1);
   for (std::size_t b = 0; b < irregular_.size(); ++b)
     irregular_of_[next[irregular_[b].i]++] = irregular_of_[next[irregular_[b].j]++] = int(b);
+}
+
+template <int dim>
+void BondNetwork<dim>::set_weights(const std::vector<double> &weights)
+{
+  std::vector<BondId> leaving;
+  for_each_bond([&](BondId id, const Bond<dim> &b) {
+    if (id.direction >= 0 && (weights[b.i] != 1 || weights[b.j] != 1))
+      leaving.push_back(id);
+  });
+  for (const BondId &id : leaving) {
+    irregular_.push_back(bond(id));
+    intact_.push_back(1);
+    remove(id);
+    ++n_bonds_;
+  }
+  for (Bond<dim> &b : irregular_) {
+    b.weight = (weights[b.i] + weights[b.j]) / 2;
+    b.bending *= b.weight;
+    b.twist *= b.weight;
+  }
+  index_table();
 }
 
 template <int dim>

@@ -73,11 +73,16 @@ public:
   /// The bond no longer carries.
   void remove(const BondId &id);
 
+  /// Every pair keeps the mean of its particles' weights of its energy. Pairs that lose some leave
+  /// the lattice for the table: those that keep theirs cost what they did.
+  void set_weights(const std::vector<double> &weights);
+
   static Bond<dim> make_bond(const particles::Face<dim> &face, const DemMaterial &material,
                              double thickness);
 
 private:
   void find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset);
+  void index_table();
   Bond<dim> lattice_bond(int i, int j, int direction) const;
 
   std::vector<DirectionData<dim>> directions_;

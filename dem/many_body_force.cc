@@ -49,7 +49,20 @@ void ManyBodyForce<dim>::update_volumetric_stiffness(int i)
     const double q = i == b.i ? b.lever_i.dot(b.normal) : -b.lever_j.dot(b.normal);
     phi += b.area * q / packing_.volume[i];
   });
-  lambda_per_volume_[i] = material_.volumetric_stiffness<dim>(phi) / packing_.volume[i];
+  lambda_per_volume_[i] =
+      energy_weight(i) * material_.volumetric_stiffness<dim>(phi) / packing_.volume[i];
+}
+
+template <int dim>
+void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
+{
+  core::require(energy_weights_.empty() && int(weights.size()) == packing_.size() &&
+                    broken_.empty(),
+                "energy weights are set once, for every particle of an intact body");
+  energy_weights_ = weights;
+  bonds_.set_weights(weights);
+  for (int i = 0; i < packing_.size(); ++i)
+    update_volumetric_stiffness(i);
 }
 
 template <int dim>
@@ -90,7 +103,8 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
                                            const std::vector<double> &pressure) const
 {
   return b.area / b.distance *
-         (2 * material_.shear_modulus() * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+         (2 * b.weight * material_.shear_modulus() * m.du + pressure[b.i] * m.a_i -
+          pressure[b.j] * m.a_j);
 }
 
 template <int dim>
@@ -98,7 +112,7 @@ double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
                                    const std::vector<double> &pressure) const
 {
   const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
-  return bond_force(b, motion(b, p), pressure).dot(normal) / b.area;
+  return bond_force(b, motion(b, p), pressure).dot(normal) / (b.weight * b.area);
 }
 
 template <int dim>
@@ -151,7 +165,7 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     add(p.force, b.j, Vector<dim>(-f));
     add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure[b.i] * m.du) + bend));
     add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure[b.j] * m.du) - bend));
-    const double limit = strength * b.area;
+    const double limit = strength * b.weight * b.area;
     if (strength > 0 && f.squaredNorm() >= limit * limit &&
         f.dot(present_normal(b, turn_i, turn_j)) >= limit)
       work.exceeded.push_back(id);
@@ -188,8 +202,8 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
     const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
                             get(p.displacement, b.j));
-    sum +=
-        material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() + bending_energy(b, p);
+    sum += b.weight * material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
+           bending_energy(b, p);
   });
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)

@@ -54,6 +54,8 @@ public:
   void
   add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
 
+  void set_energy_weights(const std::vector<double> &weights) override;
+
   void
   for_each_face(const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
 
@@ -62,7 +64,8 @@ public:
   part(const std::vector<int> &members,
        const typename particles::ParticleForce<dim>::TermShare &share) const override;
 
-  /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10).
+  /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10);
+  /// of the body before its energy was weighted.
   void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const;
 
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.
@@ -128,6 +131,7 @@ private:
   /// Elastic energy of one bond and of the volumes of its two particles, in J.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
   void update_volumetric_stiffness(int i);
+  double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
   particles::Packing<dim> packing_;
   DemMaterial material_;
@@ -139,7 +143,8 @@ private:
   ContactSearch<dim> search_;
   bool searching_ = false;
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
-  std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3
+  std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
+  std::vector<double> energy_weights_;    // of the particles; empty: all 1
   Workspace work_;
   std::vector<BrokenBond<dim>> broken_;
   double fracture_energy_ = 0, breaking_step_error_ = 0;

@@ -41,8 +41,9 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
 template <int dim>
 double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) const
 {
-  double sum = material_.shear_modulus() * b.area / b.distance * motion(b, p).du.squaredNorm() +
-               bending_energy(b, p);
+  double sum =
+      b.weight * material_.shear_modulus() * b.area / b.distance * motion(b, p).du.squaredNorm() +
+      bending_energy(b, p);
   for (const int i : {b.i, b.j})
     if (lambda_per_volume_[i] != 0)
       sum += 0.5 * work_.pressure[i] * work_.pressure[i] / lambda_per_volume_[i];

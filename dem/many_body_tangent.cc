@@ -74,7 +74,7 @@ void ManyBodyForce<dim>::add_tangent(
     term.rows.template block<spins, spins>(dim, dim) = -bending_rows(b);
     term.rows.template block<spins, spins>(dim, dofs + dim) = bending_rows(b);
     term.stiffness.resize(dim + spins);
-    term.stiffness.head(dim).setConstant(two_g * b.area / b.distance);
+    term.stiffness.head(dim).setConstant(b.weight * two_g * b.area / b.distance);
     term.stiffness.tail(spins) = bending_stiffness(b);
     add(term);
   });
@@ -191,7 +191,7 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
   contacts_.add_moments(particles, stress);
   for (auto &a : stress)
     for (int i = 0; i < packing_.size(); ++i)
-      a[i] /= packing_.volume[i];
+      a[i] /= energy_weight(i) * packing_.volume[i];
 }
 
 template <int dim>

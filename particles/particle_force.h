@@ -83,6 +83,11 @@ public:
 
   virtual ElasticConstants<dim> elastic_constants() const = 0;
 
+  /// Scales the energy from now on: each particle's volumetric part by its weight (one per owned
+  /// particle, above 0, at most 1), each pair by the mean of its two. Masses are the caller's.
+  /// For couplers that blend the energies of two models; to be called once, on the intact body.
+  virtual void set_energy_weights(const std::vector<double> &weights) = 0;
+
   /// Every quadratic term of the linearised energy of the present bonds, once.
   virtual void add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
 

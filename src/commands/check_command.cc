@@ -137,7 +137,8 @@ int check(const CommandLine &line, const ReadResult &input)
   const double seconds = setup_seconds + steps * prediction.seconds_per_step;
   const int particles = body.zone ? body.zone->state.n_owned : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
-  const int overlap = body.split ? body.split->report().overlap_particles : 0;
+  const auto *joined = body.coupler->overlap();
+  const int overlap = joined ? int(joined->members.size()) : 0;
   const double critical = body.zone ? body.dt_zone : body.dt_far;
 
   fmt::print("{}\n", scene.title);
@@ -147,7 +148,7 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  pure discrete model  {:>12} particles\n", body.equivalent_particles);
   fmt::print("  step                 {:>12.4g} s ({:.2f} of the stable one)\n", body.dt,
              body.dt / critical);
-  if (body.split)
+  if (joined)
     fmt::print("  far field            {:>12} steps of the zone per step; {:.4g} s is stable\n",
                body.coupler->step_ratio(), body.dt_far);
   fmt::print("  steps                {:>12}\n", steps);
@@ -155,12 +156,13 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  predicted time       {:>12}{}\n", duration_text(seconds),
              scene.time.stop_when == "end" ? "" : ", less if it breaks earlier");
   double saving = 0;
-  if (body.split) {
+  if (joined) {
     saving = prediction.discrete_share * double(body.equivalent_particles) / particles;
     fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements\n", saving);
+  }
+  if (body.split)
     fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n",
                body.split->report().patch_residual);
-  }
   for (const auto &part : body.skipped)
     fmt::print("  not needed: {} ({})\n", part.what, part.why);
   if (line.json) {

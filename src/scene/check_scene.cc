@@ -354,6 +354,34 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
   return right;
 }
 
+/// Keys that only some schemes read, and what the scheme cannot do.
+void check_scheme(const Scene &scene, Findings &f)
+{
+  if (!f.sound({"/coupling/scheme"}))
+    return;
+  const bool weighted = coupling::is_energy_weighted(scene.coupling.scheme);
+  const std::string name = coupling::scheme_names[int(scene.coupling.scheme)];
+  if (weighted && f.sound({"/coupling/step_ratio"}) && scene.coupling.step_ratio > 1)
+    f.error("/coupling/step_ratio",
+            fmt::format("\"step_ratio\" in /coupling is {}, but \"{}\" takes no steps of its own "
+                        "in the far field",
+                        scene.coupling.step_ratio, name),
+            "its constraint joins all velocities in every step", "give 1");
+  if (const std::string &regime = scene.coupling.regime;
+      weighted && (regime == "corotated" || regime == "nonlinear"))
+    f.error("/coupling/regime",
+            fmt::format("\"regime\" in /coupling is \"{}\", but \"{}\" is linear", regime, name),
+            "energy-weighted schemes have no other regime",
+            "leave it out, or choose \"fine_scale_split\"");
+  const std::vector<std::string> split = {"gap_filter", "patch_fit", "coarse_mass"},
+                                 literature = {"weight", "damper_form", "multiplier_cells",
+                                               "ghost_force_correction"};
+  for (const std::string &key : weighted ? split : literature)
+    if (f.given("/coupling/" + key))
+      f.warning("/coupling/" + key, fmt::format("\"{}\" in /coupling is not used", key),
+                fmt::format("the scheme is \"{}\"", name), "");
+}
+
 std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Findings &f)
 {
   if (!f.sound({zone_key + "/extent"}))
@@ -374,13 +402,14 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   check_ratio(scene, f);
   check_coarse_mass(scene, f);
-  if (scene.coupling.scheme == "none")
+  check_scheme(scene, f);
+  if (scene.coupling.scheme == coupling::Scheme::none)
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",
               "they overlap but are not joined", "");
-  if (f.sound({"/coupling/regime", "/coupling/scheme"}) && scene.coupling.scheme == "none" &&
-      scene.coupling.regime == "nonlinear")
+  if (f.sound({"/coupling/regime", "/coupling/scheme"}) &&
+      scene.coupling.scheme == coupling::Scheme::none && scene.coupling.regime == "nonlinear")
     f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" without a coupler",
             "it is about the energy of the overlap, and \"scheme\" is \"none\"",
             "choose \"corotated\" for a far field that turns, or another scheme");

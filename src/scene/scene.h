@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/types.h"
+#include "coupling/scheme.h"
 
 #include <array>
 #include <limits>
@@ -103,13 +104,18 @@ struct FarField
 
 struct CouplingParameters
 {
-  std::string scheme = "fine_scale_split"; // or none
+  coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
   int overlap_cells = 3;
   int transition_cells = 6; // over which the mass goes from consistent to lumped
   int step_ratio = 1;       // m: far field steps once per m fine steps
   double fine_damper = 8;   // c_f
   double gap_filter = 4;    // c_g
   bool patch_fit = true;
+  // Energy-weighted schemes only:
+  coupling::WeightShape weight = coupling::WeightShape::cubic;
+  coupling::DamperForm damper_form = coupling::DamperForm::symmetrised;
+  int multiplier_cells = 1;
+  Point ghost_force_correction = {0, 0, 0}; // normal strains
   std::string solver = "eigen";     // eigen, amesos
   std::string guard = "stop";       // stop, warn
   std::string regime = "automatic"; // linear, corotated, nonlinear

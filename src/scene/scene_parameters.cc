@@ -81,13 +81,17 @@ void declare_far_field(Section &s, FarField &f)
 
 void declare_coupling(Section &s, CouplingParameters &c)
 {
-  s.add("scheme", c.scheme, "how the two models act as one body in the overlap").one_of({"fine_scale_split", "none"});
+  s.add("scheme", c.scheme, "how the two models act as one body in the overlap; those between the first and the last are energy-weighted couplers of the literature, for comparison", coupling::scheme_names);
   s.add("overlap_cells", c.overlap_cells, "width of the overlap in cells; 3 for fracture, 4 for waves, 2 for statics").at_least(2).at_most(20);
   s.add("transition_cells", c.transition_cells, "cells behind the overlap over which the mass goes from consistent to lumped").at_least(0).at_most(50);
   s.add("step_ratio", c.step_ratio, "fine steps in one step of the far field").at_least(1).at_most(64);
   s.add("fine_damper", c.fine_damper, "c_f, damper of what the mesh cannot carry; 4 for elastic waves, 8 for fracture, 0: off").at_least(0).at_most(100);
   s.add("gap_filter", c.gap_filter, "c_g, filter of the waves that neither model carries well; 4 for fracture, 0: off").at_least(0).at_most(100);
   s.add("patch_fit", c.patch_fit, "corrects the overlap so that homogeneous strains are exact");
+  s.add("weight", c.weight, "share of the discrete model across the overlap; energy-weighted schemes only", coupling::weight_names);
+  s.add("damper_form", c.damper_form, "how fine_damper acts; printed: as the literature prints it, may add energy; energy-weighted schemes only", coupling::damper_form_names);
+  s.add("multiplier_cells", c.multiplier_cells, "edge of the multipliers' hat functions in cells; energy-weighted schemes only").at_least(1).at_most(10);
+  s.add("ghost_force_correction", c.ghost_force_correction, "normal strains (xx, yy, zz) at which constant forces cancel the overlap's ghost forces, 0: off; energy-weighted schemes only").at_least(-0.1).at_most(0.1);
   s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
   s.add("guard", c.guard, "what happens when fracture approaches the overlap or the body leaves the range of its regime").one_of({"stop", "warn"});
   s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it").one_of({"automatic", "linear", "corotated", "nonlinear"});

@@ -54,11 +54,9 @@ bool is_broken_across(const CoupledBody<dim> &body, int axis)
       if (std::abs(std::abs(mesh.nodes[i][axis]) - body.upper[axis]) < 1e-9 * body.upper[axis])
         sets.join(n_particles + i, mesh.nodes[i][axis] < 0 ? low : high);
   }
-  if (body.split) {
-    const auto &overlap = body.split->overlap();
-    for (const auto &m : overlap.members)
-      sets.join(m.particle, n_particles + overlap.near_nodes[m.nodes[0]]);
-  }
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      sets.join(m.particle, n_particles + overlap->near_nodes[m.nodes[0]]);
   return sets.find(low) != sets.find(high);
 }
 

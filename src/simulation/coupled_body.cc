@@ -266,17 +266,45 @@ void choose_step(const Scene &scene, CoupledBody<dim> &body)
 }
 
 template <int dim>
-void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log, core::Timers &timers)
+coupling::OverlapParameters<dim> overlap_of(const Scene &scene)
 {
-  if (!body.zone || !body.far || scene.coupling.scheme == "none") {
-    body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
-    return;
-  }
   coupling::OverlapParameters<dim> overlap;
   overlap.zone = zone_shape<dim>(scene);
   overlap.length = scene.coupling.overlap_cells * scene.far_field->cell_size;
   overlap.spacing = scene.zone.spacing;
   overlap.transition_cells = scene.coupling.transition_cells;
+  return overlap;
+}
+
+/// Weighs the zone, which changes its stable step.
+template <int dim>
+void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
+                          core::Timers &timers)
+{
+  coupling::OverlapParameters<dim> overlap = overlap_of<dim>(scene);
+  overlap.shape = scene.coupling.weight;
+  coupling::BridgingDomainParameters p;
+  p.scheme = scene.coupling.scheme;
+  p.fine_damper = scene.coupling.fine_damper;
+  p.damper_form = scene.coupling.damper_form;
+  p.multiplier_cells = scene.coupling.multiplier_cells;
+  p.reference_strain = scene.coupling.ghost_force_correction;
+  p.solver = scene.coupling.solver;
+  auto bodies = body.bodies();
+  auto coupler = std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, p, timers);
+  const double plain = body.dt_zone;
+  body.dt_zone = std::min(body.force->stable_step(body.zone->state), coupler->near_stable_step());
+  log.info("overlap: {} particles, {} nodes, {} multipliers; stable step {:.4g} s with energy "
+           "weights, {:.3f} of the plain one",
+           coupler->overlap()->members.size(), coupler->overlap()->n_nodes(),
+           coupler->n_multipliers(), body.dt_zone, body.dt_zone / plain);
+  body.coupler = std::move(coupler);
+}
+
+template <int dim>
+void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
+                           core::Timers &timers)
+{
   coupling::FineScaleSplitParameters p;
   p.step_ratio = scene.coupling.step_ratio;
   p.fine_damper = scene.coupling.fine_damper;
@@ -285,7 +313,8 @@ void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log, co
   p.solver = scene.coupling.solver;
   p.coarse_mass = scene.coupling.coarse_mass;
   auto bodies = body.bodies();
-  auto split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p, body.dt, timers);
+  auto split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap_of<dim>(scene), p,
+                                                               body.dt, timers);
   const auto &report = split->report();
   log.info(
       "overlap: {} particles ({} pad), {} nodes; patch residual {:.1e} before and {:.1e} after "
@@ -317,7 +346,7 @@ std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim
     skipped.push_back({"contacts until a bond breaks", "no initial crack"});
   if (body.split && scene.coupling.gap_filter == 0)
     skipped.push_back({"gap-band filter", "/coupling/gap_filter is 0"});
-  if (body.split && scene.coupling.fine_damper == 0)
+  if (body.coupler->overlap() && scene.coupling.fine_damper == 0)
     skipped.push_back({"fluctuation damper", "/coupling/fine_damper is 0"});
   return skipped;
 }
@@ -340,8 +369,15 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     make_zone(scene, body, log);
   if (scene.zone.extent != DiscreteZone::Extent::all)
     make_far(scene, body, log);
+  using coupling::Scheme;
+  const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
+  if (!coupled)
+    body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
+  else if (coupling::is_energy_weighted(scene.coupling.scheme))
+    make_bridging_domain(scene, body, log, timers);
   choose_step(scene, body);
-  make_coupler(scene, body, log, timers);
+  if (!body.coupler)
+    make_fine_scale_split(scene, body, log, timers);
   body.skipped = skipped_parts(scene, body);
   return body;
 }

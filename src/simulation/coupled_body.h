@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/log.h"
+#include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
 #include "particles/random_packing.h"

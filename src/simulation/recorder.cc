@@ -31,8 +31,9 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
       history_interval_(scene.output.history_interval > 0 ? scene.output.history_interval
                                                           : scene.time.duration / 2000)
 {
-  if (body.split && body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
-    for (const auto &m : body.split->overlap().members)
+  if (body.coupler->overlap() &&
+      body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
+    for (const auto &m : body.coupler->overlap()->members)
       guarded_.push_back(m.particle);
 }
 

@@ -29,6 +29,7 @@ private:
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
+  bool weighted_; // an energy-weighted coupler, which is linear
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
   typename coupling::NearParts<dim>::Motion near_; // at the last look

@@ -76,7 +76,8 @@ RunRecord Simulation<dim>::make_record() const
   r.thickness = body_.thickness;
   r.particles = body_.zone ? body_.zone->state.n_owned : 0;
   r.cells = body_.far ? body_.far->mesh().n_cells() : 0;
-  r.overlap_particles = body_.split ? body_.split->report().overlap_particles : 0;
+  const auto *overlap = body_.coupler->overlap();
+  r.overlap_particles = overlap ? int(overlap->members.size()) : 0;
   r.equivalent_particles = body_.equivalent_particles;
   r.dt = body_.dt;
   if (body_.zone)

@@ -40,8 +40,9 @@ LinearMotion<dim>::LinearMotion(CoupledBody<dim> &body)
   core::require(body.coupler->step_ratio() == 1, "linear motion needs the step ratio 1");
   if (body.far)
     n_nodes_ = body.far->mesh().n_nodes();
-  if (body.split)
-    near_mass_ = body.split->near_mass();
+  near_mass_ = body.coupler->near_mass();
+  rest_ = Eigen::VectorXd::Zero(size());
+  rest_ = accelerations(rest_, false);
   find_free_motions();
 }
 
@@ -118,10 +119,8 @@ void LinearMotion<dim>::set_state(const Eigen::VectorXd &x)
       v = *value++;
   stop(body_.far->velocity);
   body_.far->distribute();
-  if (body_.split) {
-    auto bodies = body_.bodies();
-    body_.split->take_velocities(bodies);
-  }
+  auto bodies = body_.bodies();
+  body_.coupler->take_velocities(bodies);
 }
 
 template <int dim>
@@ -136,7 +135,7 @@ Eigen::VectorXd LinearMotion<dim>::accelerations(const Eigen::VectorXd &x, bool 
   body_.coupler->kick(bodies, step);
   if (body_.far)
     body_.far->distribute();
-  return velocities();
+  return loaded ? velocities() : Eigen::VectorXd(velocities() - rest_);
 }
 
 template <int dim>
@@ -171,10 +170,8 @@ Eigen::VectorXd LinearMotion<dim>::admissible(const Eigen::VectorXd &x)
     write(body_.far->velocity);
     body_.far->distribute();
   }
-  if (body_.split) {
-    auto bodies = body_.bodies();
-    body_.split->take_velocities(bodies);
-  }
+  auto bodies = body_.bodies();
+  body_.coupler->take_velocities(bodies);
   return velocities();
 }
 
@@ -182,7 +179,7 @@ template <int dim>
 double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd &y) const
 {
   const auto &zone = body_.zone->state;
-  const auto *overlap = body_.split ? &body_.split->overlap() : nullptr;
+  const auto *overlap = body_.coupler->overlap();
   Eigen::MatrixXd near_x, near_y;
   if (overlap) {
     near_x.resize(overlap->n_nodes(), dim);
@@ -194,7 +191,7 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
   }
   double sum = 0;
   for (int i = 0; i < n_particles_; ++i) {
-    const int index = overlap ? overlap->member_of_particle[i] : -1;
+    const int index = body_.split ? overlap->member_of_particle[i] : -1;
     Vector<dim> u = particle(x, i), v = particle(y, i);
     if (index >= 0) {
       const auto &member = overlap->members[index];

@@ -20,10 +20,12 @@ public:
 
   int size() const { return n_particle_values_ + dim * n_nodes_; }
 
-  /// Accelerations at displacement x; with loads at full size (t = 1) or zero (t = 0).
+  /// Accelerations at displacement x; with loads at full size (t = 1) or, without the
+  /// coupler's dead loads either, zero (t = 0).
   Eigen::VectorXd accelerations(const Eigen::VectorXd &x, bool loaded);
 
-  /// The inner product that makes 1/2 inner(v, v) the kinetic energy (theory.md eqs. (C1), (C6)).
+  /// The inner product that makes 1/2 inner(v, v) the kinetic energy (theory.md eqs. (C1), (C6),
+  /// (B2)).
   double inner(const Eigen::VectorXd &x, const Eigen::VectorXd &y) const;
 
   /// Equilibrium under the loads: conjugate gradients from rest until forces are round-off.
@@ -66,6 +68,7 @@ private:
   CoupledBody<dim> &body_;
   int n_particles_, n_particle_values_, n_nodes_ = 0;
   Eigen::SparseMatrix<double> near_mass_;
+  Eigen::VectorXd rest_;                      // accelerations by dead loads of the coupler
   std::vector<Eigen::VectorXd> free_motions_; // rigid ones that no support resists, orthonormal
 };
 } // namespace ligament::program

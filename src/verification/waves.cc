@@ -115,6 +115,11 @@ WaveFigures measure_wave(const WaveParameters &p)
   strip_parameters.mesh_shift = p.mesh_shift;
   strip_parameters.split.fine_damper = p.fine_damper;
   strip_parameters.split.gap_filter = p.gap_filter;
+  strip_parameters.scheme = p.scheme;
+  strip_parameters.weight = p.weight;
+  strip_parameters.bridging.fine_damper = p.fine_damper;
+  strip_parameters.bridging.multiplier_cells = p.multiplier_cells;
+  strip_parameters.step_fraction = p.step_fraction;
   const double h = strip_parameters.cell_size;
   const double wave_length = p.wave_length * h, width = 2 * wave_length;
   // The envelope falls to 4e-5 within 4.5 widths; short packets spread.
@@ -130,7 +135,7 @@ WaveFigures measure_wave(const WaveParameters &p)
                            strip.dt);
   set_packet(strip.zone->state, packet, 1e-8 * wave_length);
   auto bodies = strip.bodies();
-  strip.split->take_velocities(bodies);
+  strip.coupler->take_velocities(bodies);
   const double before = kinetic_energy(strip);
 
   // Until the packet has passed overlap and transition and what comes back has left them.
@@ -138,21 +143,27 @@ WaveFigures measure_wave(const WaveParameters &p)
   const double speed = waves.group_velocity(wave_number, polarisation);
   coupling::StepTime time;
   time.dt = strip.dt;
+  const auto mechanical = [](const coupling::CoupledEnergy &e) {
+    return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
+  };
   double whole = 0;
   for (const long end = std::lround(way / (speed * strip.dt)); time.step < end; ++time.step) {
-    strip.split->compute_forces(bodies, time);
-    if (time.step == 0) {
-      const auto e = strip.split->energy(bodies, time);
-      whole =
-          e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
-    }
-    strip.split->kick(bodies, time);
-    strip.split->drift(bodies, time);
+    strip.coupler->compute_forces(bodies, time);
+    if (time.step == 0)
+      whole = mechanical(strip.coupler->energy(bodies, time));
+    strip.coupler->kick(bodies, time);
+    strip.coupler->drift(bodies, time);
     time.time += time.dt;
   }
-  strip.split->compute_forces(bodies, time);
-  const auto e = strip.split->energy(bodies, time);
-  return {kinetic_energy(strip) / before, (e.fine_damper + e.gap_filter) / whole};
+  strip.coupler->compute_forces(bodies, time);
+  const auto e = strip.coupler->energy(bodies, time);
+  const double lost = e.fine_damper + e.gap_filter;
+  double seconds = 0;
+  for (const auto &row : strip.timers->rows())
+    if (row.name == "coupling")
+      seconds = row.seconds;
+  return {kinetic_energy(strip) / before, lost / whole, 1 - (mechanical(e) + lost) / whole,
+          seconds / double(time.step * strip.coupler->overlap()->members.size())};
 }
 
 namespace

@@ -18,6 +18,11 @@ struct WaveParameters
   double fine_damper = 4, gap_filter = 0;
   int overlap_cells = 3;
   double mesh_shift = 0.5; // layers of the packing, see StripParameters
+  coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
+  // Energy-weighted schemes only:
+  coupling::WeightShape weight = coupling::WeightShape::cubic;
+  int multiplier_cells = 1;
+  double step_fraction = 0.9;
 };
 
 /// Shares of the packet's energy.
@@ -25,6 +30,8 @@ struct WaveFigures
 {
   double reflected; // came back into the discrete zone, kinetic energy after over before
   double lost;      // taken by the dampers of the overlap
+  double missing; // of all mechanical energy, neither left nor booked: what the scheme itself lost
+  double cost;    // seconds of the coupler per overlap particle and step
 };
 
 /// Sends a packet from the zone at normal incidence into the mesh (docs/verification_waves.md).

@@ -129,7 +129,6 @@ Strip<dim> make_strip(const StripParameters &p)
       std::move(state),
       std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), p.material,
                                                 std::vector<core::BoundaryLoad<dim>>()));
-  strip.dt = p.step_fraction * strip.zone->force->stable_step(strip.zone->state);
 
   fem::Body<dim> body;
   body.stiffness = p.material.template elastic_constants<dim>().stiffness;
@@ -151,8 +150,18 @@ Strip<dim> make_strip(const StripParameters &p)
     overlap.period[c] = across;
   strip.timers = std::make_unique<core::Timers>();
   auto bodies = strip.bodies();
-  strip.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, strip.dt,
-                                                                *strip.timers);
+  if (coupling::is_energy_weighted(p.scheme)) {
+    overlap.shape = p.weight;
+    auto bridging = p.bridging;
+    bridging.scheme = p.scheme;
+    strip.coupler =
+        std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, bridging, *strip.timers);
+  }
+  strip.dt_stable = strip.zone->force->stable_step(strip.zone->state);
+  strip.dt = p.step_fraction * strip.dt_stable;
+  if (!strip.coupler)
+    strip.coupler = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split,
+                                                                    strip.dt, *strip.timers);
   return strip;
 }
 

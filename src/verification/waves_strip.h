@@ -2,6 +2,7 @@
 // plane.
 #pragma once
 
+#include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/material.h"
 #include "particles/lattice_packing.h"
@@ -32,7 +33,10 @@ struct StripParameters
   double far_length;     // without the overlap
   double mesh_shift = 0; // from where the mesh ends level with the edge of the packing; layers
   double step_fraction = 0.9;
-  coupling::FineScaleSplitParameters split;
+  coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
+  coupling::WeightShape weight = coupling::WeightShape::cubic;
+  coupling::FineScaleSplitParameters split;    // of that scheme
+  coupling::BridgingDomainParameters bridging; // of the others; `scheme` holds
 };
 
 /// Hexagonal (2D) or FCC (3D) packing below, mesh above, in units of the particle spacing. The
@@ -44,8 +48,9 @@ struct Strip
   std::unique_ptr<particles::ParticleSolver<dim>> zone;
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<core::Timers> timers;
-  std::unique_ptr<coupling::FineScaleSplit<dim>> split;
-  double dt = 0;
+  std::unique_ptr<coupling::Coupler<dim>> coupler;
+  double dt = 0;        // step_fraction of the stable one
+  double dt_stable = 0; // of the discrete side, energy weights included
   double mesh_begin = 0;
 
   coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }

@@ -1,11 +1,13 @@
 // Small coupled bodies for tests: a band whose overlap ends at free edges, a closed ring.
 #pragma once
 
+#include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
 #include "particles/lattice_packing.h"
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace ligament::tests
@@ -15,7 +17,8 @@ struct CoupledBodies
 {
   std::unique_ptr<particles::ParticleSolver<dim>> zone;
   std::unique_ptr<fem::FemSolver<dim>> far;
-  std::unique_ptr<coupling::FineScaleSplit<dim>> split;
+  std::unique_ptr<coupling::FineScaleSplit<dim>> split; // one of the two
+  std::unique_ptr<coupling::BridgingDomain<dim>> bridging;
   std::unique_ptr<core::Timers> timers = std::make_unique<core::Timers>();
   double dt = 0; // s, 0.9 of the plain discrete step unless asked otherwise
   double dt_zone = 0;
@@ -40,6 +43,8 @@ struct CoupledBodiesParameters
   int transition_cells = 6;
   int levels = 0;
   coupling::FineScaleSplitParameters split;
+  std::optional<coupling::BridgingDomainParameters> bridging; // in place of the split
+  coupling::WeightShape weight = coupling::WeightShape::cubic;
   double step_fraction = 0.9;
   /// Puts another law in the place of the many-body law; empty: keeps it.
   std::function<std::unique_ptr<particles::ParticleForce<dim>>(
@@ -96,9 +101,16 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   material.density = p.material.density;
   body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material,
                                                    std::vector<core::BoundaryLoad<dim>>());
+  auto bodies = body.bodies();
+  if (p.bridging) {
+    overlap.shape = p.weight;
+    body.bridging =
+        std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, *p.bridging, *body.timers);
+  }
   body.dt_zone = body.zone->force->stable_step(body.zone->state);
   body.dt = p.step_fraction * body.dt_zone;
-  auto bodies = body.bodies();
+  if (p.bridging)
+    return body;
   body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
                                                                *body.timers);
   return body;

@@ -82,8 +82,7 @@ struct SmallBody
       for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
         place(body.far->mesh().nodes[i], body.far->displacement, i);
     auto bodies = body.bodies();
-    if (body.split)
-      body.split->take_velocities(bodies);
+    body.coupler->take_velocities(bodies);
   }
 };
 } // namespace ligament::tests

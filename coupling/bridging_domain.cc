@@ -1,0 +1,346 @@
+#include "coupling/bridging_domain.h"
+
+#include "coupling/blended_operators.h"
+#include "coupling/energy_weights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::coupling
+{
+namespace
+{
+template <int dim>
+OverlapParameters<dim> without_pads(OverlapParameters<dim> parameters)
+{
+  parameters.has_pads = false;
+  return parameters;
+}
+} // namespace
+
+template <int dim>
+BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> overlap,
+                                    const BridgingDomainParameters &parameters,
+                                    core::Timers &timers)
+    : Coupler<dim>(timers), parameters_(parameters),
+      overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(),
+               without_pads(std::move(overlap))),
+      transfer_(overlap_, bodies.zone->state),
+      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver),
+      mass_solver_(make_linear_solver(parameters.solver))
+{
+  auto &far = *bodies.far;
+  const auto operators =
+      make_cell_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body());
+  stiffness_ = operators.stiffness;
+  stiffness_blocks_ = std::make_unique<BlockMatrix<dim>>(stiffness_);
+  mass_ = take_over_cells(overlap_, far) + operators.mass;
+  mass_solver_->factorise(mass_);
+  weigh(bodies);
+  constraint_ = std::make_unique<VelocityConstraint<dim>>(
+      parameters.scheme, overlap_, transfer_, shares_, mass_, parameters.multiplier_cells,
+      parameters.solver);
+  const double wave_speed = bodies.zone->force->elastic_constants().wave_speed_p;
+  for (int k = 0; k < transfer_.size(); ++k) {
+    const double s = transfer_.position(k);
+    rate_.push_back(parameters.fine_damper * wave_speed / overlap_.cell_size * (1 - s) * (1 - s));
+  }
+  for (auto &v : member_velocity_)
+    v.resize(transfer_.size());
+  lost_ = before_damper_ = member_velocity_;
+  displacement_ = velocity_ = force_ = dead_nodal_ = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  if (std::any_of(parameters.reference_strain.begin(), parameters.reference_strain.end(),
+                  [](double e) { return e != 0; }))
+    find_dead_load(bodies);
+  take_velocities(bodies);
+}
+
+template <int dim>
+void BridgingDomain<dim>::weigh(Bodies<dim> &bodies)
+{
+  auto &zone = bodies.zone->state;
+  const std::vector<double> weights =
+      parameters_.point_weight_floor > 0
+          ? point_weights(overlap_, zone, parameters_.point_weight_floor)
+          : mean_weights(overlap_, zone, *bodies.zone->force);
+  bodies.zone->force->set_energy_weights(weights);
+  for (int k = 0; k < transfer_.size(); ++k) {
+    const int i = transfer_.particle(k);
+    shares_.push_back(weights[i]);
+    zone.mass[i] *= weights[i];
+    zone.inertia[i] *= weights[i];
+    zone.inverse_mass[i] /= weights[i];
+    zone.inverse_inertia[i] /= weights[i];
+  }
+}
+
+// The forces that a uniform strain would leave at the members, their neighbours and the near nodes,
+// with the opposite sign.
+template <int dim>
+void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
+{
+  auto &zone = bodies.zone->state;
+  auto &far = *bodies.far;
+  const auto strained = [&](const Vector<dim> &x, int c) {
+    return parameters_.reference_strain[c] * x[c];
+  };
+  const auto zone_before = zone.displacement;
+  const auto far_before = far.displacement;
+  for (int c = 0; c < dim; ++c) {
+    for (int i = 0; i < zone.n_owned; ++i)
+      zone.displacement[c][i] = strained(get(zone.reference, i), c);
+    for (int i = 0; i < far.mesh().n_nodes(); ++i)
+      far.displacement[c][i] = strained(far.mesh().nodes[i], c);
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
+  }
+  std::vector<char> is_near(zone.n_owned, 0);
+  bodies.zone->force->for_each_face([&](const particles::FaceView<dim> &face) {
+    if (overlap_.member_of_particle[face.i] >= 0) {
+      is_near[face.i] = 1;
+      if (face.j >= 0)
+        is_near[face.j] = 1;
+    }
+  });
+  bodies.zone->compute_forces(0);
+  far.compute_forces(0);
+  compute_near_force(bodies, dead_nodal_);
+  dead_nodal_ *= -1;
+  dead_ = zone.force;
+  for (auto &f : dead_)
+    for (int i = 0; i < zone.n_owned; ++i)
+      f[i] *= -is_near[i];
+  zone.displacement = zone_before;
+  far.displacement = far_before;
+}
+
+template <int dim>
+double BridgingDomain<dim>::near_stable_step() const
+{
+  // Power iteration for the largest frequency from a motion that is smooth in no way.
+  Nodal<dim> x(overlap_.n_nodes(), dim);
+  for (int i = 0; i < x.rows(); ++i)
+    for (int c = 0; c < dim; ++c)
+      x(i, c) = std::sin(37. * i + 101. * c + 1);
+  double square = 0;
+  for (int k = 0; k < 60; ++k) {
+    x /= std::sqrt(x.cwiseProduct(Nodal<dim>(mass_ * x)).sum());
+    Nodal<dim> force = Nodal<dim>::Zero(x.rows(), dim);
+    stiffness_blocks_->subtract_product(x, force);
+    square = -x.cwiseProduct(force).sum();
+    mass_solver_->solve(force.data(), dim);
+    x = force;
+  }
+  return 2 / (1.05 * std::sqrt(square)); // it nears the frequency from below
+}
+
+template <int dim>
+void BridgingDomain<dim>::take_velocities(Bodies<dim> &bodies)
+{
+  const auto &far = *bodies.far;
+  for (int i = 0; i < overlap_.n_nodes(); ++i)
+    for (int c = 0; c < dim; ++c) {
+      displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
+      velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
+    }
+  project(bodies);
+}
+
+template <int dim>
+void BridgingDomain<dim>::read_velocities(const particles::Particles<dim> &zone,
+                                          Components<dim> &v) const
+{
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < transfer_.size(); ++k)
+      v[c][k] = zone.velocity[c][transfer_.particle(k)];
+}
+
+template <int dim>
+void BridgingDomain<dim>::write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const
+{
+  auto &zone = bodies.zone->state;
+  auto &far = *bodies.far;
+  for (int c = 0; c < dim; ++c) {
+    for (int k = 0; k < transfer_.size(); ++k)
+      zone.velocity[c][transfer_.particle(k)] = v[c][k];
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
+  }
+}
+
+template <int dim>
+void BridgingDomain<dim>::project(Bodies<dim> &bodies)
+{
+  read_velocities(bodies.zone->state, member_velocity_);
+  constraint_->project(member_velocity_, velocity_);
+  write_velocities(bodies, member_velocity_);
+}
+
+template <int dim>
+void BridgingDomain<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
+{
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->drift(step.dt);
+    bodies.zone->update_ghosts();
+  }
+  const auto timing = this->timers_.scope(this->far_);
+  displacement_ += step.dt * velocity_;
+  auto &far = *bodies.far;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      far.displacement[c][overlap_.near_nodes[i]] = displacement_(i, c);
+  far.drift(step.dt);
+}
+
+template <int dim>
+void BridgingDomain<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &step)
+{
+  {
+    const auto timing = this->timers_.scope(this->forces_);
+    bodies.zone->compute_forces(step.time);
+    auto &zone = bodies.zone->state;
+    for (int c = 0; c < dim; ++c)
+      for (std::size_t i = 0; i < dead_[c].size(); ++i)
+        zone.force[c][i] += dead_[c][i];
+  }
+  const auto timing = this->timers_.scope(this->far_);
+  bodies.far->compute_forces(step.time);
+}
+
+template <int dim>
+void BridgingDomain<dim>::compute_near_force(const Bodies<dim> &bodies, Nodal<dim> &force) const
+{
+  force = dead_nodal_;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      force(i, c) += bodies.far->force[c][overlap_.near_nodes[i]];
+  stiffness_blocks_->subtract_product(displacement_, force);
+}
+
+// One kick and one projection of all velocities: what is projected is the acceleration, because the
+// velocities before fulfil the constraint. The schemes after Xiao and Belytschko move with the
+// unconstrained acceleration and correct velocities at whole steps: half a kick on either side.
+template <int dim>
+void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
+{
+  const bool corrects_at_whole_steps = parameters_.scheme == Scheme::xiao_belytschko ||
+                                       parameters_.scheme == Scheme::xiao_belytschko_lumped;
+  const double part = corrects_at_whole_steps ? 0.5 : 1;
+  {
+    const auto timing = this->timers_.scope(this->coupling_);
+    compute_near_force(bodies, force_);
+    if (parameters_.fine_damper > 0)
+      damp(bodies, step.dt);
+  }
+  {
+    const auto timing = this->timers_.scope(this->far_);
+    bodies.far->kick(step.dt, step.time);
+  }
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->kick(part * step.dt);
+  }
+  {
+    const auto timing = this->timers_.scope(this->coupling_);
+    Nodal<dim> change = part * step.dt * force_;
+    mass_solver_->solve(change.data(), dim);
+    velocity_ += change;
+    project(bodies);
+    if (!corrects_at_whole_steps) {
+      if (parameters_.fine_damper > 0)
+        book_damper(bodies);
+      return;
+    }
+    velocity_ += change;
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < overlap_.n_nodes(); ++i)
+        bodies.far->velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
+  }
+  const auto timing = this->timers_.scope(this->motion_);
+  bodies.zone->kick(part * step.dt);
+  if (parameters_.fine_damper > 0)
+    book_damper(bodies);
+}
+
+// v -= M^-1 Q^T M g Q v (theory.md eq. (B7)), on the velocities before the kick: the projection
+// that follows serves both. With the unweighted masses m that Q is made of, Q^T = m Q m^-1.
+template <int dim>
+void BridgingDomain<dim>::damp(Bodies<dim> &bodies, double dt)
+{
+  auto &zone = bodies.zone->state;
+  read_velocities(zone, before_damper_);
+  lost_ = before_damper_;
+  projector_.project(lost_);
+  const bool symmetric = parameters_.damper_form == DamperForm::symmetrised;
+  for (auto &v : lost_)
+    for (int k = 0; k < transfer_.size(); ++k)
+      v[k] *= (1 - std::exp(-rate_[k] * dt)) * (symmetric ? shares_[k] : 1);
+  if (symmetric)
+    projector_.project(lost_);
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < transfer_.size(); ++k) {
+      const int i = transfer_.particle(k);
+      const double change = lost_[c][k] / (symmetric ? shares_[k] : 1);
+      zone.velocity[c][i] -= change;
+      lost_[c][k] = zone.mass[i] * change;
+    }
+}
+
+// theory.md eq. (E3), with the velocities after the kick.
+template <int dim>
+void BridgingDomain<dim>::book_damper(const Bodies<dim> &bodies)
+{
+  double sum = 0;
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < transfer_.size(); ++k)
+      sum += lost_[c][k] *
+             (before_damper_[c][k] + bodies.zone->state.velocity[c][transfer_.particle(k)]);
+  fine_damper_energy_ += sum / 2;
+}
+
+template <int dim>
+double BridgingDomain<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step,
+                                             double factor)
+{
+  const auto timing = this->timers_.scope(this->coupling_);
+  const double still = 0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_)).sum();
+  const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
+  auto &zone = *bodies.zone;
+  auto &far = *bodies.far;
+  const double loss = scaling_loss(still, moving, factor) +
+                      scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor) +
+                      scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
+  zone.scale_velocities(factor);
+  far.scale_velocities(factor);
+  velocity_ *= factor;
+  return loss;
+}
+
+template <int dim>
+CoupledEnergy BridgingDomain<dim>::energy(const Bodies<dim> &bodies, const StepTime &step) const
+{
+  CoupledEnergy e;
+  e.fine_damper = fine_damper_energy_;
+  e.potential_discrete = bodies.zone->potential_energy();
+  e.potential_far = bodies.far->potential_energy();
+  // The constraint's forces do no work on velocities that fulfil it.
+  Nodal<dim> force;
+  compute_near_force(bodies, force);
+  e.kinetic_discrete = bodies.zone->kinetic_energy(step.dt);
+  e.kinetic_far =
+      bodies.far->kinetic_energy(step.dt) +
+      0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_ + step.dt * force)).sum();
+  Nodal<dim> internal = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  stiffness_blocks_->subtract_product(displacement_, internal);
+  e.blended = -0.5 * displacement_.cwiseProduct(internal).sum() -
+              displacement_.cwiseProduct(dead_nodal_).sum();
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t i = 0; i < dead_[c].size(); ++i)
+      e.blended -= dead_[c][i] * bodies.zone->state.displacement[c][i];
+  return e;
+}
+
+template class BridgingDomain<2>;
+template class BridgingDomain<3>;
+} // namespace ligament::coupling

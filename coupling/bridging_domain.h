@@ -1,0 +1,82 @@
+// The couplers of the literature: both models weighted by their share of the energy, their
+// velocities tied by multipliers.
+#pragma once
+
+#include "coupling/block_matrix.h"
+#include "coupling/coupler.h"
+#include "coupling/fluctuation_projector.h"
+#include "coupling/velocity_constraint.h"
+
+namespace ligament::coupling
+{
+struct BridgingDomainParameters
+{
+  Scheme scheme = Scheme::acceleration;
+  double fine_damper = 8; // c_f
+  DamperForm damper_form = DamperForm::symmetrised;
+  int multiplier_cells = 1;
+  /// Normal strains (xx, yy, zz) at which constant forces cancel the ghost forces; 0: none.
+  std::array<double, 3> reference_strain = {};
+  /// Above 0: weights are a at the centres, at least this, in place of the means over the cells.
+  double point_weight_floor = 0;
+  std::string solver = "eigen";
+};
+
+/// Energy-weighted bridging domain (theory.md section 3.8). The zone's particles carry their
+/// weighted masses and inertias from now on, and its force the weighted energy: kinetic and
+/// potential energy of the halves are those of the blended body.
+template <int dim>
+class BridgingDomain : public Coupler<dim>
+{
+public:
+  /// Weighs the zone and takes the overlap's and the transition's cells over from the far field.
+  /// Stable steps are to be asked for afterwards. The overlap has no pads.
+  BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> overlap,
+                 const BridgingDomainParameters &parameters, core::Timers &timers);
+
+  void drift(Bodies<dim> &bodies, const StepTime &step) override;
+  void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
+  void kick(Bodies<dim> &bodies, const StepTime &step) override;
+  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
+  CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
+
+  void take_velocities(Bodies<dim> &bodies) override;
+  const Overlap<dim> *overlap() const override { return &overlap_; }
+  Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
+
+  /// Largest stable step of the near cells by themselves, in s.
+  double near_stable_step() const;
+  int n_multipliers() const { return constraint_->n_multipliers(); }
+
+private:
+  void weigh(Bodies<dim> &bodies);
+  void find_dead_load(Bodies<dim> &bodies);
+  void read_velocities(const particles::Particles<dim> &zone, Components<dim> &v) const;
+  void write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const;
+  void damp(Bodies<dim> &bodies, double dt);
+  void book_damper(const Bodies<dim> &bodies);
+  void project(Bodies<dim> &bodies);
+  void compute_near_force(const Bodies<dim> &bodies, Nodal<dim> &force) const;
+
+  BridgingDomainParameters parameters_;
+  Overlap<dim> overlap_;
+  Transfer<dim> transfer_; // with the unweighted masses
+  FluctuationProjector<dim> projector_;
+  std::vector<double> shares_; // a of the members
+  std::vector<double> rate_;   // c_f of the members, 1/s
+  std::unique_ptr<VelocityConstraint<dim>> constraint_;
+
+  Eigen::SparseMatrix<double> stiffness_, mass_; // of the near nodes
+  std::unique_ptr<BlockMatrix<dim>> stiffness_blocks_;
+  std::unique_ptr<LinearSolver> mass_solver_;
+
+  Nodal<dim> displacement_, velocity_; // U, V of the near nodes
+  Nodal<dim> force_;                   // on the near nodes at the last kick, N
+  Nodal<dim> dead_nodal_;              // N
+  Components<dim> dead_;               // of all particles, N; empty without
+  Components<dim> member_velocity_;
+  Components<dim> lost_;          // momentum that the damper took in this step, of the members
+  Components<dim> before_damper_; // velocities of the members before the step
+  double fine_damper_energy_ = 0;
+};
+} // namespace ligament::coupling

@@ -1,0 +1,20 @@
+// How much of each particle belongs to the discrete model where energies and masses are blended.
+#pragma once
+
+#include "coupling/overlap.h"
+
+namespace ligament::coupling
+{
+/// Per owned particle the mean of a over its cell: 1 beyond the overlap, above 0 in it. The cell is
+/// taken as pyramids over its faces, a at the centroid of each; what faces at the edge of the
+/// packing lack of the volume counts as one more pyramid, half a spacing high.
+template <int dim>
+std::vector<double> mean_weights(const Overlap<dim> &overlap,
+                                 const particles::Particles<dim> &particles,
+                                 const particles::ParticleForce<dim> &force);
+
+/// a at the centres, at least `floor`: known to shorten the stable step; for comparison.
+template <int dim>
+std::vector<double> point_weights(const Overlap<dim> &overlap,
+                                  const particles::Particles<dim> &particles, double floor);
+} // namespace ligament::coupling

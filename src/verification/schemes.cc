@@ -1,0 +1,218 @@
+// Every coupling scheme through the same bench, and the known weaknesses of those of the
+// literature.
+#include "src/verification/cases.h"
+#include "src/verification/linear_motion.h"
+#include "src/verification/unit_bodies.h"
+#include "src/verification/waves.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+
+#include <random>
+
+namespace ligament::program
+{
+namespace
+{
+using coupling::Scheme;
+using coupling::WeightShape;
+using Bound = Result::Bound;
+
+constexpr double tiny = 1e-14; // strains whose square is round-off
+
+/// A band whose overlap ends at free edges, with a mesh that does not fit the packing.
+Scene band(Scheme scheme)
+{
+  Scene scene = unit_scene(2, {18, 118, 0}, 0.22);
+  add_far_field(scene, {0, 34, 0}, 4.6);
+  scene.coupling.scheme = scheme;
+  return scene;
+}
+
+double mechanical(const coupling::CoupledEnergy &e)
+{
+  return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
+}
+
+/// Mechanical energy of noise after n_steps over that at its start.
+double noise_left(const Scene &scene, long n_steps)
+{
+  UnitBody<2> unit(scene);
+  auto &body = unit.body;
+  auto bodies = body.bodies();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1e-9, 1e-9);
+  const auto fill = [&](auto &components) {
+    for (auto &component : components)
+      for (double &v : component)
+        v = uniform(random);
+  };
+  fill(body.zone->state.velocity);
+  fill(body.far->velocity);
+  body.far->distribute();
+  body.coupler->take_velocities(bodies);
+  coupling::StepTime step;
+  step.dt = body.dt;
+  double before = 0;
+  for (; step.step <= n_steps; ++step.step, step.time = double(step.step) * step.dt) {
+    body.coupler->compute_forces(bodies, step);
+    if (step.step == 0)
+      before = mechanical(body.coupler->energy(bodies, step));
+    if (step.step == n_steps)
+      break;
+    body.coupler->kick(bodies, step);
+    body.coupler->drift(bodies, step);
+  }
+  return mechanical(body.coupler->energy(bodies, step)) / before;
+}
+
+/// Largest error of strain between neighbours over the applied uniaxial strain, static solve.
+double patch_error(Scene scene)
+{
+  scene.coupling.transition_cells = 2;
+  const Strain<2> stress = tiny * Strain<2>(0, 1, 0);
+  add_tractions<2>(scene, {2, 3}, stress);
+  UnitBody<2> unit(scene);
+  LinearMotion<2> motion(unit.body);
+  const Strain<2> strain = unit.body.far->body().stiffness.inverse() * stress;
+  Eigen::Matrix2d gradient;
+  gradient << strain[0], strain[2] / 2, strain[2] / 2, strain[1];
+  const Eigen::VectorXd error = motion.solve() - motion.affine(gradient);
+  return motion.largest_strain(error) / gradient.norm();
+}
+
+/// Step that the set-up calls stable over that of the plain discrete body.
+double stable_step_ratio(const Scene &scene)
+{
+  Scene plain = scene;
+  plain.zone.extent = DiscreteZone::Extent::all;
+  plain.far_field.reset();
+  return UnitBody<2>(scene).body.dt_zone / UnitBody<2>(plain).body.dt_zone;
+}
+
+WaveParameters wave(Scheme scheme, double cells)
+{
+  WaveParameters p;
+  p.scheme = scheme;
+  p.wave_length = cells;
+  return p;
+}
+
+/// One row of the table: all figures of a scheme. Bounds hold what is known of it.
+struct Row
+{
+  Scheme scheme;
+  double patch;                  // at most; 0: no static solution
+  std::array<double, 6> reflect; // at most, at 16, 8, 6, 4, 2, 1 cells; P waves
+  double missing;                // energy lost by the scheme at 16 cells: at most
+  double drift;                  // |1 - energy left| of undamped noise in 5000 steps: at most
+};
+
+std::string case_name(Scheme scheme)
+{
+  return "schemes_" + coupling::scheme_names[int(scheme)];
+}
+
+std::vector<Result> measure(const Row &row)
+{
+  const std::string name = case_name(row.scheme) + "/";
+  std::vector<Result> results;
+  if (row.patch > 0)
+    results.push_back({name + "patch_strain", patch_error(band(row.scheme)), row.patch, {}});
+  const std::array<double, 6> lengths = {16, 8, 6, 4, 2, 1};
+  double cost = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const WaveFigures f = measure_wave<2>(wave(row.scheme, lengths[i]));
+    results.push_back(
+        {fmt::format("{}reflected_{:g}h", name, lengths[i]), f.reflected, row.reflect[i], {}});
+    if (i == 0)
+      results.push_back({name + "missing_16h", std::abs(f.missing), row.missing, {}});
+    if (i == 0)
+      cost = f.cost;
+  }
+  results.push_back(
+      {name + "drift", std::abs(1 - noise_left(band(row.scheme), 5000)), row.drift, {}});
+  results.push_back(
+      {name + "stable_step", stable_step_ratio(band(row.scheme)), 0.5, {}, Bound::at_least});
+  results.push_back({name + "nanoseconds", 1e9 * cost, 1e4, {}});
+  return results;
+}
+
+// What the literature's schemes are known for; bounds on the side that shows it.
+
+std::vector<Result> wave_weaknesses()
+{
+  auto p = wave(Scheme::xiao_belytschko, 16);
+  p.fine_damper = 0;
+  const double whole = measure_wave<2>(p).missing;
+  p.step_fraction = 0.45;
+  const double half = measure_wave<2>(p).missing;
+  p = wave(Scheme::xiao_belytschko_lumped, 4);
+  p.fine_damper = 0;
+  const double lumped = measure_wave<2>(p).missing;
+  const double pointwise = measure_wave<2>(wave(Scheme::pointwise, 1)).reflected;
+  p = wave(Scheme::acceleration, 4);
+  p.multiplier_cells = 2;
+  const double coarse = measure_wave<2>(p).reflected;
+  const std::string name = "weaknesses_waves/";
+  return {{name + "xiao_belytschko_missing_16h", whole, 0.02, {}, Bound::at_least},
+          {name + "xiao_belytschko_half_the_step", half / whole, 0.6, {}, Bound::at_most},
+          {name + "lumped_missing_4h", lumped, 0.1, {}, Bound::at_least},
+          {name + "pointwise_reflected_1h", pointwise, 0.9, {}, Bound::at_least},
+          {name + "coarse_multipliers_reflected_4h", coarse, 0.5, {}, Bound::at_least}};
+}
+
+std::vector<Result> noise_weaknesses()
+{
+  const std::string name = "weaknesses_noise/";
+  Scene scene = band(Scheme::xiao_belytschko_lumped);
+  const double lumped = noise_left(scene, 20000);
+  scene = band(Scheme::acceleration);
+  scene.coupling.fine_damper = 100;
+  const double symmetrised = noise_left(scene, 20000);
+  scene.coupling.damper_form = coupling::DamperForm::printed;
+  const double printed = noise_left(scene, 20000);
+  return {{name + "lumped_left", lumped, 0.2, {}, Bound::at_most},
+          {name + "symmetrised_damper_left", symmetrised, 1, {}, Bound::at_most},
+          {name + "printed_damper_left", printed, 1, {}, Bound::at_least}};
+}
+
+std::vector<Result> patch_weaknesses()
+{
+  const std::string name = "weaknesses_patch/";
+  Scene scene = band(Scheme::acceleration);
+  const double plain = patch_error(scene);
+  scene.coupling.weight = WeightShape::constant;
+  const double constant = patch_error(scene);
+  scene.coupling.weight = WeightShape::cubic;
+  // The loads' uniaxial stress along y, and half of it.
+  const double nu = scene.material.poissons_ratio, strain = tiny * (1 - nu * nu);
+  const auto corrected = [&](double share) {
+    scene.coupling.ghost_force_correction = {-share * nu / (1 - nu) * strain, share * strain, 0};
+    return patch_error(scene) / plain;
+  };
+  return {{name + "constant_weight_strain", constant, 0.1, {}, Bound::at_least},
+          {name + "ghost_correction_at_its_state", corrected(1), 1e-3, {}, Bound::at_most},
+          {name + "ghost_correction_at_twice_its_state", corrected(0.5), 0.4, {}, Bound::at_least}};
+}
+} // namespace
+
+std::vector<Case> scheme_cases()
+{
+  const Row rows[] = {{Scheme::fine_scale_split, 1e-12, {1, 1, 1, 1, 1, 1}, 1e-3, 1e-6},
+                      {Scheme::acceleration, 1, {1, 1, 1, 1, 1, 1}, 1e-3, 1e-6},
+                      {Scheme::xiao_belytschko, 0, {1, 1, 1, 1, 1, 1}, 1, 1},
+                      {Scheme::xiao_belytschko_lumped, 0, {1, 1, 1, 1, 1, 1}, 1, 1},
+                      {Scheme::pointwise, 1, {1, 1, 1, 1, 1, 1}, 1e-3, 1e-6}};
+  std::vector<Case> cases;
+  for (const Row &row : rows)
+    cases.push_back({case_name(row.scheme), "one row of the table of schemes, 2D, nov 3, cf 4",
+                     true, [row] { return measure(row); }});
+  const std::string text = "what the couplers of the literature are known for: ";
+  cases.push_back({"weaknesses_waves", text + "waves lost and reflected", true, wave_weaknesses});
+  cases.push_back({"weaknesses_noise", text + "noise in 2e4 steps", true, noise_weaknesses});
+  cases.push_back({"weaknesses_patch", text + "uniform strain", true, patch_weaknesses});
+  return cases;
+}
+} // namespace ligament::program
