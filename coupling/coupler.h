@@ -34,6 +34,7 @@ struct CoupledEnergy
   double potential_discrete = 0;
   double potential_far = 0;
   double blended = 0;     // 1/2 U K_near U: what the coupler took over from the far field
+  double impulses = 0;    // step error of the far field's impulses, theory.md eq. (E5); 0 for m = 1
   double fine_damper = 0; // taken so far by the fluctuation damper
   double gap_filter = 0;  // taken so far by the gap-band filter
 };

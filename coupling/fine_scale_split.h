@@ -67,8 +67,18 @@ private:
   /// Force on the near nodes at this step: near cells, particles, and in the steps in which it acts
   /// the far field's impulse.
   void compute_near_force(const Bodies<dim> &bodies, const StepTime &step, Nodal<dim> &force) const;
-  /// Kinetic energy of V at the time of the forces, in a step in which the far field acts.
-  double coarse_kinetic(const Bodies<dim> &bodies, const StepTime &step) const;
+  /// The near nodes half-way through kick and impulse, in a step in which the far field acts.
+  struct Halfway
+  {
+    Nodal<dim> velocity;                    // V
+    Nodal<dim> force, acceleration;         // F and M_c^-1 F; all that acts, the impulse as force
+    Nodal<dim> far_force, far_acceleration; // the far field's part of them
+  };
+  Halfway halfway(const Bodies<dim> &bodies, const StepTime &step) const;
+  /// Kinetic part of the invariant (E1) of the near nodes.
+  double coarse_kinetic(const Halfway &near, double dt) const;
+  /// Step error of the impulses, (E5).
+  double impulse_energy(const Bodies<dim> &bodies, const Halfway &near, double dt) const;
   /// 1/2 v M v + 1/2 dt v f of w with all spins and with the velocities outside the overlap.
   double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
 

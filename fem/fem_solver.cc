@@ -148,16 +148,22 @@ void FemSolver<dim>::scale_velocities(double factor)
 }
 
 template <int dim>
+void FemSolver<dim>::take_from_masters(Components<dim> &field) const
+{
+  for (auto &values : field)
+    for (const HangingNode &h : mesh_.hanging) {
+      double sum = 0;
+      for (const auto &[master, weight] : h.masters)
+        sum += weight * values[master];
+      values[h.node] = sum;
+    }
+}
+
+template <int dim>
 void FemSolver<dim>::distribute()
 {
-  for (auto *field : {&displacement, &velocity})
-    for (auto &values : *field)
-      for (const HangingNode &h : mesh_.hanging) {
-        double sum = 0;
-        for (const auto &[master, weight] : h.masters)
-          sum += weight * values[master];
-        values[h.node] = sum;
-      }
+  take_from_masters(displacement);
+  take_from_masters(velocity);
 }
 
 template <int dim>
@@ -240,17 +246,40 @@ void FemSolver<dim>::drift(double dt)
 }
 
 template <int dim>
-double FemSolver<dim>::potential_energy() const
+double FemSolver<dim>::quadratic_form(const Components<dim> &u) const
 {
   Components<dim> f;
   for (auto &component : f)
     component.assign(mesh_.n_nodes(), 0.);
-  kernel_->subtract_forces(displacement, f);
+  kernel_->subtract_forces(u, f);
   double sum = 0;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < mesh_.n_nodes(); ++i)
-      sum -= displacement[c][i] * f[c][i];
+      sum -= u[c][i] * f[c][i];
   return sum / 2;
+}
+
+template <int dim>
+Components<dim> FemSolver<dim>::halfway_velocity(double dt) const
+{
+  Components<dim> v = velocity;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < mesh_.n_nodes(); ++i)
+      if (!held_[c][i])
+        v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
+  take_from_masters(v);
+  return v;
+}
+
+template <int dim>
+double FemSolver<dim>::squared_force() const
+{
+  double sum = 0;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < mesh_.n_nodes(); ++i)
+      if (!held_[c][i])
+        sum += force[c][i] * force[c][i] * inverse_mass_[i];
+  return sum;
 }
 
 template <int dim>

@@ -59,7 +59,16 @@ public:
   void distribute();
 
   /// 1/2 u.K u of the solver's own cells, with the displacements as they are; in J.
-  double potential_energy() const;
+  double potential_energy() const { return quadratic_form(displacement); }
+
+  /// 1/2 u.K u of the solver's own cells for any nodal field, hanging nodes included.
+  double quadratic_form(const Components<dim> &u) const;
+
+  /// Velocities half-way through kick(dt); those of held components and released nodes as they are.
+  Components<dim> halfway_velocity(double dt) const;
+
+  /// sum f.f/m, in N^2/kg, of the free components of nodes that are not released.
+  double squared_force() const;
 
   /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m, in J, of the free components of nodes that are not
   /// released; before kick. Held components move as prescribed: their inertia is neither counted
@@ -103,6 +112,7 @@ private:
   void find_held_components();
   void update_own_cells();
   void hand_to_masters(std::vector<double> &values) const;
+  void take_from_masters(Components<dim> &field) const;
   double load_force(const LoadedComponent &c) const; // on the body, in N
   void book_work();
 

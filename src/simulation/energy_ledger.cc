@@ -9,6 +9,8 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"kinetic_far", body.kinetic_far},
           {"potential_far", body.potential_far},
           {"blended", body.blended},
+          {"impulses", body.impulses},
+          {"breaking", breaking_step_error},
           {"fracture", fracture},
           {"friction", friction},
           {"damper_fine", body.fine_damper},

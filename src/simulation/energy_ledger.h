@@ -24,8 +24,8 @@ struct EnergyLedger
   double potential() const { return body.potential_discrete + body.potential_far + body.blended; }
   double residual() const
   {
-    return kinetic() + potential() + body.fine_damper + body.gap_filter + fracture + friction +
-           breaking_step_error + damping - external_work;
+    return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter + fracture +
+           friction + breaking_step_error + damping - external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;

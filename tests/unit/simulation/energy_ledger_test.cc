@@ -92,12 +92,13 @@ TEST(EnergyLedger, ClosesWithEveryDamping)
 
 TEST(EnergyLedger, FarStepsOfFourZoneStepsKeepTheBalanceBounded)
 {
-  // For m > 1 the ledger fluctuates by some 5e-3 (theory.md eq. (E2)), here, where the release
-  // starts with a jump, up to twice as much; without trend.
+  // With the step error of the impulses booked (theory.md eq. (E5)) what is left is of fourth order
+  // in the far step, at most (0.6 * 2)^4 / 720 of a mode's energy. What dampers take of the step
+  // error itself, which the jump of the release makes 5e-3, is not booked.
   for (const auto &damping : {"/damping/mass=0", "/damping/mass=0.02", "/damping/local=0.3"}) {
     SCOPED_TRACE(damping);
     const auto b = vibrate({"/coupling/step_ratio=4", damping}, 3 * one_vibration);
-    EXPECT_LT(b.error, 1e-2);
+    EXPECT_LT(b.error, b.damping > 0 ? 1e-2 : 3e-3);
   }
 }
 } // namespace
