@@ -41,9 +41,14 @@ public:
   /// their distance, after the best rigid motion is taken out of x.
   double largest_strain(const Eigen::VectorXd &x) const;
 
+  /// The body's present velocities and spins.
+  Eigen::VectorXd velocities() const;
+
+  /// Puts the body at rest in its reference state.
+  void rest() { set_state(Eigen::VectorXd::Zero(size())); }
+
 private:
   void set_state(const Eigen::VectorXd &x);
-  Eigen::VectorXd velocities() const;
   /// The motion that the program makes of x: v = Phi V + w, Phi^T M w = 0, pads carried along.
   Eigen::VectorXd admissible(const Eigen::VectorXd &x);
   Vector<dim> particle(const Eigen::VectorXd &x, int i) const;
