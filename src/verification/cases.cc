@@ -18,6 +18,7 @@ std::vector<Case> all_cases()
   add(wave_cases());
   add(kirsch_cases());
   add(beam_cases());
+  add(stability_cases());
   return cases;
 }
 

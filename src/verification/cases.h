@@ -44,6 +44,7 @@ std::vector<Case> critical_step_cases();
 std::vector<Case> wave_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
+std::vector<Case> stability_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

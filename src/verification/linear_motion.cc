@@ -264,7 +264,7 @@ Eigen::VectorXd LinearMotion<dim>::noise()
 }
 
 template <int dim>
-double LinearMotion<dim>::largest_frequency(int iterations)
+std::pair<double, double> LinearMotion<dim>::squared_frequencies(int iterations)
 {
   // Three-term recurrence; lost orthogonality repeats eigenvalues but adds none.
   Eigen::VectorXd q = noise(), before = Eigen::VectorXd::Zero(size());
@@ -282,7 +282,7 @@ double LinearMotion<dim>::largest_frequency(int iterations)
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, off_diagonal.head(iterations - 1),
                                 Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues().maxCoeff());
+  return {solver.eigenvalues().minCoeff(), solver.eigenvalues().maxCoeff()};
 }
 
 template <int dim>

@@ -3,6 +3,9 @@
 
 #include "src/simulation/coupled_body.h"
 
+#include <cmath>
+#include <utility>
+
 namespace ligament::program
 {
 /// Small motions x = (particle displacements, rotation vectors, nodal displacements) of an undamped
@@ -28,7 +31,11 @@ public:
   Eigen::VectorXd solve();
 
   /// Largest eigenfrequency in rad/s by Lanczos iteration without loads.
-  double largest_frequency(int iterations = 200);
+  double largest_frequency() { return std::sqrt(squared_frequencies().second); }
+
+  /// Least and largest eigenvalue of x -> -accelerations(x) that Lanczos iteration finds, in
+  /// rad^2/s^2.
+  std::pair<double, double> squared_frequencies(int iterations = 200);
 
   /// Some admissible motion of unit norm: smooth in no way.
   Eigen::VectorXd noise();

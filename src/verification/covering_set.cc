@@ -1,0 +1,68 @@
+#include "src/verification/covering_set.h"
+
+#include <array>
+#include <set>
+
+namespace ligament::program
+{
+namespace
+{
+using Pair = std::array<int, 4>; // factor, level, later factor, level
+
+Pair make_pair(int f, int a, int g, int b)
+{
+  return f < g ? Pair{f, a, g, b} : Pair{g, b, f, a};
+}
+
+std::set<Pair> all_pairs(const std::vector<int> &levels)
+{
+  std::set<Pair> pairs;
+  for (int f = 0; f < int(levels.size()); ++f)
+    for (int g = f + 1; g < int(levels.size()); ++g)
+      for (int a = 0; a < levels[f]; ++a)
+        for (int b = 0; b < levels[g]; ++b)
+          pairs.insert({f, a, g, b});
+  return pairs;
+}
+
+/// The level of factor f that meets most of the pairs still missing; -1 in a row: not chosen yet.
+int best_level(int f, int n_levels, const std::vector<int> &row, const std::set<Pair> &missing,
+               int shift)
+{
+  int best = 0, most = -1;
+  for (int k = 0; k < n_levels; ++k) {
+    const int level = (k + shift) % n_levels; // ties go round
+    int count = 0;
+    for (int g = 0; g < int(row.size()); ++g)
+      if (g != f && row[g] >= 0)
+        count += int(missing.count(make_pair(f, level, g, row[g])));
+    if (count > most) {
+      most = count;
+      best = level;
+    }
+  }
+  return best;
+}
+} // namespace
+
+std::vector<std::vector<int>> covering_set(const std::vector<int> &levels)
+{
+  std::set<Pair> missing = all_pairs(levels);
+  std::vector<std::vector<int>> rows;
+  const int n = int(levels.size());
+  while (!missing.empty()) {
+    const Pair seed = *missing.begin();
+    std::vector<int> row(n, -1);
+    row[seed[0]] = seed[1];
+    row[seed[2]] = seed[3];
+    for (int f = 0; f < n; ++f)
+      if (row[f] < 0)
+        row[f] = best_level(f, levels[f], row, missing, int(rows.size()));
+    for (int f = 0; f < n; ++f)
+      for (int g = f + 1; g < n; ++g)
+        missing.erase({f, row[f], g, row[g]});
+    rows.push_back(row);
+  }
+  return rows;
+}
+} // namespace ligament::program

@@ -1,0 +1,134 @@
+// Stability under stress: a covering set of settings, each accepted and stable, or refused.
+#include "core/check.h"
+#include "src/verification/cases.h"
+#include "src/verification/covering_set.h"
+#include "src/verification/linear_motion.h"
+#include "src/verification/noise_run.h"
+#include "src/verification/unit_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+struct Packing
+{
+  const char *name;
+  int dimension;
+};
+constexpr Packing packings[] = {{"hexagonal", 2}, {"square", 2},       {"random", 2},
+                                {"fcc", 3},       {"simple_cubic", 3}, {"random", 3}};
+constexpr double poissons_ratios[] = {0, 0.2, 0.3, 0.45, 0.49};
+constexpr double fractions[] = {0.5, 0.9, 0.95};
+constexpr int step_ratios[] = {1, 2, 4};
+constexpr double size_ratios[][3] = {{2.6, 4.1, 7.9}, {2.6, 2.9, 3.1}}; // h/d in 2D, 3D
+constexpr int overlaps[] = {2, 3, 4};
+constexpr double strain = 1e-8;
+
+/// One row of the set: a band across a bar, at most 2000 particles.
+struct Setting
+{
+  Scene scene;
+  std::string name;
+  bool damped;
+};
+
+Setting make_setting(const std::vector<int> &row)
+{
+  const Packing packing = packings[row[0]];
+  const int dim = packing.dimension;
+  const double h = size_ratios[dim - 2][row[4]];
+  const int overlap = overlaps[row[5]], transition = 3;
+  const double zone = 2 * overlap * h + 8.5, whole = zone + 2 * (transition + 3) * h;
+  Setting s = {unit_scene(dim,
+                          dim == 2 ? Point{17, whole, 0} : Point{2 * h + 0.2, 2 * h + 0.3, whole},
+                          poissons_ratios[row[1]]),
+               fmt::format("{}_{}d/nu {} f {} m {} h {} cells {} {}", packing.name, dim,
+                           poissons_ratios[row[1]], fractions[row[2]], step_ratios[row[3]], h,
+                           overlap, row[6] ? "damped" : "undamped"),
+               row[6] != 0};
+  s.scene.zone.packing = packing.name;
+  add_far_field(s.scene, dim == 2 ? Point{0, zone, 0} : Point{0, 0, zone}, h);
+  s.scene.time.step_fraction = fractions[row[2]];
+  s.scene.coupling.step_ratio = step_ratios[row[3]];
+  s.scene.coupling.overlap_cells = overlap;
+  s.scene.coupling.transition_cells = transition;
+  if (s.damped) {
+    s.scene.coupling.fine_damper = 8;
+    s.scene.coupling.gap_filter = 4;
+  }
+  return s;
+}
+
+/// Modulus less one of the largest eigenvalue of the leap-frog's step operator: symmetric, so that
+/// the ends of the spectrum of -accelerations say all.
+template <int dim>
+double growth(CoupledBody<dim> &body)
+{
+  LinearMotion<dim> motion(body);
+  const auto [least, largest] = motion.squared_frequencies();
+  motion.rest();
+  const double x = std::sqrt(largest) * body.dt / 2;
+  // Rigid motions have the eigenvalue 0 to round-off.
+  const double exponent = least < -1e-12 * largest ? std::sqrt(-least) * body.dt : 0;
+  return std::max(x > 1 ? std::pow(x + std::sqrt(x * x - 1), 2) - 1 : 0., std::expm1(exponent));
+}
+
+/// Largest rise of the energy between samples over the energy at the start.
+double largest_rise(const std::vector<double> &series)
+{
+  double rise = -1;
+  for (std::size_t k = 1; k < series.size(); ++k)
+    keep_worst(rise, (series[k] - series[k - 1]) / series[0]);
+  return rise;
+}
+
+template <int dim>
+void judge(const Setting &setting, std::vector<Result> &results)
+{
+  UnitBody<dim> unit(setting.scene);
+  const int m = setting.scene.coupling.step_ratio;
+  const std::string name = "stability/" + setting.name;
+  if (m == 1 && !setting.damped)
+    results.push_back({name + "/growth", growth(unit.body), 1e-9, {}});
+  const int interval = 5 * m;
+  const auto energy = run_noise(unit.body, strain, 400 * interval, interval, 0).leap_frog;
+  if (setting.damped) {
+    results.push_back({name + "/rise", largest_rise(energy), m == 1 ? 1e-12 : 5e-3, {}});
+    results.push_back({name + "/left", energy.back() / energy.front(), 1, {}});
+  } else {
+    const Course course = course_of(energy, interval);
+    results.push_back({name + "/fluctuation", course.fluctuation, m == 1 ? strain : 5e-3, {}});
+  }
+}
+
+std::vector<Result> stability()
+{
+  std::vector<Result> results;
+  int n = 0, n_refused = 0;
+  for (const auto &row : covering_set({6, 5, 3, 3, 3, 3, 2})) {
+    const Setting setting = make_setting(row);
+    ++n;
+    try {
+      setting.scene.dimension == 2 ? judge<2>(setting, results) : judge<3>(setting, results);
+    } catch (const core::InputError &error) {
+      ++n_refused;
+      fmt::print("  refused: {}: {}\n", setting.name, error.what());
+    }
+  }
+  results.push_back({"stability/settings", double(n), 80, {}});
+  results.push_back({"stability/refused", double(n_refused), n / 2., {}});
+  return results;
+}
+} // namespace
+
+std::vector<Case> stability_cases()
+{
+  return {
+      {"stability", "settings in which any two meet, from noise of strain 1e-8", true, stability}};
+}
+} // namespace ligament::program
