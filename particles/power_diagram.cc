@@ -1,5 +1,9 @@
 #include "particles/power_diagram.h"
 
+#include "core/check.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -111,6 +115,8 @@ void PowerDiagram<dim>::cut(VoronoiCell<dim> &cell, int i) const
     return r == 0 || to_face(r, largest_radius_) < cell.max_radius();
   };
   for_each_near(i, go_on, [&](int j, const Vector<dim> &r, double distance) {
+    core::require(distance > 0,
+                  fmt::format("particles {} and {} lie at the same place", i + 1, j + 1));
     const double q = to_face(distance, seeds_.radius[j]);
     if (q < cell.max_radius()) {
       const Vector<dim> normal = r / distance;

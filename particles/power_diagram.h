@@ -14,7 +14,8 @@ public:
   /// `bin` in m: the mean distance of seeds is good.
   PowerDiagram(const Seeds<dim> &seeds, double bin);
 
-  /// Cuts a cell about seed i by all other seeds; the faces carry the numbers of the seeds.
+  /// Cuts a cell about seed i by all other seeds; the faces carry the numbers of the seeds. Throws
+  /// core::InputError when another seed lies at the same place.
   void cut(VoronoiCell<dim> &cell, int i) const;
 
   /// visit(j, x_j - x_i, distance) for the seeds around i, bins in order of their distance, as long

@@ -36,6 +36,15 @@ Seeds<dim> sorted_by_id(const Seeds<dim> &seeds)
   return sorted;
 }
 
+/// Heals the radii; returns those before.
+template <int dim>
+std::vector<double> healed(Seeds<dim> &seeds, double bin)
+{
+  const std::vector<double> before = seeds.radius;
+  heal_radii(seeds, bin);
+  return before;
+}
+
 template <int dim>
 class Packer
 {
@@ -57,7 +66,7 @@ private:
   const double spacing_, thickness_;
   Vector<dim> zone_lower_, zone_upper_; // infinite where the side is not coupled
   Seeds<dim> seeds_;
-  int n_healed_;
+  const std::vector<double> given_radius_; // before healing
   const PowerDiagram<dim> diagram_;
 
   std::vector<int> particle_of_; // seed -> particle or -1
@@ -76,7 +85,7 @@ double bin_size(double spacing)
 template <int dim>
 Packer<dim>::Packer(const SpecimenParameters<dim> &p, Seeds<dim> seeds)
     : shape_(p), spacing_(p.spacing), thickness_(dim == 2 ? p.thickness : 1),
-      seeds_(sorted_by_id(seeds)), n_healed_(heal_radii(seeds_, bin_size<dim>(p.spacing))),
+      seeds_(sorted_by_id(seeds)), given_radius_(healed(seeds_, bin_size<dim>(p.spacing))),
       diagram_(seeds_, bin_size<dim>(p.spacing)), particle_of_(seeds_.size(), -1)
 {
   for (int a = 0; a < dim; ++a) {
@@ -192,8 +201,11 @@ RandomPacking<dim> Packer<dim>::pack()
   core::require(packing_.size() > 0,
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
+  int n_healed = 0;
+  for (const int i : seed_of_)
+    n_healed += seeds_.radius[i] < given_radius_[i];
   keep_seeds();
-  return {std::move(packing_), std::move(seeds_), n_healed_};
+  return {std::move(packing_), std::move(seeds_), n_healed};
 }
 
 template <int dim>

@@ -21,7 +21,7 @@ struct RandomPacking
   /// Of all cells and of the neighbours that are left out at coupled sides: from these
   /// pack_seeds makes the same packing again, to round-off.
   Seeds<dim> seeds;
-  int n_healed = 0; // seeds whose radius was made smaller, see heal_radii
+  int n_healed = 0; // particles whose radius was made smaller, see heal_radii
 };
 
 /// Packs the zone of the specimen with cells of mean volume sqrt(3)/2 d^2 t (2D) or d^3/sqrt(2).

@@ -26,11 +26,16 @@ double random_number(int seed, std::int64_t name, int counter)
   return double(mix(key + std::uint64_t(counter + 1) * step) >> 11) * 0x1p-53;
 }
 
+/// Bits of one component of the number of a cube; names stay below 2^53, so that they pass through
+/// tables of doubles unharmed.
+template <int dim>
+constexpr int n_bits = dim == 2 ? 26 : 17;
+
 /// Interleaves the bits of the components: neighbours in space become neighbours in order.
 template <int dim>
 std::int64_t z_order(const Eigen::Matrix<std::int64_t, dim, 1> &k)
 {
-  constexpr int bits = dim == 2 ? 31 : 21;
+  constexpr int bits = n_bits<dim>;
   std::int64_t code = 0;
   for (int b = 0; b < bits; ++b)
     for (int a = 0; a < dim; ++a)
@@ -62,7 +67,7 @@ Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
   for (int a = 0; a < dim; ++a) {
     const double begin = (std::max(lower[a], shape.lower[a]) - origin[a]) / side,
                  end = (std::min(upper[a], shape.upper[a]) - origin[a]) / side;
-    core::require(std::max(-begin, end) < (dim == 2 ? 1 << 29 : 1 << 19),
+    core::require(std::max(-begin, end) < (1 << (n_bits<dim> - 1)) - 1,
                   "the specimen has too many particles in one direction: make the spacing larger");
     first[a] = std::int64_t(std::floor(begin));
     last[a] = std::int64_t(std::floor(end));

@@ -143,6 +143,28 @@ TEST(Program, StopsWhenTheSpecimenIsBroken)
   EXPECT_LT(nlohmann::json::parse(in).at("simulated_time"), 4900);
 }
 
+TEST(Program, ARunsPackingCanBeReadAgain)
+{
+  std::filesystem::remove_all("random");
+  const std::string scene = scene_file("random.json") + pulled;
+  const auto random = ligament("run " + scene +
+                               "--set /discrete_zone/packing='\"random\"' --set "
+                               "/discrete_zone/size_ratio=2 --output random --json");
+  EXPECT_EQ(random.code, 0);
+  std::filesystem::remove_all("read");
+  const std::string file = R"(--set /discrete_zone/packing='"file"' --set )"
+                           R"(/discrete_zone/packing_file='"random/packing.csv"' )";
+  const auto again = ligament("run " + scene + file + "--output read --json");
+  EXPECT_EQ(again.code, 0);
+  // The same body to round-off: the peak of the load is a difference of larger forces.
+  const double peak = random.json()["peak_load"];
+  EXPECT_NEAR(again.json()["peak_load"], peak, 1e-9 * peak);
+  const std::string wrong_spacing = "--set /discrete_zone/spacing=0.8 ";
+  EXPECT_EQ(ligament("check " + scene + file + wrong_spacing).code, 2);
+  std::ofstream("random/packing.csv") << "x,y,r\nm,m,m\n0,0,none\n";
+  EXPECT_EQ(ligament("check " + scene + file).code, 2);
+}
+
 TEST(Examples, AllCheck)
 {
   int n = 0;

@@ -196,6 +196,10 @@ TEST(RandomPacking, WrongParametersAreRefused)
   Seeds<2> outside;
   outside.add(p.lower - Vector<2>(1, 1), 1, 0);
   EXPECT_THROW(pack_seeds<2>(p, outside), core::InputError);
+  Seeds<2> twice;
+  for (int k = 0; k < 2; ++k)
+    twice.add(p.lower + Vector<2>(0.01, 0.01), 0.005, k);
+  EXPECT_THROW(pack_seeds<2>(p, twice), core::InputError);
   Seeds<2> sparse;
   sparse.add(p.lower + Vector<2>(0.01, 0.01), 0.005, 0);
   EXPECT_THROW(pack_seeds<2>(p, sparse), core::InputError);
