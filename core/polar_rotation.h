@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace ligament::core
 {
 /// y x g; in 2D y is the component out of the plane.

@@ -303,7 +303,7 @@ make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim>
                   term.kind != particles::QuadraticTerm<dim>::Kind::wall,
               loaded_side);
   });
-  Assembly<dim> assembly(overlap, particles, force, body);
+  Assembly<dim> assembly(overlap, particles, force, body, 1);
   assembly.add_cells();
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;

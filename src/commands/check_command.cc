@@ -4,6 +4,7 @@
 #include "src/commands/peak_memory.h"
 #include "src/output/picture.h"
 #include "src/output/run_folder.h"
+#include "src/scene/geometry.h"
 #include "src/simulation/body_fields.h"
 
 #include <fmt/format.h>

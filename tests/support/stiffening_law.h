@@ -42,6 +42,10 @@ public:
   {
     return law_->elastic_constants();
   }
+  void set_energy_weights(const std::vector<double> &weights) override
+  {
+    law_->set_energy_weights(weights);
+  }
   void
   add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override
   {
