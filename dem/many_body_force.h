@@ -92,15 +92,21 @@ private:
   /// What one evaluation leaves behind.
   struct Workspace
   {
-    std::vector<double> pressure;             // lambda_i theta_i, Pa
-    std::vector<double> cosine_minus_1, sine; // 2D
+    std::vector<double> pressure;       // lambda_i theta_i, Pa
+    std::vector<double> other_pressure; // the part that isn't from lattice bonds
+    std::vector<double> cosine_minus_1, sine; // 2D, of the particles that were asked for
+    RowWindow rows;
     std::vector<RowRange> exceeded_rows;
     std::vector<BondId> exceeded; // irregular
   };
 
   LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
   Turn<dim> turn(const Particles &particles, const Workspace &work, int i) const;
+  /// Prepares turn() of all particles, or of those with irregular bonds.
+  void find_turns(const Particles &particles, bool all, Workspace &work) const;
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles) const;
+  BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles,
+                         const Workspace &work) const;
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
 
@@ -108,9 +114,11 @@ private:
   double tension(const Bond<dim> &bond, const Particles &particles,
                  const std::vector<double> &pressure) const;
 
-  /// Overwrites pressure and, in 2D, the cosines and sines.
-  void dilatation(const Particles &particles, const SurfaceLoads<dim> &surface,
-                  Workspace &work) const;
+  /// The pressures from irregular bonds and loaded faces.
+  void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
+                           Workspace &work) const;
+  /// Turns and pressures of all particles.
+  void find_pressure(const Particles &particles, Workspace &work) const;
   /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
   /// strength when it is above 0.
   void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
@@ -133,6 +141,7 @@ private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   bool searching_ = false;
+  std::vector<int> irregular_particles_;  // those with bonds of the table
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3
   Workspace work_;
