@@ -5,16 +5,15 @@
 
 namespace ligament::dem
 {
-void RowWindow::reset(int n_streams, int length)
+void RowWindow::reset(int n_streams, long stride, int length)
 {
-  // The same entry of two streams must not fall into one set of the nearest cache: not a multiple
-  // of 4096 bytes apart, but 3 lines more.
-  constexpr int page = 512, skew = 24;
-  const long stride = (length + page - 1) / page * page + skew;
-  if (n_streams != n_streams_ || stride != stride_)
-    data_.assign(n_streams * stride, 0.);
-  stride_ = stride;
+  core::require(length <= stride, "a layer of the packing has too many particles");
+  if (n_streams != n_streams_ || stride != stride_ || length > length_) {
+    constexpr int several_pages = 4096;
+    data_ = core::LargeArray(n_streams * stride, length > several_pages);
+  }
   n_streams_ = n_streams;
+  stride_ = stride;
   length_ = length;
   begin_ = 0;
 }
@@ -75,8 +74,8 @@ RowSweep<dim> LatticeKernel<dim>::sweep(const LatticeArrays<dim> &arrays,
                                         const std::vector<RowSegment> &segments,
                                         RowWindow &window) const
 {
-  return {arrays, constants_, &segments, n_particles_, reach_, volumetric_, false, nullptr,
-          &window};
+  return {arrays,      constants_, &segments, n_particles_, reach_,
+          volumetric_, false,      nullptr,   &window};
 }
 
 template <int dim>
@@ -106,8 +105,8 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   }
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
-  s.constants.limit2 = strength > 0 ? strength * area_ * strength * area_
-                                    : std::numeric_limits<double>::infinity();
+  s.constants.limit2 =
+      strength > 0 ? strength * area_ * strength * area_ : std::numeric_limits<double>::infinity();
   s.exceeded = &exceeded;
   sweep_rows(s);
 }

@@ -1,6 +1,7 @@
 // Forces of all lattice bonds, vectorised along rows: no lists, no gather, nothing stored per bond.
 #pragma once
 
+#include "core/large_array.h"
 #include "dem/bond_network.h"
 
 namespace ligament::dem
@@ -35,28 +36,37 @@ struct LatticeConstants
   double limit2 = 0;  // (strength S)^2, N^2; infinite when nothing breaks
 };
 
+/// Particles that each stage of the sweep takes at once.
+inline constexpr int row_piece = 256;
+
 /// Particles [begin, end).
 struct RowRange
 {
   int begin, end;
 };
 
-/// Intermediate results of the rows at work, one stream per number; it slides along the particles
-/// and stays in the cache.
+/// State and intermediate results of the rows at work, one stream per number; it slides along the
+/// particles and stays in the cache, while the arrays of the body are passed over once.
 class RowWindow
 {
 public:
-  /// Room for `length` particles from 0 on. Streams start in different sets of the cache.
-  void reset(int n_streams, int length);
+  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle;
+  /// no multiples of 4096 bytes, so that these lie in different sets of the cache. Close together
+  /// they share large pages; the wide one is for layers with very many particles.
+  static constexpr long close = (1L << 16) + 24, wide = (1L << 20) + 24;
+
+  /// Room for `length` particles from 0 on. Memory is taken as it is touched.
+  void reset(int n_streams, long stride, int length);
 
   /// Makes room up to `end`, keeping what was written from `keep` on; the length bounds end - keep.
   void slide(int keep, int end);
 
-  /// Entry i of a stream, valid for i in the window until the next slide().
-  double *stream(int s) { return data_.data() + s * stride_ - begin_; }
+  /// Where stream 0 of particle 0 would lie; valid for particles in the window until the next
+  /// slide().
+  double *origin() { return data_.data() - begin_; }
 
 private:
-  std::vector<double> data_;
+  core::LargeArray data_;
   long stride_ = 0;
   int n_streams_ = 0, length_ = 0, begin_ = 0;
 };
@@ -74,6 +84,9 @@ struct RowSweep
   bool with_forces;
   std::vector<RowRange> *exceeded;
   RowWindow *window;
+
+  /// Particles that the window must hold at least.
+  long window_length() const { return 3L * reach + 2 * row_piece; }
 };
 
 /// cos - 1 and sin of n angles, to round-off for any angle below 1e5.

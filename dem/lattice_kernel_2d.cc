@@ -57,12 +57,12 @@ HWY_INLINE V add_cross(const Pair<V> &a, const Pair<V> &b, V c)
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
 /// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
 /// particle are the two numbers of h and of g along n and along its normal.
-template <int n_dir>
+template <int n_dir, long stride_>
 class Bonds2d
 {
 public:
-  static constexpr int n_directions = n_dir;
-  static constexpr int n_streams = 5;
+  static constexpr long stride = stride_;
+  static constexpr int n_streams = 8;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds2d(const RowSweep<2> &sweep)
@@ -70,38 +70,39 @@ public:
   {
   }
 
-  HWY_INLINE void set_window(RowWindow &window)
-  {
-    h_ = {window.stream(0), window.stream(1)};
-    g_ = {window.stream(2), window.stream(3)};
-    moment_ = window.stream(4);
-  }
+  HWY_INLINE void set_window(double *origin) { w_ = origin; }
 
   template <typename D>
   HWY_INLINE void turn(D d, long i) const
   {
+    double *const at = w_ + i;
+    for (int c = 0; c < 2; ++c)
+      hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
+    const auto angle = hn::LoadU(d, a_.rotation[0] + i);
+    hn::StoreU(angle, d, at + angle_ * stride);
     hn::Vec<D> c, s;
-    cosine_minus_1_and_sine(d, hn::LoadU(d, a_.rotation[0] + i), c, s);
-    store(d, {c, s}, h_.data(), i);
+    cosine_minus_1_and_sine(d, angle, c, s);
+    store(d, {c, s}, at + h_ * stride);
     if (!volumetric_) {
       const auto factor = hn::Set(d, -c_.shear * c_.half);
-      store(d, {hn::Mul(factor, c), hn::Mul(factor, s)}, g_.data(), i);
+      store(d, {hn::Mul(factor, c), hn::Mul(factor, s)}, at + g_ * stride);
     }
   }
 
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     auto theta = hn::Zero(d), moment = hn::Zero(d);
-    const auto u = displacement(d, i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k], b = i + offsets.backward[k];
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto half = hn::Set(d, c_.half);
-      const auto h = along<k>(d, h_, i);
-      auto forward = neg_mul_add(half, h + along<k>(d, h_, f), displacement(d, f) - u);
-      auto backward = neg_mul_add(half, along<k>(d, h_, b) + h, u - displacement(d, b));
+      const auto h = along<k, h_>(d, at);
+      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
+      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
       const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
       const auto a = normal(d, k) + h;
       theta = add_dot(a, e, theta);
@@ -111,68 +112,71 @@ public:
     const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
     const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
     hn::StoreU(p, d, a_.pressure + i);
-    hn::StoreU(moment, d, moment_ + i);
+    hn::StoreU(moment, d, at + moment_ * stride);
     const auto vp = hn::Mul(hn::Set(d, volumetric), p);
     const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
-    const auto h = load(d, h_.data(), i);
-    store(d, {hn::MulAdd(factor, h.x, vp), hn::Mul(factor, h.y)}, g_.data(), i);
+    const auto h = load(d, at + h_ * stride);
+    store(d, {hn::MulAdd(factor, h.x, vp), hn::Mul(factor, h.y)}, at + g_ * stride);
   }
 
   /// True when the force on a face, in any direction, reaches the strength.
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
   {
     using V = hn::Vec<D>;
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     Pair<V> force{zero, zero};
     V torque = zero, bend = zero, largest = zero;
-    const auto u = displacement(d, i);
-    const V angle = hn::LoadU(d, a_.rotation[0] + i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const V angle = hn::LoadU(d, at + angle_ * stride);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k], b = i + offsets.backward[k];
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto shear = hn::Set(d, c_.shear);
-      const auto g = along<k>(d, g_, i);
+      const auto g = along<k, g_>(d, at);
       const auto t_f =
-          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k>(d, g_, f)), k);
+          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
       const auto t_b =
-          masked(mask, mul_add(shear, u - displacement(d, b), along<k>(d, g_, b) + g), n_dir + k);
+          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
       force = force + (t_f - t_b);
-      torque = add_cross(normal(d, k) + along<k>(d, h_, i), t_f + t_b, torque);
+      torque = add_cross(normal(d, k) + along<k, h_>(d, at), t_f + t_b, torque);
       largest = hn::Max(largest, add_dot(t_f, t_f, zero));
       bend = hn::Add(bend,
-                     hn::Sub(mask(hn::Sub(hn::LoadU(d, a_.rotation[0] + f), angle), k),
-                             mask(hn::Sub(angle, hn::LoadU(d, a_.rotation[0] + b)), n_dir + k)));
+                     hn::Sub(mask(hn::Sub(hn::LoadU(d, f + angle_ * stride), angle), k),
+                             mask(hn::Sub(angle, hn::LoadU(d, b + angle_ * stride)), n_dir + k)));
     });
     torque = hn::Mul(hn::Set(d, c_.half), torque);
     if (volumetric_)
-      torque = hn::NegMulAdd(
-          hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
-          hn::LoadU(d, moment_ + i), torque);
+      torque =
+          hn::NegMulAdd(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
+                        hn::LoadU(d, at + moment_ * stride), torque);
     torque = hn::MulAdd(hn::Set(d, c_.bending), bend, torque);
-    store(d, force, a_.force.data(), i);
+    hn::StoreU(force.x, d, a_.force[0] + i);
+    hn::StoreU(force.y, d, a_.force[1] + i);
     hn::StoreU(torque, d, a_.torque[0] + i);
     return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
   }
 
   /// True when the tension along the present normal of a forward face reaches the strength.
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const
   {
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
     auto found = hn::Lt(zero, zero);
-    const auto u = displacement(d, i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k];
+      const double *const f = at + offsets.forward[k];
       const auto t = masked(mask,
                             mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
-                                    along<k>(d, g_, i) + along<k>(d, g_, f)),
+                                    along<k, g_>(d, at) + along<k, g_>(d, f)),
                             k);
       const auto n = normal(d, k);
-      const auto mean = (n + n) + (along<k>(d, h_, i) + along<k>(d, h_, f));
+      const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
       const auto tension = add_dot(t, mean, zero);
       const auto limit = hn::Mul(hn::Set(d, c_.limit2), add_dot(mean, mean, zero));
       found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
@@ -192,21 +196,22 @@ private:
     for_directions(visit, std::make_integer_sequence<int, n_dir>());
   }
 
-  template <typename D, typename Pointer>
-  static HWY_INLINE Pair<hn::Vec<D>> load(D d, Pointer const *streams, long i)
+  /// Two streams from one on.
+  template <typename D>
+  static HWY_INLINE Pair<hn::Vec<D>> load(D d, const double *p)
   {
-    return {hn::LoadU(d, streams[0] + i), hn::LoadU(d, streams[1] + i)};
+    return {hn::LoadU(d, p), hn::LoadU(d, p + stride)};
   }
   template <typename D>
-  static HWY_INLINE void store(D d, const Pair<hn::Vec<D>> &v, double *const *streams, long i)
+  static HWY_INLINE void store(D d, const Pair<hn::Vec<D>> &v, double *p)
   {
-    hn::StoreU(v.x, d, streams[0] + i);
-    hn::StoreU(v.y, d, streams[1] + i);
+    hn::StoreU(v.x, d, p);
+    hn::StoreU(v.y, d, p + stride);
   }
   template <typename D>
-  HWY_INLINE Pair<hn::Vec<D>> displacement(D d, long i) const
+  static HWY_INLINE Pair<hn::Vec<D>> displacement(D d, const double *at)
   {
-    return load(d, a_.displacement.data(), i);
+    return load(d, at + u_ * stride);
   }
   template <typename D>
   HWY_INLINE Pair<hn::Vec<D>> normal(D d, int k) const
@@ -214,10 +219,10 @@ private:
     return {hn::Set(d, c_.normal[k][0]), hn::Set(d, c_.normal[k][1])};
   }
   /// The vector whose parts along the normal of direction k and across it are kept.
-  template <int k, typename D>
-  HWY_INLINE Pair<hn::Vec<D>> along(D d, const std::array<double *, 2> &streams, long i) const
+  template <int k, int first, typename D>
+  HWY_INLINE Pair<hn::Vec<D>> along(D d, const double *at) const
   {
-    const auto part = load(d, streams.data(), i);
+    const auto part = load(d, at + first * stride);
     const auto n = normal(d, k);
     return {hn::NegMulAdd(part.y, n.y, hn::Mul(part.x, n.x)),
             hn::MulAdd(part.y, n.x, hn::Mul(part.x, n.y))};
@@ -228,19 +233,30 @@ private:
     return {mask(v.x, k), mask(v.y, k)};
   }
 
+  // First streams: displacement, angle, h and g, sum of a x Du.
+  static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7;
+
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;
   bool volumetric_;
-  std::array<double *, 2> h_, g_; // parts along n and across it
-  double *moment_;                // sum of a x Du
+  double *w_ = nullptr; // origin of the window
 };
+
+template <int n_dir>
+void sweep_rows_of(const RowSweep<2> &sweep)
+{
+  if (2 * sweep.window_length() <= RowWindow::close)
+    RowPipeline<Bonds2d<n_dir, RowWindow::close>, 2>(sweep).run();
+  else
+    RowPipeline<Bonds2d<n_dir, RowWindow::wide>, 2>(sweep).run();
+}
 
 void sweep_rows_2d(const RowSweep<2> &sweep)
 {
   if (sweep.constants.n_directions == 2)
-    RowPipeline<Bonds2d<2>, 2>(sweep).run();
+    sweep_rows_of<2>(sweep);
   else
-    RowPipeline<Bonds2d<3>, 2>(sweep).run();
+    sweep_rows_of<3>(sweep);
 }
 
 void sines(const double *angle, double *cosine_minus_1, double *sine, int n)

@@ -79,8 +79,7 @@ template <typename V>
 HWY_INLINE Quaternion<V> add_product(const Quaternion<V> &q, const Triple<V> &n,
                                      const Quaternion<V> &b)
 {
-  return {hn::NegMulAdd(q.v.x, n.x,
-                        hn::NegMulAdd(q.v.y, n.y, hn::NegMulAdd(q.v.z, n.z, b.w))),
+  return {hn::NegMulAdd(q.v.x, n.x, hn::NegMulAdd(q.v.y, n.y, hn::NegMulAdd(q.v.z, n.z, b.w))),
           add_cross(q.v, n, mul_add(q.w, n, b.v))};
 }
 
@@ -106,12 +105,12 @@ struct Basis<6>
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h:
 /// linear in h, which three directions give for all, and formed by the same operations from either
 /// end, so that pair forces cancel exactly.
-template <int n_dir>
+template <int n_dir, long stride_>
 class Bonds3d
 {
 public:
-  static constexpr int n_directions = n_dir;
-  static constexpr int n_streams = 21;
+  static constexpr long stride = stride_;
+  static constexpr int n_streams = 28;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds3d(const RowSweep<3> &sweep)
@@ -119,20 +118,17 @@ public:
   {
   }
 
-  HWY_INLINE void set_window(RowWindow &window)
-  {
-    for (int m = 0; m < 9; ++m) {
-      h_[m] = window.stream(m);
-      g_[m] = window.stream(9 + m);
-    }
-    for (int m = 0; m < 3; ++m)
-      moment_[m] = window.stream(18 + m);
-  }
+  HWY_INLINE void set_window(double *origin) { w_ = origin; }
 
   template <typename D>
   HWY_INLINE void turn(D d, long i) const
   {
-    const auto q = quaternion(d, i);
+    double *const at = w_ + i;
+    for (int c = 0; c < 3; ++c)
+      hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
+    for (int c = 0; c < 4; ++c)
+      hn::StoreU(hn::LoadU(d, a_.rotation[c] + i), d, at + (q_ + c) * stride);
+    const auto q = quaternion(d, at);
     const auto &v = q.v;
     const Triple<hn::Vec<D>> two = v + v;
     const auto xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
@@ -145,27 +141,28 @@ public:
     for (int m = 0; m < 3; ++m) {
       const auto n = normal(d, Basis<n_dir>::direction[m]);
       const auto h = mul_add(n.x, x, mul_add(n.y, y, n.z * z));
-      store(d, h, h_.data() + 3 * m, i);
+      store(d, h, at + (h_ + 3 * m) * stride);
       if (!volumetric_)
-        store(d, hn::Set(d, -c_.shear * c_.half) * h, g_.data() + 3 * m, i);
+        store(d, hn::Set(d, -c_.shear * c_.half) * h, at + (g_ + 3 * m) * stride);
     }
   }
 
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
     auto theta = zero;
     Triple<hn::Vec<D>> moment{zero, zero, zero};
-    const auto u = displacement(d, i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k], b = i + offsets.backward[k];
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto half = hn::Set(d, c_.half);
-      const auto h = along<k>(d, h_, i);
-      auto forward = neg_mul_add(half, h + along<k>(d, h_, f), displacement(d, f) - u);
-      auto backward = neg_mul_add(half, along<k>(d, h_, b) + h, u - displacement(d, b));
+      const auto h = along<k, h_>(d, at);
+      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
+      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
       const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
       const auto a = normal(d, k) + h;
       theta = add_dot(a, e, theta);
@@ -175,37 +172,40 @@ public:
     const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
     const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
     hn::StoreU(p, d, a_.pressure + i);
-    store(d, moment, moment_.data(), i);
+    store(d, moment, at + moment_ * stride);
     const auto vp = hn::Mul(hn::Set(d, volumetric), p);
     const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
     for (int m = 0; m < 3; ++m)
-      store(d, mul_add(vp, normal(d, Basis<n_dir>::direction[m]), factor * load(d, h_.data() + 3 * m, i)),
-            g_.data() + 3 * m, i);
+      store(d,
+            mul_add(vp, normal(d, Basis<n_dir>::direction[m]),
+                    factor * load(d, at + (h_ + 3 * m) * stride)),
+            at + (g_ + 3 * m) * stride);
   }
 
   /// True when the force on a face, in any direction, reaches the strength.
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
   {
     using V = hn::Vec<D>;
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     Triple<V> force{zero, zero, zero}, torque{zero, zero, zero};
     Quaternion<V> bend{zero, {zero, zero, zero}}, twist{zero, {zero, zero, zero}};
     V largest = zero;
-    const auto u = displacement(d, i);
-    const auto q = quaternion(d, i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const auto q = quaternion(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k], b = i + offsets.backward[k];
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto shear = hn::Set(d, c_.shear);
-      const auto g = along<k>(d, g_, i), n = normal(d, k);
-      const auto t_f = masked(
-          mask, mul_add(shear, displacement(d, f) - u, g + along<k>(d, g_, f)), k);
-      const auto t_b = masked(
-          mask, mul_add(shear, u - displacement(d, b), along<k>(d, g_, b) + g), n_dir + k);
+      const auto g = along<k, g_>(d, at), n = normal(d, k);
+      const auto t_f =
+          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
+      const auto t_b =
+          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
       force = force + (t_f - t_b);
-      torque = add_cross(n + along<k>(d, h_, i), t_f + t_b, torque);
+      torque = add_cross(n + along<k, h_>(d, at), t_f + t_b, torque);
       largest = hn::Max(largest, add_dot(t_f, t_f, zero));
 
       // With w the real part of the rotation of j as i sees it and s its part along n:
@@ -222,34 +222,40 @@ public:
     const auto half = hn::Set(d, c_.half);
     torque = half * torque;
     if (volumetric_)
-      torque = neg_mul_add(
-          hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
-          load(d, moment_.data(), i), torque);
+      torque = neg_mul_add(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
+                           load(d, at + moment_ * stride), torque);
     // Vector part of 2 (k_b bend + (k_t - k_b) twist) q*.
     const V two_bending = hn::Set(d, 2 * c_.bending), two_twist = hn::Set(d, 2 * c_.twist);
-    const Quaternion<V> m = mul_add(two_twist, twist,
-                                    Quaternion<V>{hn::Mul(two_bending, bend.w), two_bending * bend.v});
+    const Quaternion<V> m = mul_add(
+        two_twist, twist, Quaternion<V>{hn::Mul(two_bending, bend.w), two_bending * bend.v});
     torque = add_cross(q.v, m.v, mul_add(q.w, m.v, neg_mul_add(m.w, q.v, torque)));
-    store(d, force, a_.force.data(), i);
-    store(d, torque, a_.torque.data(), i);
+    hn::StoreU(force.x, d, a_.force[0] + i);
+    hn::StoreU(force.y, d, a_.force[1] + i);
+    hn::StoreU(force.z, d, a_.force[2] + i);
+    hn::StoreU(torque.x, d, a_.torque[0] + i);
+    hn::StoreU(torque.y, d, a_.torque[1] + i);
+    hn::StoreU(torque.z, d, a_.torque[2] + i);
     return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
   }
 
   /// True when the tension along the present normal of a forward face reaches the strength.
-  template <bool full, typename D>
+  template <typename D>
   HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const
   {
-    const BondMask<D, full> mask(d, a_.mask, i);
+    const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
     auto found = hn::Lt(zero, zero);
-    const auto u = displacement(d, i);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const long f = i + offsets.forward[k];
-      const auto t = masked(mask, mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
-                                          along<k>(d, g_, i) + along<k>(d, g_, f)), k);
+      const double *const f = at + offsets.forward[k];
+      const auto t = masked(mask,
+                            mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
+                                    along<k, g_>(d, at) + along<k, g_>(d, f)),
+                            k);
       const auto n = normal(d, k);
-      const auto mean = (n + n) + (along<k>(d, h_, i) + along<k>(d, h_, f));
+      const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
       const auto tension = add_dot(t, mean, zero);
       const auto limit = hn::Mul(hn::Set(d, c_.limit2), add_dot(mean, mean, zero));
       found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
@@ -269,28 +275,28 @@ private:
     for_directions(visit, std::make_integer_sequence<int, n_dir>());
   }
 
-  template <typename D, typename Pointer>
-  static HWY_INLINE Triple<hn::Vec<D>> load(D d, Pointer const *streams, long i)
+  /// Three streams from one on.
+  template <typename D>
+  static HWY_INLINE Triple<hn::Vec<D>> load(D d, const double *p)
   {
-    return {hn::LoadU(d, streams[0] + i), hn::LoadU(d, streams[1] + i),
-            hn::LoadU(d, streams[2] + i)};
+    return {hn::LoadU(d, p), hn::LoadU(d, p + stride), hn::LoadU(d, p + 2 * stride)};
   }
   template <typename D>
-  static HWY_INLINE void store(D d, const Triple<hn::Vec<D>> &v, double *const *streams, long i)
+  static HWY_INLINE void store(D d, const Triple<hn::Vec<D>> &v, double *p)
   {
-    hn::StoreU(v.x, d, streams[0] + i);
-    hn::StoreU(v.y, d, streams[1] + i);
-    hn::StoreU(v.z, d, streams[2] + i);
+    hn::StoreU(v.x, d, p);
+    hn::StoreU(v.y, d, p + stride);
+    hn::StoreU(v.z, d, p + 2 * stride);
   }
   template <typename D>
-  HWY_INLINE Triple<hn::Vec<D>> displacement(D d, long i) const
+  static HWY_INLINE Triple<hn::Vec<D>> displacement(D d, const double *at)
   {
-    return load(d, a_.displacement.data(), i);
+    return load(d, at + u_ * stride);
   }
   template <typename D>
-  HWY_INLINE Quaternion<hn::Vec<D>> quaternion(D d, long i) const
+  static HWY_INLINE Quaternion<hn::Vec<D>> quaternion(D d, const double *at)
   {
-    return {hn::LoadU(d, a_.rotation[0] + i), load(d, a_.rotation.data() + 1, i)};
+    return {hn::LoadU(d, at + q_ * stride), load(d, at + (q_ + 1) * stride)};
   }
   template <typename D>
   HWY_INLINE Triple<hn::Vec<D>> normal(D d, int k) const
@@ -298,17 +304,18 @@ private:
     const auto &n = c_.normal[k];
     return {hn::Set(d, n[0]), hn::Set(d, n[1]), hn::Set(d, n[2])};
   }
-  /// The part of direction k out of those of the basis.
-  template <int k, typename D>
-  static HWY_INLINE Triple<hn::Vec<D>> along(D d, const std::array<double *, 9> &streams, long i)
+  /// The vector of direction k out of those of the basis, whose streams start at `first`.
+  template <int k, int first, typename D>
+  static HWY_INLINE Triple<hn::Vec<D>> along(D d, const double *at)
   {
     constexpr auto &part = Basis<n_dir>::part[k];
     constexpr int positive = part[2] == 1 ? 2 : part[1] == 1 ? 1 : 0;
-    auto sum = load(d, streams.data() + 3 * positive, i);
+    const double *const p = at + first * stride;
+    auto sum = load(d, p + 3 * positive * stride);
     if (part[0] == -1)
-      sum = sum - load(d, streams.data(), i);
+      sum = sum - load(d, p);
     if (part[1] == -1)
-      sum = sum - load(d, streams.data() + 3, i);
+      sum = sum - load(d, p + 3 * stride);
     return sum;
   }
   template <typename Mask, typename V>
@@ -317,19 +324,30 @@ private:
     return {mask(v.x, k), mask(v.y, k), mask(v.z, k)};
   }
 
+  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du.
+  static constexpr int u_ = 0, q_ = 3, h_ = 7, g_ = 16, moment_ = 25;
+
   LatticeArrays<3> a_;
   LatticeConstants<3> c_;
   bool volumetric_;
-  std::array<double *, 9> h_, g_; // x, y, z of each direction of the basis
-  std::array<double *, 3> moment_; // sum of a x Du
+  double *w_ = nullptr; // origin of the window
 };
+
+template <int n_dir>
+void sweep_rows_of(const RowSweep<3> &sweep)
+{
+  if (2 * sweep.window_length() <= RowWindow::close)
+    RowPipeline<Bonds3d<n_dir, RowWindow::close>, 3>(sweep).run();
+  else
+    RowPipeline<Bonds3d<n_dir, RowWindow::wide>, 3>(sweep).run();
+}
 
 void sweep_rows_3d(const RowSweep<3> &sweep)
 {
   if (sweep.constants.n_directions == 3)
-    RowPipeline<Bonds3d<3>, 3>(sweep).run();
+    sweep_rows_of<3>(sweep);
   else
-    RowPipeline<Bonds3d<6>, 3>(sweep).run();
+    sweep_rows_of<6>(sweep);
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

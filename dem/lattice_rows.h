@@ -22,8 +22,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<double>;
 using OneLane = hn::CappedTag<double, 1>;
 
-/// Which of the bonds of a vector of particles carry; full: all of them.
-template <typename D, bool full>
+/// Which of the bonds of a vector of particles carry.
+template <typename D>
 struct BondMask
 {
   hn::Vec<hn::Rebind<std::uint64_t, D>> bits;
@@ -37,8 +37,6 @@ struct BondMask
   template <typename V>
   HWY_INLINE V operator()(V v, int k) const
   {
-    if (full)
-      return v;
     const hn::Rebind<std::uint64_t, D> d;
     const auto carries = hn::TestBit(bits, hn::Set(d, std::uint64_t(1) << k));
     return hn::IfThenElseZero(hn::RebindMask(D(), carries), v);
@@ -73,9 +71,10 @@ class RowPipeline
 public:
   HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep) : sweep_(sweep), bonds_(sweep)
   {
-    const int longest_needed = 3 * sweep.reach + 2 * piece;
-    const int spare = std::max(4 * piece, sweep.reach);
-    sweep.window->reset(Bonds::n_streams, std::min(sweep.n_particles, longest_needed + spare));
+    // Sliding takes little time when the window is twice as long as it must be.
+    const long length = std::min(2 * sweep.window_length(), Bonds::stride);
+    sweep.window->reset(Bonds::n_streams, Bonds::stride,
+                        int(std::min(length, long(sweep.n_particles))));
   }
 
   HWY_INLINE void run()
@@ -89,25 +88,13 @@ public:
         const int end = std::min(begin + piece, segment.end);
         forces_at_ = begin;
         dilate_to(std::min(end + sweep_.reach, sweep_.n_particles));
-        bonds_.set_window(*sweep_.window);
-        if (is_full(begin, end))
-          forces<true>(segment, begin, end);
-        else
-          forces<false>(segment, begin, end);
+        bonds_.set_window(sweep_.window->origin());
+        forces(segment, begin, end);
       }
   }
 
 private:
-  static constexpr int piece = 256; // particles
-
-  HWY_INLINE bool is_full(int begin, int end) const
-  {
-    constexpr std::uint32_t all_bonds = (1u << 2 * Bonds::n_directions) - 1;
-    std::uint32_t common = all_bonds;
-    for (int i = begin; i < end; ++i)
-      common &= sweep_.arrays.mask[i];
-    return common == all_bonds;
-  }
+  static constexpr int piece = row_piece;
 
   HWY_INLINE void dilate_to(int target)
   {
@@ -119,11 +106,8 @@ private:
       if (!sweep_.with_forces)
         forces_at_ = begin;
       turn_to(std::min(end + sweep_.reach, sweep_.n_particles));
-      bonds_.set_window(*sweep_.window);
-      if (is_full(begin, end))
-        dilatation<true>(segment, begin, end);
-      else
-        dilatation<false>(segment, begin, end);
+      bonds_.set_window(sweep_.window->origin());
+      dilatation(segment, begin, end);
       dilated_ = end;
       segment_ += end == segment.end;
     }
@@ -134,32 +118,27 @@ private:
     while (turned_ < target) {
       const int end = std::min(turned_ + piece, target);
       sweep_.window->slide(std::max(forces_at_ - sweep_.reach, 0), end);
-      bonds_.set_window(*sweep_.window);
+      bonds_.set_window(sweep_.window->origin());
       // Overlapping vectors stay within this piece: what lies before may have left the window.
-      for_each_vector(turned_, turned_, end, [&](auto d, long i)
-                                                 HWY_ATTR { bonds_.turn(d, i); });
+      for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
       turned_ = end;
     }
   }
 
-  template <bool full>
   HWY_INLINE void dilatation(const RowSegment &segment, int begin, int end)
   {
     const typename Bonds::Offsets offsets(segment);
-    for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
-      bonds_.template dilatation<full>(d, i, offsets);
-    });
+    for_each_vector(segment.begin, begin, end,
+                    [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
   }
 
-  template <bool full>
   HWY_INLINE void forces(const RowSegment &segment, int begin, int end)
   {
     const typename Bonds::Offsets offsets(segment);
     int done = begin;
     for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
       const int after = int(i) + int(hn::Lanes(d));
-      if (HWY_UNLIKELY(bonds_.template forces<full>(d, i, offsets)) &&
-          bonds_.template exceeds<full>(d, i, offsets))
+      if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)) && bonds_.exceeds(d, i, offsets))
         sweep_.exceeded->push_back({std::max(int(i), done), after});
       done = after;
     });

@@ -27,8 +27,8 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : packing_(std::move(packing)), material_(material), fracture_(fracture),
-      bonds_(packing_, material), kernel_(bonds_.directions(), bonds_.segments(), packing_.size(), material.shear_modulus(),
-              material.poissons_ratio != 0),
+      bonds_(packing_, material), kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
+                                          material.shear_modulus(), material.poissons_ratio != 0),
       surface_(packing_, material, std::move(loads)), contacts_(material),
       search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
       lambda_per_volume_(packing_.size())
@@ -42,9 +42,8 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
     irregular_particles_.push_back(b.j);
   });
   std::sort(irregular_particles_.begin(), irregular_particles_.end());
-  irregular_particles_.erase(
-      std::unique(irregular_particles_.begin(), irregular_particles_.end()),
-      irregular_particles_.end());
+  irregular_particles_.erase(std::unique(irregular_particles_.begin(), irregular_particles_.end()),
+                             irregular_particles_.end());
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
   for (const auto &face : packing_.faces)
@@ -143,7 +142,7 @@ double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
 
 template <int dim>
 void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLoads<dim> &surface,
-                                        Workspace &work) const
+                                             Workspace &work) const
 {
   work.pressure.resize(packing_.size());
   work.other_pressure.assign(packing_.size(), 0.);
@@ -164,7 +163,7 @@ void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) cons
   find_turns(p, true, work);
   find_other_pressure(p, surface_, work);
   if (material_.poissons_ratio != 0)
-    kernel_.dilatation(arrays(p, work), bonds_.segments(), work.rows);
+    kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
 }
 
 template <int dim>
@@ -179,7 +178,7 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
   for (int c = 0; c < n_spins<dim>; ++c)
     a.torque[c] = p.torque[c].data();
   work.exceeded.clear();
-  kernel_.forces(a, bonds_.segments(), strength, work.rows, work.exceeded_rows);
+  kernel_.forces(a, bonds_.segments(), strength, rows_, work.exceeded_rows);
   const std::vector<double> &pressure = work.pressure;
   bonds_.for_each_irregular([&](BondId id, const Bond<dim> &b) {
     const Turn<dim> turn_i = turn(p, work, b.i), turn_j = turn(p, work, b.j);

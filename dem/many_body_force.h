@@ -92,10 +92,9 @@ private:
   /// What one evaluation leaves behind.
   struct Workspace
   {
-    std::vector<double> pressure;       // lambda_i theta_i, Pa
-    std::vector<double> other_pressure; // the part that isn't from lattice bonds
+    std::vector<double> pressure;             // lambda_i theta_i, Pa
+    std::vector<double> other_pressure;       // the part that isn't from lattice bonds
     std::vector<double> cosine_minus_1, sine; // 2D, of the particles that were asked for
-    RowWindow rows;
     std::vector<RowRange> exceeded_rows;
     std::vector<BondId> exceeded; // irregular
   };
@@ -145,6 +144,7 @@ private:
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3
   Workspace work_;
+  mutable RowWindow rows_; // scratch: nothing in it outlives a call
   std::vector<BrokenBond<dim>> broken_;
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;

@@ -57,8 +57,8 @@ HWY_INLINE void cosine_minus_1_and_sine(D d, hn::Vec<D> x, hn::Vec<D> &cosine_mi
   const auto one = hn::Set(d, 1.), c1 = hn::Add(c, one);
   const auto cosine = hn::IfThenElse(odd, hn::Neg(s), c1);
   const auto turned = hn::IfThenElse(odd, c1, s);
-  cosine_minus_1 = hn::IfThenElse(
-      hn::Or(odd, second), hn::Sub(hn::IfThenElse(second, hn::Neg(cosine), cosine), one), c);
+  cosine_minus_1 = hn::IfThenElse(hn::Or(odd, second),
+                                  hn::Sub(hn::IfThenElse(second, hn::Neg(cosine), cosine), one), c);
   sine = hn::IfThenElse(second, hn::Neg(turned), turned);
 }
 } // namespace ligament::dem::HWY_NAMESPACE
