@@ -1,7 +1,7 @@
 // Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dem/lattice_kernel_2d.cc"
-#include "dem/dispatch.h"
+#include "core/dispatch.h"
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
