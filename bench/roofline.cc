@@ -20,8 +20,10 @@ double multiply_add(long n)
 {
   const hn::ScalableTag<double> d;
   const auto x = hn::Set(d, 0.999999), y = hn::Set(d, 1e-7);
-  auto a = hn::Set(d, 1.), b = a, c = a, e = a, f = a, g = a, h = a, i = a, j = a, k = a, l = a,
-       m = a;
+  // All different: equal chains would be computed once.
+  auto a = hn::Iota(d, 1.), b = hn::Add(a, x), c = hn::Add(b, x), e = hn::Add(c, x),
+       f = hn::Add(e, x), g = hn::Add(f, x), h = hn::Add(g, x), i = hn::Add(h, x),
+       j = hn::Add(i, x), k = hn::Add(j, x), l = hn::Add(k, x), m = hn::Add(l, x);
   for (long step = 0; step < n; ++step) {
     a = hn::MulAdd(a, x, y), b = hn::MulAdd(b, x, y), c = hn::MulAdd(c, x, y);
     e = hn::MulAdd(e, x, y), f = hn::MulAdd(f, x, y), g = hn::MulAdd(g, x, y);

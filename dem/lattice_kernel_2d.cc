@@ -52,8 +52,8 @@ HWY_INLINE V add_cross(const Pair<V> &a, const Pair<V> &b, V c)
   return hn::MulAdd(a.x, b.y, hn::NegMulAdd(a.y, b.x, c));
 }
 
-/// theory.md eqs. (D4), (D6), (D8b) for vectors of particles that are neighbours in a row. With
-/// h = (R - I) n and v = q S/r, the force on a face is
+/// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
+/// With h = (R - I) n and v = q S/r, the force on a face is
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
 /// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
 /// particle are the two numbers of h and of g along n and along its normal.

@@ -100,8 +100,8 @@ struct Basis<6>
                                      {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}};
 };
 
-/// theory.md eqs. (D4), (D6), (D8b) for vectors of particles that are neighbours in a row. With
-/// h = (R - I) n and v = q S/r, the force on a face is
+/// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
+/// With h = (R - I) n and v = q S/r, the force on a face is
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h:
 /// linear in h, which three directions give for all, and formed by the same operations from either
 /// end, so that pair forces cancel exactly.
