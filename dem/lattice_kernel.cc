@@ -1,47 +1,114 @@
 #include "dem/lattice_kernel.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace ligament::dem
 {
+void RowWindow::reset(int n_streams, long stride, int length)
+{
+  core::require(length <= stride, "a layer of the packing has too many particles");
+  if (n_streams != n_streams_ || stride != stride_ || length > length_) {
+    constexpr int several_pages = 4096;
+    data_ = core::LargeArray(n_streams * stride, length > several_pages);
+  }
+  n_streams_ = n_streams;
+  stride_ = stride;
+  length_ = length;
+  begin_ = 0;
+}
+
+void RowWindow::slide(int keep, int end)
+{
+  if (end <= begin_ + length_)
+    return;
+  for (int s = 0; s < n_streams_; ++s) {
+    double *const first = data_.data() + s * stride_;
+    std::copy(first + (keep - begin_), first + length_, first);
+  }
+  begin_ = keep;
+}
+
 template <int dim>
 LatticeKernel<dim>::LatticeKernel(const std::vector<DirectionData<dim>> &directions,
-                                  double shear_modulus)
-    : n_directions_(int(directions.size()))
+                                  const std::vector<RowSegment> &segments, int n_particles,
+                                  double shear_modulus, bool volumetric)
+    : n_particles_(n_particles), volumetric_(volumetric)
 {
-  core::require(n_directions_ == 0 || n_directions_ == dim || n_directions_ == 3 * (dim - 1),
+  const int n = int(directions.size());
+  auto &c = constants_;
+  c.n_directions = n;
+  core::require(n == 0 || n == dim || n == 3 * (dim - 1),
                 "no kernel for a lattice with this number of directions");
-  for (int k = 0; k < n_directions_; ++k) {
-    const auto &d = directions[k];
-    auto &c = constants_[k];
+  for (int k = 0; k < n; ++k)
     for (int a = 0; a < dim; ++a)
-      c.normal[a] = d.normal[a];
+      c.normal[k][a] = directions[k].normal[a];
+  if (n > 0) {
+    const auto &d = directions[0];
+    for (const auto &other : directions)
+      core::require(std::abs(other.area - d.area) < 1e-12 * d.area &&
+                        std::abs(other.distance - d.distance) < 1e-12 * d.distance,
+                    "no kernel for a lattice with unequal faces");
     c.half = d.distance / 2;
     c.area_r = d.area / d.distance;
     c.shear = 2 * shear_modulus * c.area_r;
     c.bending = d.bending;
     c.twist = d.twist - d.bending;
-    area_[k] = d.area;
+    area_ = d.area;
   }
+  if (dim == 3 && n == 6) { // the kernel turns three normals and combines the others
+    const auto &m = directions;
+    const Vector<dim> a = m[0].normal, b = m[1].normal, e = m[5].normal;
+    core::require((m[2].normal - (e - a - b)).norm() < 1e-12 &&
+                      (m[3].normal - (e - b)).norm() < 1e-12 &&
+                      (m[4].normal - (e - a)).norm() < 1e-12,
+                  "six directions in 3D must be those of a face-centred cubic lattice");
+  }
+  for (const RowSegment &s : segments)
+    for (int k = 0; k < n; ++k)
+      reach_ = std::max({reach_, std::abs(s.forward[k]), std::abs(s.backward[k])});
+}
+
+template <int dim>
+RowSweep<dim> LatticeKernel<dim>::sweep(const LatticeArrays<dim> &arrays,
+                                        const std::vector<RowSegment> &segments,
+                                        RowWindow &window) const
+{
+  return {arrays,      constants_, &segments, n_particles_, reach_,
+          volumetric_, false,      nullptr,   &window};
 }
 
 template <int dim>
 void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
-                                    const std::vector<RowSegment> &segments) const
+                                    const std::vector<RowSegment> &segments,
+                                    RowWindow &window) const
 {
-  sweep_dilatation_of({arrays, &constants_, &segments, nullptr});
+  if (constants_.n_directions == 0)
+    std::copy_n(arrays.other_pressure, n_particles_, arrays.pressure);
+  else
+    sweep_rows(sweep(arrays, segments, window));
 }
 
 template <int dim>
 void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments, double strength,
-                                std::vector<RowRange> &exceeded) const
+                                RowWindow &window, std::vector<RowRange> &exceeded) const
 {
-  auto constants = constants_;
-  for (int k = 0; k < n_directions_; ++k)
-    constants[k].limit2 = strength > 0 ? strength * area_[k] * strength * area_[k]
-                                       : std::numeric_limits<double>::infinity();
-  sweep_forces_of({arrays, &constants, &segments, &exceeded});
+  exceeded.clear();
+  if (constants_.n_directions == 0) {
+    dilatation(arrays, segments, window);
+    for (double *const f : arrays.force)
+      std::fill_n(f, n_particles_, 0.);
+    for (double *const t : arrays.torque)
+      std::fill_n(t, n_particles_, 0.);
+    return;
+  }
+  RowSweep<dim> s = sweep(arrays, segments, window);
+  s.with_forces = true;
+  s.constants.limit2 =
+      strength > 0 ? strength * area_ * strength * area_ : std::numeric_limits<double>::infinity();
+  s.exceeded = &exceeded;
+  sweep_rows(s);
 }
 
 template class LatticeKernel<2>;

@@ -1,6 +1,7 @@
 // Forces of all lattice bonds, vectorised along rows: no lists, no gather, nothing stored per bond.
 #pragma once
 
+#include "core/large_array.h"
 #include "dem/bond_network.h"
 
 namespace ligament::dem
@@ -9,29 +10,34 @@ namespace ligament::dem
 template <int dim>
 struct LatticeArrays
 {
+  static constexpr int n_rotations = particles::Particles<dim>::n_rotations;
+
   std::array<const double *, dim> displacement;
-  /// 2D: angle, cos - 1, sin; 3D: unit quaternion.
-  std::array<const double *, dim == 2 ? 3 : 4> turn;
+  std::array<const double *, n_rotations> rotation; // angle, or unit quaternion
   const std::uint32_t *mask;
   const double *lambda_per_volume;
-  double *pressure;
+  const double *other_pressure; // lambda_i theta_i of what is no lattice bond, Pa
+  double *pressure;             // lambda_i theta_i, Pa
   std::array<double *, dim> force;
   std::array<double *, n_spins<dim>> torque;
 };
 
-/// What the loops need of one lattice direction.
+/// What the loops need of the lattice; distance and area are those of all its directions.
 template <int dim>
-struct DirectionConstants
+struct LatticeConstants
 {
-  std::array<double, dim> normal;
-  double half;    // q = r/2, m
-  double shear;   // 2G S/r, N/m
-  double area_r;  // S/r, m
-  double bending; // k_b, N m
-  double twist;   // k_t - k_b, N m
-  double limit2;  // (strength S)^2, N^2; infinite when nothing breaks: the test costs less than
-                  // a second set of loops, whose code the compiler makes slower
+  int n_directions = 0;
+  std::array<std::array<double, dim>, max_directions> normal{};
+  double half = 0;    // q = r/2, m
+  double shear = 0;   // 2G S/r, N/m
+  double area_r = 0;  // S/r, m
+  double bending = 0; // k_b, N m
+  double twist = 0;   // k_t - k_b, N m
+  double limit2 = 0;  // (strength S)^2, N^2; infinite when nothing breaks
 };
+
+/// Particles that each stage of the sweep takes at once.
+inline constexpr int row_piece = 256;
 
 /// Particles [begin, end).
 struct RowRange
@@ -39,49 +45,82 @@ struct RowRange
   int begin, end;
 };
 
-/// cos - 1 and sin of n angles, to round-off for any angle below 1e5.
-void cosine_minus_1_and_sine(const double *angle, double *cosine_minus_1, double *sine, int n);
+/// State and intermediate results of the rows at work, one stream per number; it slides along the
+/// particles and stays in the cache, while the arrays of the body are passed over once.
+class RowWindow
+{
+public:
+  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle;
+  /// no multiples of 4096 bytes, so that these lie in different sets of the cache. Close together
+  /// they share large pages; the wide one is for layers with very many particles.
+  static constexpr long close = (1L << 16) + 24, wide = (1L << 20) + 24;
+
+  /// Room for `length` particles from 0 on. Memory is taken as it is touched.
+  void reset(int n_streams, long stride, int length);
+
+  /// Makes room up to `end`, keeping what was written from `keep` on; the length bounds end - keep.
+  void slide(int keep, int end);
+
+  /// Where stream 0 of particle 0 would lie; valid for particles in the window until the next
+  /// slide().
+  double *origin() { return data_.data() - begin_; }
+
+private:
+  core::LargeArray data_;
+  long stride_ = 0;
+  int n_streams_ = 0, length_ = 0, begin_ = 0;
+};
 
 /// Everything one sweep over the segments needs; passed through the run-time dispatch.
 template <int dim>
 struct RowSweep
 {
   LatticeArrays<dim> arrays;
-  const std::array<DirectionConstants<dim>, max_directions> *directions;
+  LatticeConstants<dim> constants;
   const std::vector<RowSegment> *segments;
+  int n_particles;
+  int reach;       // largest offset between neighbours
+  bool volumetric; // nu is not 0
+  bool with_forces;
   std::vector<RowRange> *exceeded;
+  RowWindow *window;
+
+  /// Particles that the window must hold at least.
+  long window_length() const { return 3L * reach + 2 * row_piece; }
 };
+
+/// cos - 1 and sin of n angles, to round-off for any angle below 1e5.
+void cosine_minus_1_and_sine(const double *angle, double *cosine_minus_1, double *sine, int n);
+
+/// The sweep along the rows: pressures run one layer of neighbours ahead of the forces.
+void sweep_rows(const RowSweep<2> &sweep);
+void sweep_rows(const RowSweep<3> &sweep);
 
 template <int dim>
 class LatticeKernel
 {
 public:
-  LatticeKernel(const std::vector<DirectionData<dim>> &directions, double shear_modulus);
+  LatticeKernel(const std::vector<DirectionData<dim>> &directions,
+                const std::vector<RowSegment> &segments, int n_particles, double shear_modulus,
+                bool volumetric);
 
-  /// pressure = lambda_i theta_i, the part of the lattice bonds; overwrites.
-  void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments) const;
+  /// pressure = lambda_i theta_i of the lattice bonds + other_pressure.
+  void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
+                  RowWindow &window) const;
 
-  /// Force and torque of the lattice bonds; overwrites. With a strength above 0 (Pa), appends to
-  /// `exceeded` every range of particles that has a forward bond under at least that tension.
+  /// The same, and force and torque of the lattice bonds; overwrites. With a strength above 0 (Pa),
+  /// replaces `exceeded` by the ranges of particles that have a forward bond under at least that
+  /// tension; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-              double strength, std::vector<RowRange> &exceeded) const;
+              double strength, RowWindow &window, std::vector<RowRange> &exceeded) const;
 
 private:
-  // One for each dimension, in a file of its own.
-  void sweep_dilatation_of(const RowSweep<dim> &sweep) const;
-  void sweep_forces_of(const RowSweep<dim> &sweep) const;
+  RowSweep<dim> sweep(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
+                      RowWindow &window) const;
 
-  int n_directions_;
-  std::array<double, max_directions> area_{};
-  std::array<DirectionConstants<dim>, max_directions> constants_{};
+  LatticeConstants<dim> constants_;
+  double area_ = 0;
+  int n_particles_, reach_ = 0;
+  bool volumetric_;
 };
-
-template <>
-void LatticeKernel<2>::sweep_dilatation_of(const RowSweep<2> &sweep) const;
-template <>
-void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep) const;
-template <>
-void LatticeKernel<3>::sweep_dilatation_of(const RowSweep<3> &sweep) const;
-template <>
-void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep) const;
 } // namespace ligament::dem

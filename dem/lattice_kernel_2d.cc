@@ -1,138 +1,290 @@
+// Compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/lattice_kernel_2d.cc"
+#include "core/dispatch.h"
+
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway wants it.
 #include "dem/lattice_rows.h"
+#include "dem/sine.h"
 
-#include <cmath>
-
-namespace ligament::dem
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
 {
-namespace
+/// Two components of a vector of particles.
+template <typename V>
+struct Pair
 {
-using Direction = DirectionConstants<2>;
+  V x, y;
 
-/// theory.md eqs. (D6), (D8b) for the two neighbours along one direction. The traction of a bond is
-/// formed by the same operations in the same order from either end: pair forces cancel exactly.
-struct Bonds2d
-{
-  struct Own
+  friend HWY_INLINE Pair operator+(const Pair &a, const Pair &b)
   {
-    double ux, uy, c, s, angle, pressure;
-  };
-  struct Sum
-  {
-    double fx = 0, fy = 0, torque = 0;
-    int exceeded = 0;
-  };
-
-  static LIGAMENT_INLINE Own own(const LatticeArrays<2> &a, long i)
-  {
-    return {a.displacement[0][i], a.displacement[1][i], a.turn[1][i],
-            a.turn[2][i],         a.turn[0][i],         a.pressure[i]};
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y)};
   }
-
-  /// (R - I) n
-  static LIGAMENT_INLINE void change(double c, double s, const Direction &d, double &x, double &y)
+  friend HWY_INLINE Pair operator-(const Pair &a, const Pair &b)
   {
-    x = c * d.normal[0] - s * d.normal[1];
-    y = c * d.normal[1] + s * d.normal[0];
-  }
-
-  /// Changes h of the normals and relative displacements to the forward (a) and backward (c)
-  /// neighbour, zero where the bond doesn't carry.
-  struct Motion
-  {
-    double hx, hy, fx, fy, bx, by, ax, ay, cx, cy;
-
-    template <bool full>
-    static LIGAMENT_INLINE Motion of(const LatticeArrays<2> &a, const Direction &d, const Own &o,
-                                     const Neighbours &n)
-    {
-      Motion m;
-      change(o.c, o.s, d, m.hx, m.hy);
-      change(a.turn[1][n.forward], a.turn[2][n.forward], d, m.fx, m.fy);
-      change(a.turn[1][n.backward], a.turn[2][n.backward], d, m.bx, m.by);
-      m.ax = (a.displacement[0][n.forward] - o.ux) - d.half * (m.hx + m.fx);
-      m.ay = (a.displacement[1][n.forward] - o.uy) - d.half * (m.hy + m.fy);
-      m.cx = (o.ux - a.displacement[0][n.backward]) - d.half * (m.bx + m.hx);
-      m.cy = (o.uy - a.displacement[1][n.backward]) - d.half * (m.by + m.hy);
-      if (!full) {
-        m.ax *= n.w_forward, m.ay *= n.w_forward;
-        m.cx *= n.w_backward, m.cy *= n.w_backward;
-      }
-      return m;
-    }
-  };
-
-  template <bool full>
-  static LIGAMENT_INLINE double dilatation(const LatticeArrays<2> &a, const Direction &d,
-                                           const Own &o, const Neighbours &n)
-  {
-    const Motion m = Motion::of<full>(a, d, o, n);
-    return d.area_r * d.half *
-           ((d.normal[0] + m.hx) * (m.ax + m.cx) + (d.normal[1] + m.hy) * (m.ay + m.cy));
-  }
-
-  template <bool full>
-  static LIGAMENT_INLINE void force(const LatticeArrays<2> &a, const Direction &d, const Own &o,
-                                    const Neighbours &n, Sum &sum)
-  {
-    const Motion m = Motion::of<full>(a, d, o, n);
-    const double hx = d.normal[0] + m.hx, hy = d.normal[1] + m.hy;
-    const double fx = d.normal[0] + m.fx, fy = d.normal[1] + m.fy;
-    const double bx = d.normal[0] + m.bx, by = d.normal[1] + m.by;
-    const double p = o.pressure, pf = a.pressure[n.forward], pb = a.pressure[n.backward];
-    const double volumetric = d.area_r * d.half;
-    double vf = volumetric, vb = volumetric, kf = d.bending, kb = d.bending;
-    if (!full)
-      vf *= n.w_forward, vb *= n.w_backward, kf *= n.w_forward, kb *= n.w_backward;
-    const double tx = d.shear * m.ax + vf * (p * hx + pf * fx);
-    const double ty = d.shear * m.ay + vf * (p * hy + pf * fy);
-    const double sx = d.shear * m.cx + vb * (pb * bx + p * hx);
-    const double sy = d.shear * m.cy + vb * (pb * by + p * hy);
-    sum.fx += tx - sx;
-    sum.fy += ty - sy;
-    const double kp = d.area_r * p;
-    const double gx = (tx + sx) - kp * (m.ax + m.cx), gy = (ty + sy) - kp * (m.ay + m.cy);
-    sum.torque += d.half * (hx * gy - hy * gx) +
-                  (kf * (a.turn[0][n.forward] - o.angle) - kb * (o.angle - a.turn[0][n.backward]));
-    const double mx = hx + fx, my = hy + fy, tension = tx * mx + ty * my;
-    sum.exceeded |= tension * std::abs(tension) >= d.limit2 * (mx * mx + my * my) ? 1 : 0;
-  }
-
-  static LIGAMENT_INLINE void store(const LatticeArrays<2> &a, const Own &, long i, const Sum &sum)
-  {
-    a.force[0][i] = sum.fx;
-    a.force[1][i] = sum.fy;
-    a.torque[0][i] = sum.torque;
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y)};
   }
 };
 
-using Sweep = RowSweep<2>;
-LIGAMENT_DISPATCH void dilatation_2(const Sweep &s)
+/// s a + b
+template <typename V>
+HWY_INLINE Pair<V> mul_add(V s, const Pair<V> &a, const Pair<V> &b)
 {
-  sweep_dilatation<Bonds2d, 2>(s);
+  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y)};
 }
-LIGAMENT_DISPATCH void dilatation_3(const Sweep &s)
+/// b - s a
+template <typename V>
+HWY_INLINE Pair<V> neg_mul_add(V s, const Pair<V> &a, const Pair<V> &b)
 {
-  sweep_dilatation<Bonds2d, 3>(s);
+  return {hn::NegMulAdd(s, a.x, b.x), hn::NegMulAdd(s, a.y, b.y)};
 }
-LIGAMENT_DISPATCH void forces_2(const Sweep &s)
+/// c + a . b
+template <typename V>
+HWY_INLINE V add_dot(const Pair<V> &a, const Pair<V> &b, V c)
 {
-  sweep_forces<Bonds2d, 2>(s);
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, c));
 }
-LIGAMENT_DISPATCH void forces_3(const Sweep &s)
+/// c + a x b
+template <typename V>
+HWY_INLINE V add_cross(const Pair<V> &a, const Pair<V> &b, V c)
 {
-  sweep_forces<Bonds2d, 3>(s);
+  return hn::MulAdd(a.x, b.y, hn::NegMulAdd(a.y, b.x, c));
 }
-} // namespace
 
-template <>
-void LatticeKernel<2>::sweep_dilatation_of(const RowSweep<2> &sweep) const
+/// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
+/// With h = (R - I) n and v = q S/r, the force on a face is
+///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
+/// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
+/// particle are the two numbers of h and of g along n and along its normal.
+template <int n_dir, long stride_>
+class Bonds2d
 {
-  n_directions_ == 2 ? dilatation_2(sweep) : dilatation_3(sweep);
+public:
+  static constexpr long stride = stride_;
+  static constexpr int n_streams = 8;
+  using Offsets = NeighbourOffsets<n_dir>;
+
+  HWY_INLINE explicit Bonds2d(const RowSweep<2> &sweep)
+      : a_(sweep.arrays), c_(sweep.constants), volumetric_(sweep.volumetric)
+  {
+  }
+
+  HWY_INLINE void set_window(double *origin) { w_ = origin; }
+
+  template <typename D>
+  HWY_INLINE void turn(D d, long i) const
+  {
+    double *const at = w_ + i;
+    for (int c = 0; c < 2; ++c)
+      hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
+    const auto angle = hn::LoadU(d, a_.rotation[0] + i);
+    hn::StoreU(angle, d, at + angle_ * stride);
+    hn::Vec<D> c, s;
+    cosine_minus_1_and_sine(d, angle, c, s);
+    store(d, {c, s}, at + h_ * stride);
+    if (!volumetric_) {
+      const auto factor = hn::Set(d, -c_.shear * c_.half);
+      store(d, {hn::Mul(factor, c), hn::Mul(factor, s)}, at + g_ * stride);
+    }
+  }
+
+  template <typename D>
+  HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    auto theta = hn::Zero(d), moment = hn::Zero(d);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto half = hn::Set(d, c_.half);
+      const auto h = along<k, h_>(d, at);
+      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
+      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
+      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+      const auto a = normal(d, k) + h;
+      theta = add_dot(a, e, theta);
+      moment = add_cross(a, e, moment);
+    });
+    const double volumetric = c_.area_r * c_.half;
+    const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
+    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
+    hn::StoreU(p, d, a_.pressure + i);
+    hn::StoreU(moment, d, at + moment_ * stride);
+    const auto vp = hn::Mul(hn::Set(d, volumetric), p);
+    const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
+    const auto h = load(d, at + h_ * stride);
+    store(d, {hn::MulAdd(factor, h.x, vp), hn::Mul(factor, h.y)}, at + g_ * stride);
+  }
+
+  /// True when the force on a face, in any direction, reaches the strength.
+  template <typename D>
+  HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
+  {
+    using V = hn::Vec<D>;
+    const BondMask<D> mask(d, a_.mask, i);
+    const V zero = hn::Zero(d);
+    Pair<V> force{zero, zero};
+    V torque = zero, bend = zero, largest = zero;
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const V angle = hn::LoadU(d, at + angle_ * stride);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto shear = hn::Set(d, c_.shear);
+      const auto g = along<k, g_>(d, at);
+      const auto t_f =
+          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
+      const auto t_b =
+          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
+      force = force + (t_f - t_b);
+      torque = add_cross(normal(d, k) + along<k, h_>(d, at), t_f + t_b, torque);
+      largest = hn::Max(largest, add_dot(t_f, t_f, zero));
+      bend = hn::Add(bend,
+                     hn::Sub(mask(hn::Sub(hn::LoadU(d, f + angle_ * stride), angle), k),
+                             mask(hn::Sub(angle, hn::LoadU(d, b + angle_ * stride)), n_dir + k)));
+    });
+    torque = hn::Mul(hn::Set(d, c_.half), torque);
+    if (volumetric_)
+      torque =
+          hn::NegMulAdd(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
+                        hn::LoadU(d, at + moment_ * stride), torque);
+    torque = hn::MulAdd(hn::Set(d, c_.bending), bend, torque);
+    hn::StoreU(force.x, d, a_.force[0] + i);
+    hn::StoreU(force.y, d, a_.force[1] + i);
+    hn::StoreU(torque, d, a_.torque[0] + i);
+    return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
+  }
+
+  /// True when the tension along the present normal of a forward face reaches the strength.
+  template <typename D>
+  HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    const auto zero = hn::Zero(d);
+    auto found = hn::Lt(zero, zero);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k];
+      const auto t = masked(mask,
+                            mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
+                                    along<k, g_>(d, at) + along<k, g_>(d, f)),
+                            k);
+      const auto n = normal(d, k);
+      const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
+      const auto tension = add_dot(t, mean, zero);
+      const auto limit = hn::Mul(hn::Set(d, c_.limit2), add_dot(mean, mean, zero));
+      found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
+    });
+    return !hn::AllFalse(d, found);
+  }
+
+private:
+  template <typename Visit, int... k>
+  static HWY_INLINE void for_directions(Visit &&visit, std::integer_sequence<int, k...>)
+  {
+    (visit(std::integral_constant<int, k>()), ...);
+  }
+  template <typename Visit>
+  static HWY_INLINE void for_directions(Visit &&visit)
+  {
+    for_directions(visit, std::make_integer_sequence<int, n_dir>());
+  }
+
+  /// Two streams from one on.
+  template <typename D>
+  static HWY_INLINE Pair<hn::Vec<D>> load(D d, const double *p)
+  {
+    return {hn::LoadU(d, p), hn::LoadU(d, p + stride)};
+  }
+  template <typename D>
+  static HWY_INLINE void store(D d, const Pair<hn::Vec<D>> &v, double *p)
+  {
+    hn::StoreU(v.x, d, p);
+    hn::StoreU(v.y, d, p + stride);
+  }
+  template <typename D>
+  static HWY_INLINE Pair<hn::Vec<D>> displacement(D d, const double *at)
+  {
+    return load(d, at + u_ * stride);
+  }
+  template <typename D>
+  HWY_INLINE Pair<hn::Vec<D>> normal(D d, int k) const
+  {
+    return {hn::Set(d, c_.normal[k][0]), hn::Set(d, c_.normal[k][1])};
+  }
+  /// The vector whose parts along the normal of direction k and across it are kept.
+  template <int k, int first, typename D>
+  HWY_INLINE Pair<hn::Vec<D>> along(D d, const double *at) const
+  {
+    const auto part = load(d, at + first * stride);
+    const auto n = normal(d, k);
+    return {hn::NegMulAdd(part.y, n.y, hn::Mul(part.x, n.x)),
+            hn::MulAdd(part.y, n.x, hn::Mul(part.x, n.y))};
+  }
+  template <typename Mask, typename V>
+  static HWY_INLINE Pair<V> masked(const Mask &mask, const Pair<V> &v, int k)
+  {
+    return {mask(v.x, k), mask(v.y, k)};
+  }
+
+  // First streams: displacement, angle, h and g, sum of a x Du.
+  static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7;
+
+  LatticeArrays<2> a_;
+  LatticeConstants<2> c_;
+  bool volumetric_;
+  double *w_ = nullptr; // origin of the window
+};
+
+template <int n_dir>
+void sweep_rows_of(const RowSweep<2> &sweep)
+{
+  if (2 * sweep.window_length() <= RowWindow::close)
+    RowPipeline<Bonds2d<n_dir, RowWindow::close>, 2>(sweep).run();
+  else
+    RowPipeline<Bonds2d<n_dir, RowWindow::wide>, 2>(sweep).run();
 }
 
-template <>
-void LatticeKernel<2>::sweep_forces_of(const RowSweep<2> &sweep) const
+void sweep_rows_2d(const RowSweep<2> &sweep)
 {
-  n_directions_ == 2 ? forces_2(sweep) : forces_3(sweep);
+  if (sweep.constants.n_directions == 2)
+    sweep_rows_of<2>(sweep);
+  else
+    sweep_rows_of<3>(sweep);
+}
+
+void sines(const double *angle, double *cosine_minus_1, double *sine, int n)
+{
+  for_each_vector(0, 0, n, [&](auto d, long i) HWY_ATTR {
+    hn::Vec<decltype(d)> c, s;
+    cosine_minus_1_and_sine(d, hn::LoadU(d, angle + i), c, s);
+    hn::StoreU(c, d, cosine_minus_1 + i);
+    hn::StoreU(s, d, sine + i);
+  });
+}
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ligament::dem
+{
+HWY_EXPORT(sweep_rows_2d);
+HWY_EXPORT(sines);
+
+void sweep_rows(const RowSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(sweep_rows_2d)(sweep);
+}
+
+void cosine_minus_1_and_sine(const double *angle, double *cosine_minus_1, double *sine, int n)
+{
+  HWY_DYNAMIC_DISPATCH(sines)(angle, cosine_minus_1, sine, n);
 }
 } // namespace ligament::dem
+#endif

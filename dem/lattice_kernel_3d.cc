@@ -1,179 +1,365 @@
+// Compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/lattice_kernel_3d.cc"
+#include "core/dispatch.h"
+
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway wants it.
 #include "dem/lattice_rows.h"
 
-#include <cmath>
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+/// Three components of a vector of particles.
+template <typename V>
+struct Triple
+{
+  V x, y, z;
 
+  friend HWY_INLINE Triple operator+(const Triple &a, const Triple &b)
+  {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+  }
+  friend HWY_INLINE Triple operator-(const Triple &a, const Triple &b)
+  {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+  }
+  friend HWY_INLINE Triple operator*(V s, const Triple &a)
+  {
+    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+  }
+};
+
+/// s a + b
+template <typename V>
+HWY_INLINE Triple<V> mul_add(V s, const Triple<V> &a, const Triple<V> &b)
+{
+  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
+}
+/// b - s a
+template <typename V>
+HWY_INLINE Triple<V> neg_mul_add(V s, const Triple<V> &a, const Triple<V> &b)
+{
+  return {hn::NegMulAdd(s, a.x, b.x), hn::NegMulAdd(s, a.y, b.y), hn::NegMulAdd(s, a.z, b.z)};
+}
+/// c + a . b
+template <typename V>
+HWY_INLINE V add_dot(const Triple<V> &a, const Triple<V> &b, V c)
+{
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::MulAdd(a.z, b.z, c)));
+}
+/// c + a x b
+template <typename V>
+HWY_INLINE Triple<V> add_cross(const Triple<V> &a, const Triple<V> &b, const Triple<V> &c)
+{
+  return {hn::MulAdd(a.y, b.z, hn::NegMulAdd(a.z, b.y, c.x)),
+          hn::MulAdd(a.z, b.x, hn::NegMulAdd(a.x, b.z, c.y)),
+          hn::MulAdd(a.x, b.y, hn::NegMulAdd(a.y, b.x, c.z))};
+}
+
+/// Quaternion w + v.
+template <typename V>
+struct Quaternion
+{
+  V w;
+  Triple<V> v;
+};
+template <typename V>
+HWY_INLINE V dot(const Quaternion<V> &a, const Quaternion<V> &b)
+{
+  return add_dot(a.v, b.v, hn::Mul(a.w, b.w));
+}
+template <typename V>
+HWY_INLINE Quaternion<V> mul_add(V s, const Quaternion<V> &a, const Quaternion<V> &b)
+{
+  return {hn::MulAdd(s, a.w, b.w), mul_add(s, a.v, b.v)};
+}
+/// b + q n
+template <typename V>
+HWY_INLINE Quaternion<V> add_product(const Quaternion<V> &q, const Triple<V> &n,
+                                     const Quaternion<V> &b)
+{
+  return {hn::NegMulAdd(q.v.x, n.x, hn::NegMulAdd(q.v.y, n.y, hn::NegMulAdd(q.v.z, n.z, b.w))),
+          add_cross(q.v, n, mul_add(q.w, n, b.v))};
+}
+
+/// Directions as sums of three of them, whose turned normals are all that is kept of a rotation.
+template <int n_dir>
+struct Basis;
+template <>
+struct Basis<3>
+{
+  static constexpr int direction[3] = {0, 1, 2};
+  static constexpr int part[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+template <>
+struct Basis<6>
+{
+  static constexpr int direction[3] = {0, 1, 5};
+  static constexpr int part[6][3] = {{1, 0, 0},  {0, 1, 0},  {-1, -1, 1},
+                                     {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}};
+};
+
+/// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
+/// With h = (R - I) n and v = q S/r, the force on a face is
+///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h:
+/// linear in h, which three directions give for all, and formed by the same operations from either
+/// end, so that pair forces cancel exactly.
+template <int n_dir, long stride_>
+class Bonds3d
+{
+public:
+  static constexpr long stride = stride_;
+  static constexpr int n_streams = 28;
+  using Offsets = NeighbourOffsets<n_dir>;
+
+  HWY_INLINE explicit Bonds3d(const RowSweep<3> &sweep)
+      : a_(sweep.arrays), c_(sweep.constants), volumetric_(sweep.volumetric)
+  {
+  }
+
+  HWY_INLINE void set_window(double *origin) { w_ = origin; }
+
+  template <typename D>
+  HWY_INLINE void turn(D d, long i) const
+  {
+    double *const at = w_ + i;
+    for (int c = 0; c < 3; ++c)
+      hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
+    for (int c = 0; c < 4; ++c)
+      hn::StoreU(hn::LoadU(d, a_.rotation[c] + i), d, at + (q_ + c) * stride);
+    const auto q = quaternion(d, at);
+    const auto &v = q.v;
+    const Triple<hn::Vec<D>> two = v + v;
+    const auto xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
+    const auto xy = hn::Mul(two.x, v.y), xz = hn::Mul(two.x, v.z), yz = hn::Mul(two.y, v.z);
+    const auto wx = hn::Mul(two.x, q.w), wy = hn::Mul(two.y, q.w), wz = hn::Mul(two.z, q.w);
+    // Columns of R - I.
+    const Triple<hn::Vec<D>> x{hn::Neg(hn::Add(yy, zz)), hn::Add(xy, wz), hn::Sub(xz, wy)};
+    const Triple<hn::Vec<D>> y{hn::Sub(xy, wz), hn::Neg(hn::Add(xx, zz)), hn::Add(yz, wx)};
+    const Triple<hn::Vec<D>> z{hn::Add(xz, wy), hn::Sub(yz, wx), hn::Neg(hn::Add(xx, yy))};
+    for (int m = 0; m < 3; ++m) {
+      const auto n = normal(d, Basis<n_dir>::direction[m]);
+      const auto h = mul_add(n.x, x, mul_add(n.y, y, n.z * z));
+      store(d, h, at + (h_ + 3 * m) * stride);
+      if (!volumetric_)
+        store(d, hn::Set(d, -c_.shear * c_.half) * h, at + (g_ + 3 * m) * stride);
+    }
+  }
+
+  template <typename D>
+  HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    const auto zero = hn::Zero(d);
+    auto theta = zero;
+    Triple<hn::Vec<D>> moment{zero, zero, zero};
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto half = hn::Set(d, c_.half);
+      const auto h = along<k, h_>(d, at);
+      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
+      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
+      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+      const auto a = normal(d, k) + h;
+      theta = add_dot(a, e, theta);
+      moment = add_cross(a, e, moment);
+    });
+    const double volumetric = c_.area_r * c_.half;
+    const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
+    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
+    hn::StoreU(p, d, a_.pressure + i);
+    store(d, moment, at + moment_ * stride);
+    const auto vp = hn::Mul(hn::Set(d, volumetric), p);
+    const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
+    for (int m = 0; m < 3; ++m)
+      store(d,
+            mul_add(vp, normal(d, Basis<n_dir>::direction[m]),
+                    factor * load(d, at + (h_ + 3 * m) * stride)),
+            at + (g_ + 3 * m) * stride);
+  }
+
+  /// True when the force on a face, in any direction, reaches the strength.
+  template <typename D>
+  HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
+  {
+    using V = hn::Vec<D>;
+    const BondMask<D> mask(d, a_.mask, i);
+    const V zero = hn::Zero(d);
+    Triple<V> force{zero, zero, zero}, torque{zero, zero, zero};
+    Quaternion<V> bend{zero, {zero, zero, zero}}, twist{zero, {zero, zero, zero}};
+    V largest = zero;
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const auto q = quaternion(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto shear = hn::Set(d, c_.shear);
+      const auto g = along<k, g_>(d, at), n = normal(d, k);
+      const auto t_f =
+          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
+      const auto t_b =
+          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
+      force = force + (t_f - t_b);
+      torque = add_cross(n + along<k, h_>(d, at), t_f + t_b, torque);
+      largest = hn::Max(largest, add_dot(t_f, t_f, zero));
+
+      // With w the real part of the rotation of j as i sees it and s its part along n:
+      // bending w q_j, twist s q_j n.
+      const auto q_f = quaternion(d, f), q_b = quaternion(d, b);
+      bend = mul_add(mask(dot(q, q_f), k), q_f, bend);
+      bend = mul_add(mask(dot(q, q_b), n_dir + k), q_b, bend);
+      const auto qn = add_product(q, n, {zero, {zero, zero, zero}});
+      Quaternion<V> turned{zero, {zero, zero, zero}};
+      turned = mul_add(mask(dot(qn, q_f), k), q_f, turned);
+      turned = mul_add(mask(dot(qn, q_b), n_dir + k), q_b, turned);
+      twist = add_product(turned, n, twist);
+    });
+    const auto half = hn::Set(d, c_.half);
+    torque = half * torque;
+    if (volumetric_)
+      torque = neg_mul_add(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
+                           load(d, at + moment_ * stride), torque);
+    // Vector part of 2 (k_b bend + (k_t - k_b) twist) q*.
+    const V two_bending = hn::Set(d, 2 * c_.bending), two_twist = hn::Set(d, 2 * c_.twist);
+    const Quaternion<V> m = mul_add(
+        two_twist, twist, Quaternion<V>{hn::Mul(two_bending, bend.w), two_bending * bend.v});
+    torque = add_cross(q.v, m.v, mul_add(q.w, m.v, neg_mul_add(m.w, q.v, torque)));
+    hn::StoreU(force.x, d, a_.force[0] + i);
+    hn::StoreU(force.y, d, a_.force[1] + i);
+    hn::StoreU(force.z, d, a_.force[2] + i);
+    hn::StoreU(torque.x, d, a_.torque[0] + i);
+    hn::StoreU(torque.y, d, a_.torque[1] + i);
+    hn::StoreU(torque.z, d, a_.torque[2] + i);
+    return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
+  }
+
+  /// True when the tension along the present normal of a forward face reaches the strength.
+  template <typename D>
+  HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    const auto zero = hn::Zero(d);
+    auto found = hn::Lt(zero, zero);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k];
+      const auto t = masked(mask,
+                            mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
+                                    along<k, g_>(d, at) + along<k, g_>(d, f)),
+                            k);
+      const auto n = normal(d, k);
+      const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
+      const auto tension = add_dot(t, mean, zero);
+      const auto limit = hn::Mul(hn::Set(d, c_.limit2), add_dot(mean, mean, zero));
+      found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
+    });
+    return !hn::AllFalse(d, found);
+  }
+
+private:
+  template <typename Visit, int... k>
+  static HWY_INLINE void for_directions(Visit &&visit, std::integer_sequence<int, k...>)
+  {
+    (visit(std::integral_constant<int, k>()), ...);
+  }
+  template <typename Visit>
+  static HWY_INLINE void for_directions(Visit &&visit)
+  {
+    for_directions(visit, std::make_integer_sequence<int, n_dir>());
+  }
+
+  /// Three streams from one on.
+  template <typename D>
+  static HWY_INLINE Triple<hn::Vec<D>> load(D d, const double *p)
+  {
+    return {hn::LoadU(d, p), hn::LoadU(d, p + stride), hn::LoadU(d, p + 2 * stride)};
+  }
+  template <typename D>
+  static HWY_INLINE void store(D d, const Triple<hn::Vec<D>> &v, double *p)
+  {
+    hn::StoreU(v.x, d, p);
+    hn::StoreU(v.y, d, p + stride);
+    hn::StoreU(v.z, d, p + 2 * stride);
+  }
+  template <typename D>
+  static HWY_INLINE Triple<hn::Vec<D>> displacement(D d, const double *at)
+  {
+    return load(d, at + u_ * stride);
+  }
+  template <typename D>
+  static HWY_INLINE Quaternion<hn::Vec<D>> quaternion(D d, const double *at)
+  {
+    return {hn::LoadU(d, at + q_ * stride), load(d, at + (q_ + 1) * stride)};
+  }
+  template <typename D>
+  HWY_INLINE Triple<hn::Vec<D>> normal(D d, int k) const
+  {
+    const auto &n = c_.normal[k];
+    return {hn::Set(d, n[0]), hn::Set(d, n[1]), hn::Set(d, n[2])};
+  }
+  /// The vector of direction k out of those of the basis, whose streams start at `first`.
+  template <int k, int first, typename D>
+  static HWY_INLINE Triple<hn::Vec<D>> along(D d, const double *at)
+  {
+    constexpr auto &part = Basis<n_dir>::part[k];
+    constexpr int positive = part[2] == 1 ? 2 : part[1] == 1 ? 1 : 0;
+    const double *const p = at + first * stride;
+    auto sum = load(d, p + 3 * positive * stride);
+    if (part[0] == -1)
+      sum = sum - load(d, p);
+    if (part[1] == -1)
+      sum = sum - load(d, p + 3 * stride);
+    return sum;
+  }
+  template <typename Mask, typename V>
+  static HWY_INLINE Triple<V> masked(const Mask &mask, const Triple<V> &v, int k)
+  {
+    return {mask(v.x, k), mask(v.y, k), mask(v.z, k)};
+  }
+
+  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du.
+  static constexpr int u_ = 0, q_ = 3, h_ = 7, g_ = 16, moment_ = 25;
+
+  LatticeArrays<3> a_;
+  LatticeConstants<3> c_;
+  bool volumetric_;
+  double *w_ = nullptr; // origin of the window
+};
+
+template <int n_dir>
+void sweep_rows_of(const RowSweep<3> &sweep)
+{
+  if (2 * sweep.window_length() <= RowWindow::close)
+    RowPipeline<Bonds3d<n_dir, RowWindow::close>, 3>(sweep).run();
+  else
+    RowPipeline<Bonds3d<n_dir, RowWindow::wide>, 3>(sweep).run();
+}
+
+void sweep_rows_3d(const RowSweep<3> &sweep)
+{
+  if (sweep.constants.n_directions == 3)
+    sweep_rows_of<3>(sweep);
+  else
+    sweep_rows_of<6>(sweep);
+}
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace ligament::dem
 {
-namespace
-{
-using Direction = DirectionConstants<3>;
+HWY_EXPORT(sweep_rows_3d);
 
-struct V
+void sweep_rows(const RowSweep<3> &sweep)
 {
-  double x, y, z;
-};
-LIGAMENT_INLINE V operator+(const V &a, const V &b)
-{
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-LIGAMENT_INLINE V operator-(const V &a, const V &b)
-{
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-LIGAMENT_INLINE V operator*(double s, const V &a)
-{
-  return {s * a.x, s * a.y, s * a.z};
-}
-LIGAMENT_INLINE double dot(const V &a, const V &b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-LIGAMENT_INLINE V times(const V &a, const V &b)
-{
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// Unit quaternion (w, v).
-struct Q
-{
-  double w;
-  V v;
-};
-
-/// theory.md eqs. (D4), (D6), (D8b) for the two neighbours along one direction. The traction of a
-/// bond is formed by the same operations in the same order from either end: pair forces cancel
-/// exactly.
-struct Bonds3d
-{
-  struct Own
-  {
-    V u;
-    Q q;
-    double pressure;
-  };
-  struct Sum
-  {
-    V force{0, 0, 0}, torque{0, 0, 0};
-    V bending{0, 0, 0}; // in the axes of the particle
-    int exceeded = 0;
-  };
-
-  static LIGAMENT_INLINE V displacement(const LatticeArrays<3> &a, long i)
-  {
-    return {a.displacement[0][i], a.displacement[1][i], a.displacement[2][i]};
-  }
-  static LIGAMENT_INLINE Q quaternion(const LatticeArrays<3> &a, long i)
-  {
-    return {a.turn[0][i], {a.turn[1][i], a.turn[2][i], a.turn[3][i]}};
-  }
-  static LIGAMENT_INLINE Own own(const LatticeArrays<3> &a, long i)
-  {
-    return {displacement(a, i), quaternion(a, i), a.pressure[i]};
-  }
-  static LIGAMENT_INLINE V normal(const Direction &d)
-  {
-    return {d.normal[0], d.normal[1], d.normal[2]};
-  }
-  /// (R - I) n
-  static LIGAMENT_INLINE V change(const Q &q, const V &n)
-  {
-    const V c = times(q.v, n), t = c + c;
-    return q.w * t + times(q.v, t);
-  }
-
-  /// -(k_b, k_t part of the) torque on the neighbour in the axes of i, halved: w K v + v x K v.
-  static LIGAMENT_INLINE V bend(const Q &i, const Q &j, const Direction &d, const V &n)
-  {
-    const double w = i.w * j.w + dot(i.v, j.v);
-    const V v = (i.w * j.v - j.w * i.v) - times(i.v, j.v);
-    const double s = d.twist * dot(n, v);
-    return (d.bending * w) * v + s * (w * n + times(v, n));
-  }
-
-  template <bool full>
-  static LIGAMENT_INLINE double dilatation(const LatticeArrays<3> &a, const Direction &d,
-                                           const Own &o, const Neighbours &n)
-  {
-    const V nn = normal(d), h = change(o.q, nn);
-    const V hf = change(quaternion(a, n.forward), nn), hb = change(quaternion(a, n.backward), nn);
-    V duf = (displacement(a, n.forward) - o.u) - d.half * (h + hf);
-    V dub = (o.u - displacement(a, n.backward)) - d.half * (hb + h);
-    if (!full)
-      duf = n.w_forward * duf, dub = n.w_backward * dub;
-    return d.area_r * d.half * dot(nn + h, duf + dub);
-  }
-
-  template <bool full>
-  static LIGAMENT_INLINE void force(const LatticeArrays<3> &a, const Direction &d, const Own &o,
-                                    const Neighbours &n, Sum &sum)
-  {
-    const V nn = normal(d), h = change(o.q, nn);
-    const Q qf = quaternion(a, n.forward), qb = quaternion(a, n.backward);
-    const V hf = change(qf, nn), hb = change(qb, nn);
-    V duf = (displacement(a, n.forward) - o.u) - d.half * (h + hf);
-    V dub = (o.u - displacement(a, n.backward)) - d.half * (hb + h);
-    const double volumetric = d.area_r * d.half;
-    double vf = volumetric, vb = volumetric;
-    V bf = bend(o.q, qf, d, nn), bb = bend(o.q, qb, d, nn);
-    if (!full) {
-      duf = n.w_forward * duf, dub = n.w_backward * dub;
-      bf = n.w_forward * bf, bb = n.w_backward * bb;
-      vf *= n.w_forward, vb *= n.w_backward;
-    }
-    const V ai = nn + h, af = nn + hf, ab = nn + hb;
-    const double p = o.pressure;
-    const V tf = d.shear * duf + vf * (p * ai + a.pressure[n.forward] * af);
-    const V tb = d.shear * dub + vb * (a.pressure[n.backward] * ab + p * ai);
-    sum.force = sum.force + (tf - tb);
-    const V g = (tf + tb) - (d.area_r * p) * (duf + dub);
-    sum.torque = sum.torque + d.half * times(ai, g);
-    sum.bending = sum.bending + (bf + bb);
-    const V m = ai + af;
-    const double tension = dot(tf, m);
-    sum.exceeded |= tension * std::abs(tension) >= d.limit2 * dot(m, m) ? 1 : 0;
-  }
-
-  static LIGAMENT_INLINE void store(const LatticeArrays<3> &a, const Own &o, long i, const Sum &sum)
-  {
-    const V body = sum.bending + sum.bending;
-    const V t = sum.torque + (body + change(o.q, body));
-    a.force[0][i] = sum.force.x;
-    a.force[1][i] = sum.force.y;
-    a.force[2][i] = sum.force.z;
-    a.torque[0][i] = t.x;
-    a.torque[1][i] = t.y;
-    a.torque[2][i] = t.z;
-  }
-};
-
-using Sweep = RowSweep<3>;
-LIGAMENT_DISPATCH void dilatation_3(const Sweep &s)
-{
-  sweep_dilatation<Bonds3d, 3>(s);
-}
-LIGAMENT_DISPATCH void dilatation_6(const Sweep &s)
-{
-  sweep_dilatation<Bonds3d, 6>(s);
-}
-LIGAMENT_DISPATCH void forces_3(const Sweep &s)
-{
-  sweep_forces<Bonds3d, 3>(s);
-}
-LIGAMENT_DISPATCH void forces_6(const Sweep &s)
-{
-  sweep_forces<Bonds3d, 6>(s);
-}
-} // namespace
-
-template <>
-void LatticeKernel<3>::sweep_dilatation_of(const RowSweep<3> &sweep) const
-{
-  n_directions_ == 3 ? dilatation_3(sweep) : dilatation_6(sweep);
-}
-
-template <>
-void LatticeKernel<3>::sweep_forces_of(const RowSweep<3> &sweep) const
-{
-  n_directions_ == 3 ? forces_3(sweep) : forces_6(sweep);
+  HWY_DYNAMIC_DISPATCH(sweep_rows_3d)(sweep);
 }
 } // namespace ligament::dem
+#endif

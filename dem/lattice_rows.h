@@ -1,145 +1,169 @@
-// The loops over rows that both dimensions share; what a bond answers comes in as a policy `Bonds`.
-#pragma once
+// The loops over rows that both dimensions share, compiled once for every instruction set; what a
+// vector of neighbouring particles answers comes in as a policy `Bonds`.
+#if defined(LIGAMENT_DEM_LATTICE_ROWS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIGAMENT_DEM_LATTICE_ROWS_H
+#undef LIGAMENT_DEM_LATTICE_ROWS_H
+#else
+#define LIGAMENT_DEM_LATTICE_ROWS_H
+#endif
 
-#include "dem/dispatch.h"
 #include "dem/lattice_kernel.h"
+
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <utility>
 
-namespace ligament::dem
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
 {
-/// 1 where bond k of the particle carries, 0 where it doesn't.
-LIGAMENT_INLINE double weight(std::uint32_t mask, int k)
-{
-  return double(int(mask >> k & 1));
-}
+namespace hn = hwy::HWY_NAMESPACE;
 
-/// Indices and weights of the two neighbours along one direction.
-struct Neighbours
+using Lanes = hn::ScalableTag<double>;
+using OneLane = hn::CappedTag<double, 1>;
+
+/// Which of the bonds of a vector of particles carry.
+template <typename D>
+struct BondMask
 {
-  long forward, backward;
-  double w_forward, w_backward;
+  hn::Vec<hn::Rebind<std::uint64_t, D>> bits;
+
+  HWY_INLINE BondMask(D, const std::uint32_t *mask, long i)
+      : bits(hn::PromoteTo(hn::Rebind<std::uint64_t, D>(),
+                           hn::LoadU(hn::Rebind<std::uint32_t, D>(), mask + i)))
+  {
+  }
+  /// v where bond k carries, 0 elsewhere.
+  template <typename V>
+  HWY_INLINE V operator()(V v, int k) const
+  {
+    const hn::Rebind<std::uint64_t, D> d;
+    const auto carries = hn::TestBit(bits, hn::Set(d, std::uint64_t(1) << k));
+    return hn::IfThenElseZero(hn::RebindMask(D(), carries), v);
+  }
 };
 
-template <int dim, int n_dir>
-struct RowConstants
+/// Calls visit(d, i) for whole vectors that cover [begin, end) and nothing outside [first, end):
+/// the last one overlaps what came before, results are the same bits again. A row shorter than a
+/// vector goes one by one.
+template <typename Visit>
+HWY_INLINE void for_each_vector(long first, long begin, long end, Visit &&visit)
 {
-  std::array<DirectionConstants<dim>, n_dir> direction;
+  const Lanes d;
+  const long n = long(hn::Lanes(d));
+  if (end - first < n) {
+    for (long i = begin; i < end; ++i)
+      visit(OneLane(), i);
+    return;
+  }
+  long i = begin;
+  for (; i + n <= end; i += n)
+    visit(d, i);
+  if (i < end)
+    visit(d, end - n);
+}
+
+/// Three stages, each as far ahead of the next as its neighbours need: turn (of each particle by
+/// itself), dilatation, forces.
+template <typename Bonds, int dim>
+class RowPipeline
+{
+public:
+  HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep) : sweep_(sweep), bonds_(sweep)
+  {
+    // Sliding takes little time when the window is twice as long as it must be.
+    const long length = std::min(2 * sweep.window_length(), Bonds::stride);
+    sweep.window->reset(Bonds::n_streams, Bonds::stride,
+                        int(std::min(length, long(sweep.n_particles))));
+  }
+
+  HWY_INLINE void run()
+  {
+    if (!sweep_.with_forces) {
+      dilate_to(sweep_.n_particles);
+      return;
+    }
+    for (const RowSegment &segment : *sweep_.segments)
+      for (int begin = segment.begin; begin < segment.end; begin += piece) {
+        const int end = std::min(begin + piece, segment.end);
+        forces_at_ = begin;
+        dilate_to(std::min(end + sweep_.reach, sweep_.n_particles));
+        bonds_.set_window(sweep_.window->origin());
+        forces(segment, begin, end);
+      }
+  }
+
+private:
+  static constexpr int piece = row_piece;
+
+  HWY_INLINE void dilate_to(int target)
+  {
+    if (!sweep_.volumetric)
+      turn_to(target);
+    while (sweep_.volumetric && dilated_ < target) {
+      const RowSegment &segment = (*sweep_.segments)[segment_];
+      const int begin = dilated_, end = std::min(begin + piece, segment.end);
+      if (!sweep_.with_forces)
+        forces_at_ = begin;
+      turn_to(std::min(end + sweep_.reach, sweep_.n_particles));
+      bonds_.set_window(sweep_.window->origin());
+      dilatation(segment, begin, end);
+      dilated_ = end;
+      segment_ += end == segment.end;
+    }
+  }
+
+  HWY_INLINE void turn_to(int target)
+  {
+    while (turned_ < target) {
+      const int end = std::min(turned_ + piece, target);
+      sweep_.window->slide(std::max(forces_at_ - sweep_.reach, 0), end);
+      bonds_.set_window(sweep_.window->origin());
+      // Overlapping vectors stay within this piece: what lies before may have left the window.
+      for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
+      turned_ = end;
+    }
+  }
+
+  HWY_INLINE void dilatation(const RowSegment &segment, int begin, int end)
+  {
+    const typename Bonds::Offsets offsets(segment);
+    for_each_vector(segment.begin, begin, end,
+                    [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
+  }
+
+  HWY_INLINE void forces(const RowSegment &segment, int begin, int end)
+  {
+    const typename Bonds::Offsets offsets(segment);
+    int done = begin;
+    for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
+      const int after = int(i) + int(hn::Lanes(d));
+      if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)) && bonds_.exceeds(d, i, offsets))
+        sweep_.exceeded->push_back({std::max(int(i), done), after});
+      done = after;
+    });
+  }
+
+  const RowSweep<dim> &sweep_;
+  Bonds bonds_;
+  int segment_ = 0;
+  int turned_ = 0, dilated_ = 0, forces_at_ = 0; // fronts of the stages
+};
+
+/// Indices of the neighbours against those of the particles.
+template <int n_dir>
+struct NeighbourOffsets
+{
   std::array<long, n_dir> forward, backward;
 
-  LIGAMENT_INLINE RowConstants(const RowSweep<dim> &sweep, const RowSegment &segment)
+  HWY_INLINE explicit NeighbourOffsets(const RowSegment &segment)
   {
     for (int k = 0; k < n_dir; ++k) {
-      direction[k] = (*sweep.directions)[k];
       forward[k] = segment.forward[k];
       backward[k] = segment.backward[k];
     }
   }
 };
-
-template <typename Bonds, bool full, int dim, int n_dir, std::size_t... k>
-LIGAMENT_INLINE double
-sum_dilatation(const LatticeArrays<dim> &a, const RowConstants<dim, n_dir> &row,
-               const typename Bonds::Own &own, long i, std::index_sequence<k...>)
-{
-  const std::uint32_t mask = a.mask[i];
-  double sum = 0;
-  ((sum += Bonds::template dilatation<full>(a, row.direction[k], own,
-                                            Neighbours{i + row.forward[k], i + row.backward[k],
-                                                       weight(mask, k), weight(mask, n_dir + k)})),
-   ...);
-  return sum;
-}
-
-template <typename Bonds, bool full, int dim, int n_dir, std::size_t... k>
-LIGAMENT_INLINE void sum_forces(const LatticeArrays<dim> &a, const RowConstants<dim, n_dir> &row,
-                                const typename Bonds::Own &own, long i, typename Bonds::Sum &sum,
-                                std::index_sequence<k...>)
-{
-  const std::uint32_t mask = a.mask[i];
-  (Bonds::template force<full>(a, row.direction[k], own,
-                               Neighbours{i + row.forward[k], i + row.backward[k], weight(mask, k),
-                                          weight(mask, n_dir + k)},
-                               sum),
-   ...);
-}
-
-template <typename Bonds, bool full, int dim, int n_dir>
-LIGAMENT_INLINE void dilatation_range(const LatticeArrays<dim> &arrays,
-                                      const RowConstants<dim, n_dir> &constants, long begin,
-                                      long end)
-{
-  const LatticeArrays<dim> a = arrays;
-  const RowConstants<dim, n_dir> row = constants;
-#pragma GCC ivdep
-  for (long i = begin; i < end; ++i)
-    a.pressure[i] =
-        a.lambda_per_volume[i] *
-        sum_dilatation<Bonds, full>(a, row, Bonds::own(a, i), i, std::make_index_sequence<n_dir>());
-}
-
-template <typename Bonds, bool full, int dim, int n_dir>
-LIGAMENT_INLINE bool force_range(const LatticeArrays<dim> &arrays,
-                                 const RowConstants<dim, n_dir> &constants, long begin, long end)
-{
-  const LatticeArrays<dim> a = arrays;
-  const RowConstants<dim, n_dir> row = constants;
-  int exceeded = 0;
-#pragma GCC ivdep
-  for (long i = begin; i < end; ++i) {
-    const auto own = Bonds::own(a, i);
-    typename Bonds::Sum sum;
-    sum_forces<Bonds, full>(a, row, own, i, sum, std::make_index_sequence<n_dir>());
-    Bonds::store(a, own, i, sum);
-    exceeded |= sum.exceeded;
-  }
-  return exceeded != 0;
-}
-
-/// Calls range(begin, end, segment, full) for pieces of the segments short enough for the nearest
-/// cache; full: every bond of every particle in it carries.
-template <int n_dir, typename Range>
-LIGAMENT_INLINE void for_each_range(const std::uint32_t *mask,
-                                    const std::vector<RowSegment> &segments, Range &&range)
-{
-  constexpr int longest = 512;
-  constexpr std::uint32_t all_bonds = (1u << 2 * n_dir) - 1;
-  for (const RowSegment &segment : segments)
-    for (int begin = segment.begin; begin < segment.end; begin += longest) {
-      const int end = std::min(begin + longest, segment.end);
-      std::uint32_t common = ~0u;
-      for (int i = begin; i < end; ++i)
-        common &= mask[i];
-      range(begin, end, segment, (common & all_bonds) == all_bonds);
-    }
-}
-
-template <typename Bonds, int n_dir, int dim>
-LIGAMENT_INLINE void sweep_dilatation(const RowSweep<dim> &sweep)
-{
-  for_each_range<n_dir>(
-      sweep.arrays.mask, *sweep.segments,
-      [&](int begin, int end, const RowSegment &segment, bool full) __attribute__((always_inline)) {
-        const RowConstants<dim, n_dir> row(sweep, segment);
-        if (full)
-          dilatation_range<Bonds, true>(sweep.arrays, row, begin, end);
-        else
-          dilatation_range<Bonds, false>(sweep.arrays, row, begin, end);
-      });
-}
-
-template <typename Bonds, int n_dir, int dim>
-LIGAMENT_INLINE void sweep_forces(const RowSweep<dim> &sweep)
-{
-  for_each_range<n_dir>(
-      sweep.arrays.mask, *sweep.segments,
-      [&](int begin, int end, const RowSegment &segment, bool full) __attribute__((always_inline)) {
-        const RowConstants<dim, n_dir> row(sweep, segment);
-        const bool exceeded = full ? force_range<Bonds, true>(sweep.arrays, row, begin, end)
-                                   : force_range<Bonds, false>(sweep.arrays, row, begin, end);
-        if (exceeded)
-          sweep.exceeded->push_back({begin, end});
-      });
-}
-} // namespace ligament::dem
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,5 +1,7 @@
 #include "dem/many_body_force.h"
 
+#include <algorithm>
+
 namespace ligament::dem
 {
 namespace
@@ -25,7 +27,8 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : packing_(std::move(packing)), material_(material), fracture_(fracture),
-      bonds_(packing_, material), kernel_(bonds_.directions(), material.shear_modulus()),
+      bonds_(packing_, material), kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
+                                          material.shear_modulus(), material.poissons_ratio != 0),
       surface_(packing_, material, std::move(loads)), contacts_(material),
       search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
       lambda_per_volume_(packing_.size())
@@ -34,11 +37,25 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
   for (const auto &wall : surface_.walls())
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
                            packing_.volume[wall.i];
+  find_irregular_particles();
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
   for (const auto &face : packing_.faces)
     if (face.cracked)
       contacts_.add(BondNetwork<dim>::make_bond(face, material_, packing_.thickness), true);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_irregular_particles()
+{
+  irregular_particles_.clear();
+  bonds_.for_each_irregular([&](BondId, const Bond<dim> &b) {
+    irregular_particles_.push_back(b.i);
+    irregular_particles_.push_back(b.j);
+  });
+  std::sort(irregular_particles_.begin(), irregular_particles_.end());
+  irregular_particles_.erase(std::unique(irregular_particles_.begin(), irregular_particles_.end()),
+                             irregular_particles_.end());
 }
 
 template <int dim>
@@ -61,6 +78,7 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
                 "energy weights are set once, for every particle of an intact body");
   energy_weights_ = weights;
   bonds_.set_weights(weights);
+  find_irregular_particles();
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
 }
@@ -71,15 +89,36 @@ LatticeArrays<dim> ManyBodyForce<dim>::arrays(const Particles &p, Workspace &wor
   LatticeArrays<dim> a{};
   for (int c = 0; c < dim; ++c)
     a.displacement[c] = p.displacement[c].data();
-  if constexpr (dim == 2)
-    a.turn = {p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data()};
-  else
-    for (int c = 0; c < 4; ++c)
-      a.turn[c] = p.rotation[c].data();
+  for (int c = 0; c < a.n_rotations; ++c)
+    a.rotation[c] = p.rotation[c].data();
   a.mask = bonds_.mask().data();
   a.lambda_per_volume = lambda_per_volume_.data();
+  a.other_pressure = work.other_pressure.data();
   a.pressure = work.pressure.data();
   return a;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_turns(const Particles &p, bool all, Workspace &work) const
+{
+  if constexpr (dim == 2) {
+    work.cosine_minus_1.resize(packing_.size());
+    work.sine.resize(packing_.size());
+    if (all) {
+      cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(),
+                              packing_.size());
+      return;
+    }
+    const int n = int(irregular_particles_.size());
+    std::vector<double> angle(n), c(n), s(n);
+    for (int k = 0; k < n; ++k)
+      angle[k] = p.rotation[0][irregular_particles_[k]];
+    cosine_minus_1_and_sine(angle.data(), c.data(), s.data(), n);
+    for (int k = 0; k < n; ++k) {
+      work.cosine_minus_1[irregular_particles_[k]] = c[k];
+      work.sine[irregular_particles_[k]] = s[k];
+    }
+  }
 }
 
 template <int dim>
@@ -89,6 +128,14 @@ Turn<dim> ManyBodyForce<dim>::turn(const Particles &p, const Workspace &work, in
     return {work.cosine_minus_1[i], work.sine[i]};
   else
     return Turn<3>::of(p, i);
+}
+
+template <int dim>
+BondMotion<dim> ManyBodyForce<dim>::motion(const Bond<dim> &b, const Particles &p,
+                                           const Workspace &work) const
+{
+  return {b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
+          get(p.displacement, b.j)};
 }
 
 template <int dim>
@@ -116,44 +163,44 @@ double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
 }
 
 template <int dim>
-void ManyBodyForce<dim>::dilatation(const Particles &p, const SurfaceLoads<dim> &surface,
-                                    Workspace &work) const
+void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLoads<dim> &surface,
+                                             Workspace &work) const
 {
-  const int n = packing_.size();
-  work.pressure.resize(n);
-  if constexpr (dim == 2) {
-    work.cosine_minus_1.resize(n);
-    work.sine.resize(n);
-    cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(), n);
-  }
-  if (material_.poissons_ratio == 0) {
-    std::fill(work.pressure.begin(), work.pressure.end(), 0.);
+  work.pressure.resize(packing_.size());
+  work.other_pressure.assign(packing_.size(), 0.);
+  if (material_.poissons_ratio == 0)
     return;
-  }
-  kernel_.dilatation(arrays(p, work), bonds_.segments());
   bonds_.for_each_irregular([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
-                            get(p.displacement, b.j));
+    const BondMotion<dim> m = motion(b, p, work);
     const double s_r = b.area / b.distance;
-    work.pressure[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
-    work.pressure[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
+    work.other_pressure[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
+    work.other_pressure[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
   });
-  surface.add_dilatation(p, lambda_per_volume_, work.pressure);
+  surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) const
+{
+  find_turns(p, true, work);
+  find_other_pressure(p, surface_, work);
+  if (material_.poissons_ratio != 0)
+    kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface, double strength,
                                         Workspace &work) const
 {
-  dilatation(p, surface, work);
+  find_turns(p, false, work);
+  find_other_pressure(p, surface, work);
   LatticeArrays<dim> a = arrays(p, work);
   for (int c = 0; c < dim; ++c)
     a.force[c] = p.force[c].data();
   for (int c = 0; c < n_spins<dim>; ++c)
     a.torque[c] = p.torque[c].data();
-  work.exceeded_rows.clear();
   work.exceeded.clear();
-  kernel_.forces(a, bonds_.segments(), strength, work.exceeded_rows);
+  kernel_.forces(a, bonds_.segments(), strength, rows_, work.exceeded_rows);
   const std::vector<double> &pressure = work.pressure;
   bonds_.for_each_irregular([&](BondId id, const Bond<dim> &b) {
     const Turn<dim> turn_i = turn(p, work, b.i), turn_j = turn(p, work, b.j);
@@ -196,12 +243,11 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
 template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
-  Workspace work; // with the sines of all rotations, which the bonds read, too
-  dilatation(p, surface_, work);
+  Workspace work;
+  find_pressure(p, work);
   double sum = surface_.energy(p) + contacts_.energy(p);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
-                            get(p.displacement, b.j));
+    const BondMotion<dim> m = motion(b, p, work);
     sum += b.weight * material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
            bending_energy(b, p);
   });

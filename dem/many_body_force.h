@@ -101,14 +101,19 @@ private:
   struct Workspace
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
-    std::vector<double> cosine_minus_1, sine; // 2D
+    std::vector<double> other_pressure;       // the part that isn't from lattice bonds
+    std::vector<double> cosine_minus_1, sine; // 2D, of the particles that were asked for
     std::vector<RowRange> exceeded_rows;
     std::vector<BondId> exceeded; // irregular
   };
 
   LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
   Turn<dim> turn(const Particles &particles, const Workspace &work, int i) const;
+  /// Prepares turn() of all particles, or of those with irregular bonds.
+  void find_turns(const Particles &particles, bool all, Workspace &work) const;
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles) const;
+  BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles,
+                         const Workspace &work) const;
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
 
@@ -116,9 +121,11 @@ private:
   double tension(const Bond<dim> &bond, const Particles &particles,
                  const std::vector<double> &pressure) const;
 
-  /// Overwrites pressure and, in 2D, the cosines and sines.
-  void dilatation(const Particles &particles, const SurfaceLoads<dim> &surface,
-                  Workspace &work) const;
+  /// The pressures from irregular bonds and loaded faces.
+  void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
+                           Workspace &work) const;
+  /// Turns and pressures of all particles.
+  void find_pressure(const Particles &particles, Workspace &work) const;
   /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
   /// strength when it is above 0.
   void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
@@ -130,6 +137,7 @@ private:
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
   /// Elastic energy of one bond and of the volumes of its two particles, in J.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
+  void find_irregular_particles();
   void update_volumetric_stiffness(int i);
   double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
@@ -142,10 +150,12 @@ private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   bool searching_ = false;
+  std::vector<int> irregular_particles_;  // those with bonds of the table
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
   std::vector<double> energy_weights_;    // of the particles; empty: all 1
   Workspace work_;
+  mutable RowWindow rows_; // scratch: nothing in it outlives a call
   std::vector<BrokenBond<dim>> broken_;
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;

@@ -177,12 +177,11 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
                                   Components<n_strains<dim>> &stress) const
 {
   Workspace work;
-  dilatation(particles, surface_, work);
+  find_pressure(particles, work);
   for (auto &a : stress)
     a.assign(packing_.size(), 0.);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m(b, turn(particles, work, b.i), turn(particles, work, b.j),
-                            get(particles.displacement, b.i), get(particles.displacement, b.j));
+    const BondMotion<dim> m = motion(b, particles, work);
     const Vector<dim> f = bond_force(b, m, work.pressure);
     add(stress, b.i, symmetric_product<dim>(m.a_i, f));
     add(stress, b.j, symmetric_product<dim>(m.a_j, -f));
@@ -198,7 +197,7 @@ template <int dim>
 double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::vector<int> &of) const
 {
   Workspace work;
-  dilatation(particles, surface_, work);
+  find_pressure(particles, work);
   double largest = 0;
   for (const int i : of)
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {

@@ -1,6 +1,6 @@
 #include "particles/particle_solver.h"
 
-#include <cmath>
+#include "particles/turn_orientations.h"
 
 namespace ligament::particles
 {
@@ -48,24 +48,8 @@ void ParticleSolver<dim>::drift(double dt)
   } else {
     auto &[qw, qx, qy, qz] = state.rotation;
     const auto &[wx, wy, wz] = state.spin;
-    for (int i = 0; i < n; ++i) {
-      // q <- exp(dt w / 2) q; sin(x)/x by its series: half angles are far below one per step.
-      const double h = dt / 2, bx = h * wx[i], by = h * wy[i], bz = h * wz[i];
-      const double x2 = bx * bx + by * by + bz * bz;
-      const double s =
-          x2 < 1e-4 ? 1 - x2 / 6 * (1 - x2 / 20) : std::sin(std::sqrt(x2)) / std::sqrt(x2);
-      const double c =
-          x2 < 1e-4 ? 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30)) : std::cos(std::sqrt(x2));
-      const double ex = s * bx, ey = s * by, ez = s * bz;
-      const double w0 = qw[i], x0 = qx[i], y0 = qy[i], z0 = qz[i];
-      double w1 = c * w0 - ex * x0 - ey * y0 - ez * z0;
-      double x1 = c * x0 + ex * w0 + ey * z0 - ez * y0;
-      double y1 = c * y0 + ey * w0 + ez * x0 - ex * z0;
-      double z1 = c * z0 + ez * w0 + ex * y0 - ey * x0;
-      // First-order renormalisation keeps |q| = 1 against round-off.
-      const double norm = 1.5 - 0.5 * (w1 * w1 + x1 * x1 + y1 * y1 + z1 * z1);
-      qw[i] = w1 * norm, qx[i] = x1 * norm, qy[i] = y1 * norm, qz[i] = z1 * norm;
-    }
+    turn_orientations({qw.data(), qx.data(), qy.data(), qz.data()},
+                      {wx.data(), wy.data(), wz.data()}, dt, n);
   }
 }
 
