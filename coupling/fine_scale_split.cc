@@ -198,7 +198,7 @@ double FineScaleSplit<dim>::impulse_energy(const Bodies<dim> &bodies, const Half
                                            double dt) const
 {
   const int m = parameters_.step_ratio;
-  if (m == 1 || regime_ != Regime::linear) // (E5) is that of linear cells
+  if (m == 1)
     return 0;
   const auto &far = *bodies.far;
   Components<dim> v = far.halfway_velocity(m * dt);

@@ -1,6 +1,7 @@
 #include "fem/corotated_kernel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::fem
 {
@@ -39,6 +40,33 @@ double CorotatedKernel<dim>::subtract_forces(const Components<dim> &displacement
           force[c][nodes[a]] += f(c, a);
     }
   return energy;
+}
+
+template <int dim>
+void CorotatedKernel<dim>::subtract_product(const Components<dim> &displacement,
+                                            const Components<dim> &v, Components<dim> &force) const
+{
+  if (groups_.empty())
+    return;
+  double largest = 0;
+  for (const auto &component : v)
+    for (const double x : component)
+      largest = std::max(largest, std::abs(x));
+  if (largest == 0)
+    return;
+  const double step = 1e-5 * groups_.front().size.minCoeff() / largest;
+  for (const double sign : {1., -1.}) {
+    Components<dim> u = displacement, f;
+    for (int c = 0; c < dim; ++c) {
+      f[c].assign(u[c].size(), 0.);
+      for (std::size_t i = 0; i < u[c].size(); ++i)
+        u[c][i] += sign * step * v[c][i];
+    }
+    subtract_forces(u, f);
+    for (int c = 0; c < dim; ++c)
+      for (std::size_t i = 0; i < u[c].size(); ++i)
+        force[c][i] += sign / (2 * step) * f[c][i];
+  }
 }
 
 template class CorotatedKernel<2>;

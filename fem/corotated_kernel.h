@@ -16,6 +16,11 @@ public:
   /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J.
   double subtract_forces(const Components<dim> &displacement, Components<dim> &force) const;
 
+  /// force -= K v, K the stiffness in the state `displacement`, by central differences: exact to
+  /// about 1e-8 of it.
+  void subtract_product(const Components<dim> &displacement, const Components<dim> &v,
+                        Components<dim> &force) const;
+
 private:
   struct Group // cells of one size
   {

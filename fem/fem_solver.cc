@@ -296,7 +296,10 @@ double FemSolver<dim>::quadratic_form(const Components<dim> &u) const
   Components<dim> f;
   for (auto &component : f)
     component.assign(mesh_.n_nodes(), 0.);
-  kernel_->subtract_forces(u, f);
+  if (corotated_)
+    corotated_->subtract_product(displacement, u, f);
+  else
+    kernel_->subtract_forces(u, f);
   double sum = 0;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < mesh_.n_nodes(); ++i)

@@ -74,7 +74,8 @@ public:
   /// Elastic energy of the solver's own cells, with the displacements as they are; in J.
   double potential_energy() const;
 
-  /// 1/2 u.K u of the solver's own cells, linear ones, for any nodal field, hanging nodes included.
+  /// 1/2 u.K u of the solver's own cells for any nodal field, hanging nodes included; K is the
+  /// stiffness in the present state when the cells turn.
   double quadratic_form(const Components<dim> &u) const;
 
   /// Velocities half-way through kick(dt); those of held components and released nodes as they are.

@@ -97,7 +97,7 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
     const auto total = [&] {
       const auto e = body.coupler->energy(bodies, step);
       return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far +
-             e.blended;
+             e.blended + e.impulses;
     };
     const double before = total();
     set(needed, body);
