@@ -16,6 +16,7 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"damper_fine", body.fine_damper},
           {"damper_gap", body.gap_filter},
           {"damping", damping},
+          {"absorbed", absorbed},
           {"external_work", external_work},
           {"residual", residual()}};
 }
@@ -27,6 +28,10 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   EnergyLedger ledger;
   ledger.body = body.coupler->energy(body.bodies(), step);
   ledger.damping = damping;
+  if (body.zone)
+    ledger.absorbed += body.zone->dashpots.energy();
+  if (body.far)
+    ledger.absorbed += body.far->absorbed_energy();
   if (body.force) {
     ledger.fracture = body.force->fracture_energy();
     ledger.breaking_step_error = body.force->breaking_step_error();
