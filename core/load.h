@@ -35,6 +35,9 @@ struct BoundaryLoad
   Kind kind = Kind::velocity;
   std::array<std::optional<double>, dim> value;
   Ramp ramp;
+  /// Waves leave through this side, beside the traction (theory.md eq. (A1)); kind traction only.
+  bool absorbing = false;
+  double absorbing_layer = 0; // m, width of the damping layer inside it; 0: dashpots alone
 
   /// Prescribed displacement of component c at time t, in m (kinds velocity and displacement).
   double displacement(int c, double t) const;

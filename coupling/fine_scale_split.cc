@@ -52,7 +52,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   for (int k = 0; k < transfer_.size(); ++k) {
     const double s = transfer_.position(k);
     const double rate =
-        parameters.fine_damper * constants.wave_speed_p / overlap_.cell_size * (1 - s) * (1 - s);
+        parameters.fine_damper * constants.wave_speed_p / overlap_.cell_size * std::pow(1 - s, 1.5);
     damping_.push_back(1 - std::exp(-rate * dt));
     report_.pad_particles += transfer_.inverse_mass(k) == 0;
   }

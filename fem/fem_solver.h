@@ -2,6 +2,7 @@
 // discrete half.
 #pragma once
 
+#include "core/dashpots.h"
 #include "core/load.h"
 #include "fem/mesh.h"
 
@@ -59,7 +60,7 @@ public:
   void compute_forces(double time);
 
   /// v += dt f/m of all nodes that are not released; held components get the velocity that
-  /// brings them to their load's displacement at time + dt after drift(dt).
+  /// brings them to their load's displacement at time + dt after drift(dt). Absorbing sides brake.
   void kick(double dt, double time);
 
   /// u += dt v of all nodes that are not released; then all hanging nodes follow.
@@ -93,6 +94,9 @@ public:
   /// reset_work, in J: the force of the previous and the present compute_forces, averaged, times
   /// the displacement in between. kinetic + potential - external work is then an exact invariant.
   double external_work() const { return external_work_; }
+
+  /// Energy that absorbing sides and their layers have taken, in J.
+  double absorbed_energy() const { return dashpots_.energy(); }
   void reset_work() { external_work_ = 0; }
 
   /// Largest stable leap-frog step of the own cells, in s (element bound 2/omega_max); infinite if
@@ -125,6 +129,8 @@ private:
 
   void find_held_components();
   void update_own_cells();
+  std::vector<double> side_areas(int boundary) const; // of the own cells, per node, m^2
+  void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
   void take_from_masters(Components<dim> &field) const;
   double load_force(const LoadedComponent &c) const; // on the body, in N
@@ -140,6 +146,7 @@ private:
   std::unique_ptr<CorotatedKernel<dim>> corotated_; // null: linear
   std::vector<double> mass_, inverse_mass_;
   std::vector<LoadedComponent> held_components_, traction_components_;
+  core::Dashpots<dim> dashpots_;
   double external_work_ = 0, force_time_ = 0;
   bool has_previous_forces_ = false;
 };

@@ -12,22 +12,24 @@ ParticleSolver<dim>::ParticleSolver(Particles<dim> particles,
 }
 
 template <int dim>
-void ParticleSolver<dim>::kick(double dt, int begin, int end)
+void ParticleSolver<dim>::kick(double dt)
 {
+  const int n = state.n_owned;
   for (int c = 0; c < dim; ++c) {
     double *__restrict v = state.velocity[c].data();
     const double *__restrict f = state.force[c].data();
     const double *__restrict m = state.inverse_mass.data();
-    for (int i = begin; i < end; ++i)
+    for (int i = 0; i < n; ++i)
       v[i] += dt * f[i] * m[i];
   }
   for (int c = 0; c < n_spins<dim>; ++c) {
     double *__restrict w = state.spin[c].data();
     const double *__restrict t = state.torque[c].data();
     const double *__restrict j = state.inverse_inertia.data();
-    for (int i = begin; i < end; ++i)
+    for (int i = 0; i < n; ++i)
       w[i] += dt * t[i] * j[i];
   }
+  dashpots.act(dt, state.inverse_mass, state.force, state.velocity);
 }
 
 template <int dim>

@@ -1,6 +1,7 @@
 // The discrete half: particles, their force, and the verbs of the time loop.
 #pragma once
 
+#include "core/dashpots.h"
 #include "particles/particle_force.h"
 
 #include <memory>
@@ -14,9 +15,8 @@ class ParticleSolver
 public:
   ParticleSolver(Particles<dim> particles, std::unique_ptr<ParticleForce<dim>> force);
 
-  /// v += dt f/m, spin += dt T/J for particles [begin, end).
-  void kick(double dt, int begin, int end);
-  void kick(double dt) { kick(dt, 0, state.n_owned); }
+  /// v += dt f/m, spin += dt T/J; then absorbing sides brake.
+  void kick(double dt);
 
   /// u += dt v; orientations turn by dt spin (exactly, for a constant spin over the step).
   void drift(double dt);
@@ -36,5 +36,6 @@ public:
 
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
+  core::Dashpots<dim> dashpots; // of absorbing sides
 };
 } // namespace ligament::particles

@@ -68,6 +68,35 @@ std::string duration_text(double seconds)
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// An absorbing side as a thick line, its layer's border dashed; in 3D along two edges.
+template <int dim>
+std::vector<Segments> absorbing_lines(const LoadParameters &load, int boundary,
+                                      const Vector<dim> &lower, const Vector<dim> &upper)
+{
+  const int axis = boundary / 2;
+  std::vector<Segments> lines;
+  for (const double depth : {0., load.absorbing_layer}) {
+    if (depth == 0 && !lines.empty())
+      break;
+    Segments s;
+    s.color = {20, 110, 200};
+    s.width = depth == 0 ? 6 : 2;
+    s.dashed = depth > 0;
+    for (int c = 0; c < dim; ++c)
+      if (c != axis)
+        for (const double end : {lower[c], upper[c]}) {
+          std::array<double, 3> point = {};
+          for (int k = 0; k < dim; ++k)
+            point[k] = upper[k];
+          point[axis] = boundary % 2 ? upper[axis] - depth : lower[axis] + depth;
+          point[c] = end;
+          s.points.insert(s.points.end(), point.begin(), point.end());
+        }
+    lines.push_back(s);
+  }
+  return lines;
+}
+
 template <int dim>
 void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &file)
 {
@@ -99,8 +128,12 @@ void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &f
     label.position = {0, 0, 0};
     label.position[boundary / 2] =
         (boundary % 2 ? 0.94 : -0.94) * scene.specimen.size[boundary / 2] / 2;
-    label.text = load.boundary + ": " + load.kind;
+    label.text = load.boundary + ": " + (load.absorbing ? "absorbing" : load.kind);
     picture.labels.push_back(label);
+    if (load.absorbing) {
+      auto segments = absorbing_lines(load, boundary, body.lower, body.upper);
+      picture.segments.insert(picture.segments.end(), segments.begin(), segments.end());
+    }
   }
   for (const auto &crack : scene.specimen.cracks)
     if (dim == 2) {

@@ -39,6 +39,57 @@ bool acts_on(const LoadParameters &load, int c)
   return load.velocity[c] || load.displacement[c] || load.traction[c];
 }
 
+/// What "absorbing" excludes, alone and with the loads before.
+void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, Findings &f)
+{
+  const LoadParameters &load = scene.loads[k];
+  if (load.absorbing_layer > 0 && !load.absorbing)
+    f.error(key + "/absorbing_layer",
+            fmt::format("\"absorbing_layer\" in {}, whose side does not absorb", key),
+            "the layer belongs to an absorbing side", "set \"absorbing\" to true, or remove it");
+  const bool holds = has_components(load.velocity) || has_components(load.displacement);
+  if (load.absorbing && holds)
+    f.error(key + "/absorbing", fmt::format("\"absorbing\" in {}, which prescribes a motion", key),
+            "an absorbing side moves as the waves ask; it can only carry a traction",
+            "replace the motion by a traction, or remove \"absorbing\"");
+  for (std::size_t j = 0; j < k; ++j) {
+    const LoadParameters &other = scene.loads[j];
+    if (other.boundary != load.boundary || !f.sound({key}))
+      continue;
+    const bool other_holds = has_components(other.velocity) || has_components(other.displacement);
+    if ((load.absorbing && (other.absorbing || other_holds)) || (other.absorbing && holds))
+      f.error(key + "/boundary",
+              fmt::format("\"boundary\" in {}: side \"{}\" absorbs waves and has another load "
+                          "that {}",
+                          key, load.boundary,
+                          load.absorbing && other.absorbing ? "absorbs them, too"
+                                                            : "prescribes its motion"),
+              fmt::format("/loads/{} acts on it already", j), "keep one of the two");
+  }
+}
+
+/// The layer must leave room for the overlap and its transition.
+void check_layer(const Scene &scene, const LoadParameters &load, const std::string &key,
+                 const Layout &layout, Findings &f)
+{
+  const int side = side_number(load.boundary), axis = side / 2;
+  const bool upper = side % 2;
+  double room = layout.specimen.upper[axis] - layout.specimen.lower[axis];
+  if (layout.coupled_side[side])
+    room = (upper ? layout.specimen.upper[axis] - layout.zone.upper[axis]
+                  : layout.zone.lower[axis] - layout.specimen.lower[axis]) -
+           scene.coupling.transition_cells * layout.cell_size;
+  else if (layout.coupled)
+    room = layout.zone.upper[axis] - layout.zone.lower[axis] - layout.overlap;
+  if (load.absorbing_layer >= room)
+    f.error(key + "/absorbing_layer",
+            fmt::format("\"absorbing_layer\" in {} is {:.4g} m, more than the {:.4g} m that there "
+                        "are between the side and the overlap with its transition",
+                        key, load.absorbing_layer, std::max(room, 0.)),
+            "the layer may damp only what one model carries alone",
+            "make the layer thinner, or move the side away from the zone");
+}
+
 void check_against_overlap(const LoadParameters &load, const std::string &key, const Layout &layout,
                            Findings &f)
 {
@@ -76,13 +127,15 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
       continue;
     }
     const std::vector<std::string> kinds = kinds_of(load);
-    if (kinds.empty())
+    if (kinds.empty() && !load.absorbing)
       f.error(key, fmt::format("{} has no \"velocity\", \"displacement\" or \"traction\"", key),
-              "a load without components does nothing", "add one of them, or remove the load");
+              "a load without components does nothing",
+              "add one of them or \"absorbing\", or remove the load");
     if (kinds.size() > 1)
       f.error(key + "/" + kinds[1],
               fmt::format("both \"{}\" and \"{}\" in {}", kinds[0], kinds[1], key),
               "one load is of one kind", "write two loads with different components");
+    check_absorbing(scene, k, key, f);
     if (!f.sound({key}))
       continue;
     for (std::size_t j = 0; j < k; ++j)
@@ -96,6 +149,8 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
                   "keep one of the two, or set the component to null in one");
     if (layout && f.sound({key}))
       check_against_overlap(load, key, *layout, f);
+    if (layout && load.absorbing && f.sound({key}))
+      check_layer(scene, load, key, *layout, f);
     if (load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"}))
       f.warning(key + "/ramp",
                 fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),

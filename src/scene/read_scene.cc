@@ -63,7 +63,9 @@ void complete(Scene &scene)
   }
   if (scene.zone.extent == DiscreteZone::Extent::all)
     scene.far_field.reset();
-  for (LoadParameters &load : scene.loads)
+  for (LoadParameters &load : scene.loads) {
+    if (load.absorbing)
+      load.kind = "traction";
     for (const auto &[kind, value] :
          {std::pair("velocity", load.velocity), std::pair("displacement", load.displacement),
           std::pair("traction", load.traction)})
@@ -71,6 +73,7 @@ void complete(Scene &scene)
         load.kind = kind;
         load.value = value;
       }
+  }
 }
 
 /// Overrides are of either form that apply_override() takes.

@@ -134,6 +134,8 @@ struct LoadParameters
   std::string boundary;                          // left right bottom top back front
   PartialPoint velocity, displacement, traction; // m/s, m, Pa; one of them has components
   double ramp = 0;                               // s
+  bool absorbing = false;                        // lets waves out, beside a traction or alone
+  double absorbing_layer = 0;                    // m
   std::string kind;                              // name of the one that has components
   PartialPoint value;                            // and its components
 };

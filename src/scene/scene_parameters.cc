@@ -112,6 +112,8 @@ void declare_load(Section &s, LoadParameters &l)
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa");
   s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").at_least(0);
+  s.add("absorbing", l.absorbing, "waves leave through this side; alone or with a traction");
+  s.add("absorbing_layer", l.absorbing_layer, "width of a damping layer inside the absorbing side, one to two wave lengths; 0: dashpots on the side alone").in("m").at_least(0);
 }
 
 void declare_time(Section &s, TimeParameters &t)

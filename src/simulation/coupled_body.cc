@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "dem/toughness_calibration.h"
+#include "particles/absorbing_sides.h"
 #include "particles/lattice_packing.h"
 #include "particles/packing_file.h"
 #include "src/scene/geometry.h"
@@ -33,6 +34,8 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
     for (int c = 0; c < dim; ++c)
       load.value[c] = parameters.value[c];
     load.ramp.duration = parameters.ramp;
+    load.absorbing = parameters.absorbing;
+    load.absorbing_layer = parameters.absorbing_layer;
     loads.push_back(load);
   }
   return loads;
@@ -208,12 +211,16 @@ void make_zone(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   auto packing = make_packing<dim>(scene, body, log);
   particles::Particles<dim> state;
   particles::fill_particles(packing, scene.material.density, state);
+  const auto constants = material_of(scene).elastic_constants<dim>();
+  auto dashpots = particles::absorbing_dashpots(packing, state, body.loads, scene.material.density,
+                                                constants.wave_speed_p, constants.wave_speed_s);
   body.n_cracked_faces = std::count_if(packing.faces.begin(), packing.faces.end(),
                                        [](const auto &face) { return face.cracked; });
   auto force = std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), material_of(scene),
                                                          body.loads, fracture);
   body.force = force.get();
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
+  body.zone->dashpots = std::move(dashpots);
   body.dt_zone = body.force->stable_step(body.zone->state);
   log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
            body.zone->state.n_owned, body.force->n_bonds(), body.n_cracked_faces, body.dt_zone);

@@ -16,6 +16,7 @@ struct EnergyLedger
   double fracture = 0;
   double friction = 0;
   double damping = 0;
+  double absorbed = 0; // by absorbing sides and their layers
   double external_work = 0;
   double regime_change = 0; // taken where the coupler changed its regime
   /// What the invariant's kinetic part misses of breaking bonds: -dt^2/8 (F^2 after - before)/m.
@@ -26,7 +27,7 @@ struct EnergyLedger
   double residual() const
   {
     return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter + fracture +
-           friction + breaking_step_error + damping + regime_change - external_work;
+           friction + breaking_step_error + damping + absorbed + regime_change - external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;

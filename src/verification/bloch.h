@@ -2,8 +2,7 @@
 #pragma once
 
 #include "particles/particle_force.h"
-
-#include <complex>
+#include "src/verification/wave_modes.h"
 
 namespace ligament::program
 {
@@ -22,9 +21,13 @@ template <int dim>
 class BlochWaves
 {
 public:
-  /// Waves along `axis`. The body may be periodic in the other directions only.
+  /// The short forms below are for waves along `axis`. Across it the body may repeat itself after
+  /// `period` m; 0: it does not.
   BlochWaves(const particles::Particles<dim> &particles, const particles::ParticleForce<dim> &force,
-             int centre, int axis);
+             int centre, int axis, double period = 0);
+
+  /// All modes of a wave vector in rad/m.
+  WaveModes modes(const Vector<dim> &wave_vector) const;
 
   /// The slowest branch that moves along `polarisation` (a unit vector); of degenerate ones the
   /// combination that does. wave_number in rad/m.
@@ -35,17 +38,16 @@ public:
 
 private:
   static constexpr int dofs = n_particle_dofs<dim>;
-  using Matrix = Eigen::Matrix<std::complex<double>, dofs, dofs>;
-
   struct Term
   {
-    double share;              // of its energy that belongs to the centre
-    std::vector<double> place; // m, of the members along the axis
+    double share;                   // of its energy that belongs to the centre
+    std::vector<Vector<dim>> place; // m, of the members against the first
     Eigen::MatrixXd rows;
     Eigen::VectorXd stiffness;
   };
 
   std::vector<Term> terms_;
-  Eigen::Matrix<double, dofs, 1> inverse_root_mass_; // 1/sqrt(kg), 1/sqrt(kg m^2)
+  Eigen::VectorXd mass_; // kg, kg m^2
+  int axis_;
 };
 } // namespace ligament::program

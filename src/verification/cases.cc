@@ -19,6 +19,8 @@ std::vector<Case> all_cases()
   add(drift_cases());
   add(wave_cases());
   add(scheme_cases());
+  add(wave_bench_cases());
+  add(absorbing_cases());
   add(kirsch_cases());
   add(beam_cases());
   add(stability_cases());

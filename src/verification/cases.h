@@ -45,6 +45,8 @@ std::vector<Case> drift_cases();
 std::vector<Case> critical_step_cases();
 std::vector<Case> wave_cases();
 std::vector<Case> scheme_cases();
+std::vector<Case> wave_bench_cases();
+std::vector<Case> absorbing_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
 std::vector<Case> stability_cases();

@@ -1,8 +1,7 @@
 #include "src/verification/waves.h"
 
-#include "dem/many_body_force.h"
-#include "src/verification/bloch.h"
 #include "src/verification/cases.h"
+#include "src/verification/wave_passage.h"
 
 #include <fmt/format.h>
 
@@ -13,73 +12,6 @@ namespace ligament::program
 {
 namespace
 {
-/// Plane packet exp(-(z - centre)^2/(2 width^2)) of Bloch modes that all travel upwards.
-template <int dim>
-class Packet
-{
-public:
-  Packet(const BlochWaves<dim> &waves, const Vector<dim> &polarisation, double wave_number,
-         double width, double centre, double dt)
-      : centre_(centre)
-  {
-    // A sum over wave numbers repeats itself after 2 pi over their distance: 170 wave lengths.
-    constexpr int half = 80;
-    const double spread = 1 / width, step = 6 * spread / half;
-    for (int i = -half; i <= half; ++i) {
-      const double k = wave_number + i * step;
-      if (k <= 0)
-        continue;
-      const auto mode = waves.mode(k, polarisation);
-      // Discrete time: sin(omega dt/2) = frequency dt/2; velocities belong to -dt/2.
-      const double omega = 2 / dt * std::asin(mode.frequency * dt / 2);
-      const double weight = std::exp(-0.5 * std::pow((k - wave_number) / spread, 2)) * step *
-                            width / std::sqrt(2 * M_PI);
-      const std::complex<double> rate = (1. - std::polar(1., omega * dt)) / dt;
-      waves_.push_back({k, weight * mode.amplitude, weight * rate * mode.amplitude});
-    }
-  }
-
-  using Motion = Eigen::Matrix<double, n_particle_dofs<dim>, 1>;
-
-  /// Displacement at time 0 and velocity at -dt/2, for amplitude 1.
-  std::pair<Motion, Motion> at(double z) const
-  {
-    std::pair<Motion, Motion> sum{Motion::Zero(), Motion::Zero()};
-    for (const auto &wave : waves_) {
-      const auto phase = std::polar(1., wave.number * (z - centre_));
-      sum.first += (wave.displacement * phase).real();
-      sum.second += (wave.velocity * phase).real();
-    }
-    return sum;
-  }
-
-private:
-  struct Wave
-  {
-    double number;
-    Eigen::Matrix<std::complex<double>, n_particle_dofs<dim>, 1> displacement, velocity;
-  };
-  double centre_;
-  std::vector<Wave> waves_;
-};
-
-template <int dim>
-void set_packet(particles::Particles<dim> &state, const Packet<dim> &packet, double amplitude)
-{
-  for (int i = 0; i < state.n_owned; ++i) {
-    const auto [displacement, velocity] = packet.at(state.reference[dim - 1][i]);
-    for (int c = 0; c < dim; ++c) {
-      state.displacement[c][i] = amplitude * displacement[c];
-      state.velocity[c][i] = amplitude * velocity[c];
-    }
-    for (int c = 0; c < n_spins<dim>; ++c) {
-      state.rotation[dim == 2 ? 0 : c + 1][i] =
-          amplitude * (dim == 2 ? 1 : 0.5) * displacement[dim + c]; // small angles
-      state.spin[c][i] = amplitude * velocity[dim + c];
-    }
-  }
-}
-
 /// Kinetic energy of the particles below the mesh, in the mean of a wave half of all its energy.
 template <int dim>
 double kinetic_energy(const Strip<dim> &strip)
@@ -93,17 +25,6 @@ double kinetic_energy(const Strip<dim> &strip)
   return sum / 2;
 }
 
-template <int dim>
-BlochWaves<dim> make_bloch_waves(const dem::DemMaterial &material)
-{
-  const auto kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
-  constexpr int layers = 9;
-  auto packing = make_periodic_packing<dim>(kind, 3, layers, true);
-  particles::Particles<dim> state;
-  particles::fill_particles(packing, material.density, state);
-  const dem::ManyBodyForce<dim> force(std::move(packing), material, {});
-  return BlochWaves<dim>(state, force, layers / 2, dim - 1);
-}
 } // namespace
 
 template <int dim>
@@ -129,10 +50,10 @@ WaveFigures measure_wave(const WaveParameters &p)
   Strip<dim> strip = make_strip<dim>(strip_parameters);
 
   const auto waves = make_bloch_waves<dim>(strip_parameters.material);
-  const Vector<dim> polarisation = Vector<dim>::Unit(p.kind == WaveKind::p ? dim - 1 : 0);
   const double wave_number = 2 * M_PI / wave_length;
-  const Packet<dim> packet(waves, polarisation, wave_number, width, strip.mesh_begin - reach,
-                           strip.dt);
+  const Vector<dim> wave_vector = wave_number * Vector<dim>::Unit(dim - 1);
+  const Packet<dim> packet([&](const Vector<dim> &k) { return waves.modes(k); }, wave_vector,
+                           p.kind, width, strip.mesh_begin - reach, strip.dt);
   set_packet(strip.zone->state, packet, 1e-8 * wave_length);
   auto bodies = strip.bodies();
   strip.coupler->take_velocities(bodies);
@@ -140,7 +61,7 @@ WaveFigures measure_wave(const WaveParameters &p)
 
   // Until the packet has passed overlap and transition and what comes back has left them.
   const double way = 2 * reach + 3 * (p.overlap_cells + strip_parameters.transition_cells + 2) * h;
-  const double speed = waves.group_velocity(wave_number, polarisation);
+  const double speed = waves.group_velocity(wave_number, polarisation<dim>(p.kind, wave_vector));
   coupling::StepTime time;
   time.dt = strip.dt;
   const auto mechanical = [](const coupling::CoupledEnergy &e) {
@@ -172,6 +93,7 @@ struct Bound
 {
   double wave_length;     // cells
   double reflected, lost; // "must"; aims are a tenth and a seventh of them; 0: not bounded
+  double aim = 0;         // reflected, where it is not a tenth
 };
 
 /// Figures of P and S waves of these lengths.
@@ -189,8 +111,8 @@ std::vector<Result> measure(const std::string &name, WaveParameters parameters,
         return fmt::format("{}/{}_{}_{:g}h", name, what, kind == WaveKind::p ? "P" : "S",
                            bound.wave_length);
       };
-      results.push_back(
-          {figure("reflected"), figures.reflected, bound.reflected, bound.reflected / 10});
+      results.push_back({figure("reflected"), figures.reflected, bound.reflected,
+                         bound.aim > 0 ? bound.aim : bound.reflected / 10});
       if (bound.lost > 0)
         results.push_back({figure("lost"), figures.lost, bound.lost, bound.lost / 7});
     }
@@ -216,6 +138,23 @@ std::vector<Result> measure_dispersion()
   return {{"dispersion/phase_velocity", worst, 1e-4, 5e-5}};
 }
 
+/// The worst figure over positions of the mesh in the packing.
+std::vector<Result> measure_shifts(const std::vector<Bound> &bounds)
+{
+  std::vector<Result> results;
+  for (const double shift : {0., 0.25, 0.5, 0.75}) {
+    WaveParameters parameters;
+    parameters.mesh_shift = shift;
+    const auto figures = measure<2>("waves_2d_shifts", parameters, bounds);
+    if (results.empty())
+      results = figures;
+    for (std::size_t i = 0; i < figures.size(); ++i)
+      if (!(figures[i].value <= results[i].value))
+        results[i] = figures[i];
+  }
+  return results;
+}
+
 template <int dim>
 Case wave_case(const std::string &name, const std::string &text, bool slow,
                const WaveParameters &parameters, const std::vector<Bound> &bounds)
@@ -230,22 +169,31 @@ std::vector<Case> wave_cases()
   fracture.fine_damper = 8, fracture.gap_filter = 4;
   weak.overlap_cells = 4, weak.gap_filter = 4;
   const std::string text = "energy that the overlap reflects: ";
-  return {{"dispersion", "phase velocity of P waves in the hexagonal packing against the table",
-           false, measure_dispersion},
-          wave_case<2>("waves_2d", text + "2D, waves of 8 and 4 cells, cf 4, cg 0", false, elastic,
-                       {{8, 1e-4, 7e-3}, {4, 6e-3, 0}}),
-          wave_case<2>("waves_2d_long", text + "2D, waves of 16 and 6 cells, cf 4, cg 0", true,
-                       elastic, {{16, 5e-6, 0}, {6, 6e-4, 0}}),
-          wave_case<2>("waves_2d_short", text + "2D, waves of one cell and less, cf 4, cg 0", false,
-                       elastic, {{1, 1e-2, 0}, {0.75, 1e-2, 0}}),
-          wave_case<2>("waves_2d_fracture", text + "2D, dampers for fracture, cf 8, cg 4", true,
-                       fracture, {{16, 5e-6, 0}, {8, 1e-4, 0}, {6, 6e-4, 0}, {4, 6e-3, 0}}),
-          wave_case<2>("waves_2d_weak_band", text + "2D, overlap of 4 cells, cf 4, cg 4", true,
-                       weak, {{3, 0.35, 0}, {2.5, 0.35, 0}, {2, 0.35, 0}, {1.6, 0.35, 0}}),
-          wave_case<3>("waves_3d", text + "FCC, waves of 16 to 4 cells, cf 4, cg 0", true, elastic,
-                       {{16, 1e-5, 0}, {8, 3e-4, 7e-3}, {6, 1.5e-3, 0}, {4, 1.5e-2, 0}}),
-          wave_case<3>("waves_3d_fracture", text + "FCC, dampers for fracture, cf 8, cg 4", true,
-                       fracture, {{16, 1e-5, 0}, {8, 3e-4, 0}, {6, 1.5e-3, 0}, {4, 1.5e-2, 0}})};
+  return {
+      {"dispersion", "phase velocity of P waves in the hexagonal packing against the table", false,
+       measure_dispersion},
+      wave_case<2>("waves_2d", text + "2D, waves of 8 and 4 cells, cf 4, cg 0", false, elastic,
+                   {{8, 1e-4, 7e-3}, {4, 6e-3, 0}}),
+      wave_case<2>("waves_2d_long", text + "2D, waves of 16 and 6 cells, cf 4, cg 0", true, elastic,
+                   {{16, 5e-6, 0}, {6, 6e-4, 0}}),
+      {"waves_2d_shifts", "the same, the worst of four positions of the mesh in the packing", true,
+       [] {
+         return measure_shifts({{16, 5e-6, 0}, {8, 1e-4, 7e-3}, {6, 6e-4, 0}, {4, 6e-3, 0}});
+       }},
+      wave_case<2>("waves_2d_short", text + "2D, waves of one cell and less, cf 4, cg 0", false,
+                   elastic, {{1, 1e-2, 0}, {0.75, 1e-2, 0}}),
+      wave_case<2>("waves_2d_fracture", text + "2D, dampers for fracture, cf 8, cg 4", true,
+                   fracture, {{16, 5e-6, 0}, {8, 1e-4, 0}, {6, 6e-4, 0}, {4, 6e-3, 0}}),
+      wave_case<2>("waves_2d_weak_band", text + "2D, overlap of 4 cells, cf 4, cg 4", true, weak,
+                   {{6, 0.35, 0.1, 0.1},
+                    {3, 0.35, 0, 0.1},
+                    {2.5, 0.35, 0, 0.1},
+                    {2, 0.35, 0, 0.1},
+                    {1.6, 0.35, 0, 0.1}}),
+      wave_case<3>("waves_3d", text + "FCC, waves of 16 to 4 cells, cf 4, cg 0", true, elastic,
+                   {{16, 1e-5, 0}, {8, 3e-4, 7e-3}, {6, 1.5e-3, 0}, {4, 1.5e-2, 0}}),
+      wave_case<3>("waves_3d_fracture", text + "FCC, dampers for fracture, cf 8, cg 4", true,
+                   fracture, {{16, 1e-5, 0}, {8, 3e-4, 0}, {6, 1.5e-3, 0}, {4, 1.5e-2, 0}})};
 }
 
 template WaveFigures measure_wave<2>(const WaveParameters &);

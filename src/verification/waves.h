@@ -1,16 +1,11 @@
 // What the overlap does to a wave that leaves the discrete zone: reflected and lost energy.
 #pragma once
 
+#include "src/verification/wave_modes.h"
 #include "src/verification/waves_strip.h"
 
 namespace ligament::program
 {
-enum class WaveKind
-{
-  p,
-  s
-};
-
 struct WaveParameters
 {
   WaveKind kind = WaveKind::p;

@@ -90,6 +90,27 @@ TEST(EnergyLedger, ClosesWithEveryDamping)
     }
 }
 
+// What leaves through absorbing sides is booked to the last joule, with and without their layers,
+// and a body between two of them comes to rest: half a vibration takes every wave to a side.
+TEST(EnergyLedger, ClosesWithAbsorbingSides)
+{
+  const auto loads = [](const std::string &layer) {
+    const std::string end = "\", \"absorbing\": true, \"absorbing_layer\": " + layer + "}";
+    return "/loads=[{\"boundary\": \"top" + end + ", {\"boundary\": \"bottom" + end + "]";
+  };
+  for (const auto &kind : body_kinds)
+    for (const std::string layer : {"0", "12"}) {
+      SCOPED_TRACE(kind.name + (" " + layer));
+      const auto b =
+          vibrate(kind.overrides + std::vector<std::string>{loads(layer)}, 2 * one_vibration);
+      EXPECT_LT(b.error, linear);
+      EXPECT_LT(b.left, 0.1);
+      EXPECT_EQ(b.damping, 0);
+    }
+  const auto b = vibrate({"/coupling/step_ratio=4", loads("12")}, 2 * one_vibration);
+  EXPECT_LT(b.error, 1e-2); // as below
+}
+
 TEST(EnergyLedger, FarStepsOfFourZoneStepsKeepTheBalanceBounded)
 {
   // With the step error of the impulses booked (theory.md eq. (E5)) what is left is of fourth order

@@ -1,0 +1,47 @@
+#include "particles/absorbing_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::particles
+{
+template <int dim>
+core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing, const Particles<dim> &particles,
+                                       const std::vector<core::BoundaryLoad<dim>> &loads,
+                                       double density, double wave_speed_p, double wave_speed_s)
+{
+  typename core::Dashpots<dim>::Coefficients coefficients;
+  for (const auto &load : loads) {
+    if (!load.absorbing)
+      continue;
+    const int axis = load.boundary / 2;
+    bool is_reached = false;
+    double place = 0;
+    for (const auto &face : packing.boundary_faces)
+      if (face.boundary == load.boundary) {
+        is_reached = true;
+        place = packing.centre[axis][face.i] + face.lever[axis];
+        for (int c = 0; c < dim; ++c)
+          coefficients[{face.i, c}] +=
+              face.area * density * (c == axis ? wave_speed_p : wave_speed_s);
+      }
+    if (!is_reached)
+      continue;
+    for (int i = 0; i < packing.size(); ++i) {
+      const double depth = load.absorbing_layer - std::abs(packing.centre[axis][i] - place);
+      if (depth > 0)
+        for (int c = 0; c < dim; ++c)
+          coefficients[{i, c}] +=
+              particles.mass[i] * core::layer_rate(depth, load.absorbing_layer, wave_speed_p);
+    }
+  }
+  return core::Dashpots<dim>(coefficients);
+}
+
+template core::Dashpots<2> absorbing_dashpots(const Packing<2> &, const Particles<2> &,
+                                              const std::vector<core::BoundaryLoad<2>> &, double,
+                                              double, double);
+template core::Dashpots<3> absorbing_dashpots(const Packing<3> &, const Particles<3> &,
+                                              const std::vector<core::BoundaryLoad<3>> &, double,
+                                              double, double);
+} // namespace ligament::particles
