@@ -41,6 +41,20 @@ struct Side
         std::any_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
     return known ? std::optional(std::move(numbers)) : std::nullopt;
   }
+
+  /// Row of the peak. A run knows its time: when a specimen has broken, its halves swing, and the
+  /// largest load of the whole history may be later.
+  std::optional<std::size_t> peak_row(const std::vector<double> &load) const
+  {
+    const auto time = values("time", "s");
+    if (!record || !record->peak_time || !time)
+      return peak_index(load);
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < time->size(); ++i)
+      if (std::abs((*time)[i] - *record->peak_time) < std::abs((*time)[row] - *record->peak_time))
+        row = i;
+    return row;
+  }
 };
 
 std::string name_of(const std::string &path)
@@ -106,7 +120,12 @@ std::optional<double> stiffness(const Side &side, const Measure &m)
 {
   if (!has(side, m))
     return {};
-  return fit_stiffness(*side.values(m.x, m.x_unit), *side.values(m.y, m.y_unit));
+  auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
+  if (const auto peak = side.peak_row(y)) {
+    x.resize(*peak + 1);
+    y.resize(*peak + 1);
+  }
+  return fit_stiffness(x, y);
 }
 
 std::optional<double> peak(const Side &side, const Measure &m)
@@ -125,7 +144,7 @@ std::optional<double> peak(const Side &side, const Measure &m)
 std::optional<double> work_at_peak(const Side &side)
 {
   const auto load = side.values("load", "N");
-  const auto index = load ? peak_index(*load) : std::nullopt;
+  const auto index = load ? side.peak_row(*load) : std::nullopt;
   if (!index)
     return {};
   if (const auto work = side.values("external_work", "J"))
@@ -148,7 +167,7 @@ std::optional<double> onset_time(const Side &side)
              far = side.values("potential_far", "J"), blended = side.values("blended", "J");
   if (!time || !load || !discrete || !far || !blended)
     return {};
-  const auto peak = peak_index(*load);
+  const auto peak = side.peak_row(*load);
   if (!peak)
     return {};
   std::size_t onset = 0;

@@ -84,10 +84,12 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   history_.set("crack_length", crack_length(body, machine_.axis()));
   history_.end_row();
 
-  time_.push_back(step.time);
-  load_.push_back(r.load);
-  stress_.push_back(r.stress);
-  strain_.push_back(r.strain);
+  if (!broken_ || step.time <= break_.felt_at) {
+    time_.push_back(step.time);
+    load_.push_back(r.load);
+    stress_.push_back(r.stress);
+    strain_.push_back(r.strain);
+  }
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
   // Which state is the peak is known only later: keep copies on the way up, of the motion closely,
@@ -145,15 +147,32 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
         return stop;
     }
   }
-  if (scene_.time.stop_when == "specimen_broken" && body.force) {
-    const std::size_t n_broken = body.force->broken_bonds().size();
-    if (n_broken != broken_before_) {
-      broken_before_ = n_broken;
-      if (is_broken_across(body, machine_.axis()))
-        return Stop{false, fmt::format("specimen broken at {:.4g} s", step.time)};
-    }
-  }
+  if (body.force && !broken_)
+    look_for_break(body, step);
+  if (broken_ && step.time >= break_.felt_at && scene_.time.stop_when == "specimen_broken")
+    return Stop{false, fmt::format("specimen broken at {:.4g} s", break_.time)};
   return {};
+}
+
+// The sides feel the break when a wave from it has reached them; what they feel later is the swing
+// of the halves, which is no load that the specimen carries.
+template <int dim>
+void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step)
+{
+  const auto &bonds = body.force->broken_bonds();
+  if (bonds.size() == broken_before_)
+    return;
+  broken_before_ = bonds.size();
+  const int axis = machine_.axis();
+  if (!is_broken_across(body, axis))
+    return;
+  broken_ = true;
+  const double place = bonds.back().position[axis];
+  const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
+  break_.time = bonds.back().time;
+  break_.felt_at = break_.time + way / body.force->elastic_constants().wave_speed_p;
+  log_.info("the specimen is in two at {:.4g} s; both sides feel it at {:.4g} s", break_.time,
+            break_.felt_at);
 }
 
 template <int dim>

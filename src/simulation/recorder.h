@@ -44,6 +44,7 @@ private:
   void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
             const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;
 
@@ -60,10 +61,15 @@ private:
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   std::size_t broken_before_ = 0;             // at the last check of connectivity
-  std::vector<int> guarded_;                  // overlap particles
+  bool broken_ = false;                       // no bond or cell joins the two sides
+  struct
+  {
+    double time = 0, felt_at = 0; // s, of the last bond; when a P wave has reached both sides
+  } break_;
+  std::vector<int> guarded_; // overlap particles
   bool warned_ = false;
 
-  // What the record needs from the history.
+  // What the record needs from the history; loads up to the time when the sides feel the break.
   std::vector<double> load_, stress_, strain_, time_, residual_, work_;
   double motion_copied_at_ = 0, fields_copied_at_ = 0; // N, loads of the copies below
   std::optional<Snapshot> peak_snapshot_;

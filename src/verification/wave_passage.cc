@@ -171,11 +171,11 @@ void run(Strip<dim> &strip, long n_steps, coupling::StepTime &time)
 {
   auto bodies = strip.bodies();
   for (; time.step < n_steps; ++time.step, time.time += time.dt) {
-    strip.split->compute_forces(bodies, time);
-    strip.split->kick(bodies, time);
-    strip.split->drift(bodies, time);
+    strip.coupler->compute_forces(bodies, time);
+    strip.coupler->kick(bodies, time);
+    strip.coupler->drift(bodies, time);
   }
-  strip.split->compute_forces(bodies, time);
+  strip.coupler->compute_forces(bodies, time);
 }
 
 WaveEnergy operator/(const WaveEnergy &e, double whole)
@@ -249,7 +249,7 @@ PassageFigures measure_passage(const PassageParameters &p)
       set<dim>(strip.far->velocity, i, Vector<dim>(amplitude * velocity));
     }
   auto bodies = strip.bodies();
-  strip.split->take_velocities(bodies);
+  strip.coupler->take_velocities(bodies);
 
   const WaveMeter<dim> meter(packing, mesh, wave_vector[0], sp.cell_size, mesh_from);
   const double whole = (p.outwards ? meter.particles(strip) : meter.mesh(strip)).sum();
@@ -259,7 +259,7 @@ PassageFigures measure_passage(const PassageParameters &p)
   const auto below = meter.particles(strip) / whole, above = meter.mesh(strip) / whole;
   figures.reflected = p.outwards ? below : above;
   figures.transmitted = p.outwards ? above : below;
-  const auto e = strip.split->energy(bodies, time);
+  const auto e = strip.coupler->energy(bodies, time);
   figures.lost = (e.fine_damper + e.gap_filter) / whole;
   return figures;
 }
