@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "fem/cell_kernel.h"
+#include "fem/corotated_kernel.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,7 @@ void FemSolver<dim>::update_own_cells()
 {
   kernel_ =
       std::make_unique<CellKernel<dim>>(mesh_, body_.stiffness, body_.thickness, is_own_cell_);
+  set_corotated(corotated_ != nullptr);
 
   mass_.assign(mesh_.n_nodes(), 0.);
   for (int cell = 0; cell < mesh_.n_cells(); ++cell)
@@ -174,6 +176,35 @@ void FemSolver<dim>::release_cells(const std::vector<int> &cells)
 }
 
 template <int dim>
+void FemSolver<dim>::set_corotated(bool corotated)
+{
+  corotated_.reset();
+  if (corotated)
+    corotated_ = std::make_unique<CorotatedKernel<dim>>(mesh_, body_.stiffness, body_.thickness,
+                                                        is_own_cell_);
+}
+
+template <int dim>
+typename FemSolver<dim>::Motion FemSolver<dim>::largest_motion() const
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  Motion largest;
+  for (int cell = 0; cell < mesh_.n_cells(); ++cell) {
+    if (!is_own_cell_[cell])
+      continue;
+    const CellShape<dim> shape(mesh_.cell_size[cell]);
+    Matrix f = Matrix::Identity();
+    for (int a = 0; a < n_cell_nodes<dim>; ++a)
+      f += get(displacement, mesh_.cells[cell][a]) * shape.gradient.col(a).transpose();
+    const core::PolarRotation<dim> polar(f);
+    largest.rotation = std::max(largest.rotation, polar.angle());
+    largest.strain =
+        std::max(largest.strain, (polar.matrix().transpose() * f - Matrix::Identity()).norm());
+  }
+  return largest;
+}
+
+template <int dim>
 void FemSolver<dim>::hand_to_masters(std::vector<double> &values) const
 {
   for (const HangingNode &h : mesh_.hanging) {
@@ -217,7 +248,10 @@ void FemSolver<dim>::compute_forces(double time)
   distribute();
   for (auto &f : force)
     std::fill(f.begin(), f.end(), 0.);
-  kernel_->subtract_forces(displacement, force);
+  if (corotated_)
+    corotated_->subtract_forces(displacement, force);
+  else
+    kernel_->subtract_forces(displacement, force);
   for (auto &f : force)
     hand_to_masters(f);
   force_time_ = time;
@@ -292,12 +326,26 @@ void FemSolver<dim>::drift(double dt)
 }
 
 template <int dim>
+double FemSolver<dim>::potential_energy() const
+{
+  if (!corotated_)
+    return quadratic_form(displacement);
+  Components<dim> f;
+  for (auto &component : f)
+    component.assign(mesh_.n_nodes(), 0.);
+  return corotated_->subtract_forces(displacement, f);
+}
+
+template <int dim>
 double FemSolver<dim>::quadratic_form(const Components<dim> &u) const
 {
   Components<dim> f;
   for (auto &component : f)
     component.assign(mesh_.n_nodes(), 0.);
-  kernel_->subtract_forces(u, f);
+  if (corotated_)
+    corotated_->subtract_product(displacement, u, f);
+  else
+    kernel_->subtract_forces(u, f);
   double sum = 0;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < mesh_.n_nodes(); ++i)

@@ -12,6 +12,8 @@ namespace ligament::fem
 {
 template <int dim>
 class CellKernel;
+template <int dim>
+class CorotatedKernel;
 
 /// Isotropic body of the mesh: stiffness equal to that of the discrete law.
 template <int dim>
@@ -41,6 +43,17 @@ public:
   /// From now on the cells (by index) belong to the coupler.
   void release_cells(const std::vector<int> &cells);
 
+  /// Whether every cell turns with its material (theory.md eq. (F6)); else rotations must stay
+  /// small. Takes effect with the next compute_forces.
+  void set_corotated(bool corotated);
+
+  /// Largest rotation in rad and largest strain (2-norm) at the centres of the solver's own cells.
+  struct Motion
+  {
+    double rotation = 0, strain = 0;
+  };
+  Motion largest_motion() const;
+
   /// Overwrites `force`: minus the internal force of the solver's own cells plus tractions, with
   /// forces on hanging nodes handed to their masters. Held components get the internal force too:
   /// it is their reaction. Hanging nodes are distributed first; external work is booked.
@@ -59,10 +72,11 @@ public:
   /// Hanging nodes take displacement and velocity of their masters.
   void distribute();
 
-  /// 1/2 u.K u of the solver's own cells, with the displacements as they are; in J.
-  double potential_energy() const { return quadratic_form(displacement); }
+  /// Elastic energy of the solver's own cells, with the displacements as they are; in J.
+  double potential_energy() const;
 
-  /// 1/2 u.K u of the solver's own cells for any nodal field, hanging nodes included.
+  /// 1/2 u.K u of the solver's own cells for any nodal field, hanging nodes included; K is the
+  /// stiffness in the present state when the cells turn.
   double quadratic_form(const Components<dim> &u) const;
 
   /// Velocities half-way through kick(dt); those of held components and released nodes as they are.
@@ -129,6 +143,7 @@ private:
   std::array<std::vector<char>, dim> held_;
   std::vector<std::pair<int, int>> own_ranges_; // nodes that are not released
   std::unique_ptr<CellKernel<dim>> kernel_;
+  std::unique_ptr<CorotatedKernel<dim>> corotated_; // null: linear
   std::vector<double> mass_, inverse_mass_;
   std::vector<LoadedComponent> held_components_, traction_components_;
   core::Dashpots<dim> dashpots_;

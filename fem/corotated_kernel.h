@@ -1,0 +1,34 @@
+// Internal forces of cells that may turn: the far field at large rotation.
+#pragma once
+
+#include "fem/corotated_cell.h"
+
+namespace ligament::fem
+{
+template <int dim>
+class CorotatedKernel
+{
+public:
+  /// `is_own[cell]` says which cells take part; thickness in m (2D).
+  CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, double thickness,
+                  const std::vector<char> &is_own);
+
+  /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J.
+  double subtract_forces(const Components<dim> &displacement, Components<dim> &force) const;
+
+  /// force -= K v, K the stiffness in the state `displacement`, by central differences: exact to
+  /// about 1e-8 of it.
+  void subtract_product(const Components<dim> &displacement, const Components<dim> &v,
+                        Components<dim> &force) const;
+
+private:
+  struct Group // cells of one size
+  {
+    Vector<dim> size;
+    CellShape<dim> shape;
+    CellMatrix<dim> stiffness;
+    std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes
+  };
+  std::vector<Group> groups_;
+};
+} // namespace ligament::fem
