@@ -42,15 +42,16 @@ class Assembly
 {
 public:
   Assembly(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-           const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
-      : stiffness(overlap.n_nodes()), overlap_(overlap), particles_(particles), body_(body),
-        n_(overlap.n_nodes())
+           const particles::ParticleForce<dim> &force, const fem::Body<dim> &body,
+           double coarse_mass)
+      : stiffness(overlap.n_nodes()), coarse_mass_(coarse_mass), overlap_(overlap),
+        particles_(particles), body_(body), n_(overlap.n_nodes())
   {
     residual = Eigen::MatrixXd::Zero(dim * n_, n_strains<dim>);
     mass_bound = Eigen::VectorXd::Zero(n_);
     for (int k = 0; k < n_strains<dim>; ++k)
       strain_[k] = unit_strain<dim>(k);
-    find_motions(force);
+    motions_ = interpolate_motions(overlap, particles, force);
   }
 
   void add_cells();
@@ -64,25 +65,14 @@ public:
 
 private:
   static constexpr double consistent_bound = dim == 2 ? 1. / 9 : 1. / 27;
-  /// What one node's motion does to a member: translation value * u, rotation spin * u.
-  struct Share
-  {
-    int node;
-    double value;
-    Eigen::Matrix<double, n_spins<dim>, dim> spin;
-  };
-  using Motion = std::vector<Share>;
-
-  double subtracted_share(const particles::QuadraticTerm<dim> &term) const;
-  void find_motions(const particles::ParticleForce<dim> &force);
-
+  const double coarse_mass_;
   const Overlap<dim> &overlap_;
   const particles::Particles<dim> &particles_;
   const fem::Body<dim> &body_;
   const int n_;
   std::array<Eigen::Matrix<double, dim, dim>, n_strains<dim>> strain_;
-  std::vector<Motion> motions_; // of the members
-  std::vector<int> nodes_;      // of the present term
+  std::vector<InterpolatedMotion<dim>> motions_; // of the members
+  std::vector<int> nodes_;                       // of the present term
 };
 
 template <int dim>
@@ -92,17 +82,13 @@ void Assembly<dim>::add_cells()
   for (const auto &cell : overlap_.cells) {
     const Vector<dim> &lower = overlap_.mesh.cell_lower[cell.cell];
     const Vector<dim> &size = overlap_.mesh.cell_size[cell.cell];
-    Eigen::Matrix<double, dim * nc, dim * nc> k;
+    const fem::CellMatrix<dim> k = blended_cell_stiffness(overlap_, cell, body_);
     Eigen::Matrix<double, nc, nc> consistent;
-    k.setZero();
     consistent.setZero();
     for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-      const double share = cell.layer == 0 ? 1 - overlap_.weight(x) : 1;
-      w *= share * body_.thickness;
-      const auto b = fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, x));
+      w *= (cell.layer == 0 ? 1 - overlap_.weight(x) : 1) * body_.thickness * body_.density;
       const auto value = fem::shape_values<dim>(lower, size, x);
-      k += w * b.transpose() * body_.stiffness * b;
-      consistent += w * body_.density * value * value.transpose();
+      consistent += w * value * value.transpose();
     });
     const double mu = cell.consistent_share;
     for (int a = 0; a < nc; ++a) {
@@ -130,83 +116,11 @@ void Assembly<dim>::add_masses()
 {
   for (const auto &m : overlap_.members)
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
-      const double share = m.weight * particles_.mass[m.particle] * m.value[a];
+      const double share = coarse_mass_ * m.weight * particles_.mass[m.particle] * m.value[a];
       mass_bound[m.nodes[a]] += share * consistent_bound;
       for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
         mass.emplace_back(m.nodes[a], m.nodes[b], share * m.value[b]);
     }
-}
-
-// The interpolated motion of the members. Pads turn as they do in the step, by half the curl of
-// their cell. The others turn by half the curl that they and their neighbours see (least squares):
-// the curl of a cell jumps at its border, and a particle there would follow one side only; then
-// shear waves reflect 1.5 to 3 times more, depending on where the layers of the packing lie in the
-// cells. Both are exact in affine motion.
-template <int dim>
-void Assembly<dim>::find_motions(const particles::ParticleForce<dim> &force)
-{
-  constexpr int nc = fem::n_cell_nodes<dim>;
-  using Matrix = Eigen::Matrix<double, dim, dim>;
-  const int n_members = int(overlap_.members.size());
-  std::vector<std::vector<int>> neighbours(n_members);
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
-    if (face.j < 0 || !face.bonded)
-      return;
-    const int i = overlap_.member_of_particle[face.i], j = overlap_.member_of_particle[face.j];
-    if (i >= 0 && j >= 0)
-      neighbours[i].push_back(j);
-  });
-  const auto add = [](Motion &motion, const Share &share) {
-    for (Share &s : motion)
-      if (s.node == share.node) {
-        s.value += share.value;
-        s.spin += share.spin;
-        return;
-      }
-    motion.push_back(share);
-  };
-  for (int i = 0; i < n_members; ++i) {
-    const auto &m = overlap_.members[i];
-    const Vector<dim> x = get(particles_.reference, m.particle);
-    Matrix moment = Matrix::Zero();
-    for (const int j : neighbours[i]) {
-      const Vector<dim> r =
-          overlap_.offset(x, get(particles_.reference, overlap_.members[j].particle));
-      moment += r * r.transpose() / r.squaredNorm();
-    }
-    const bool alone = m.pad || std::abs(moment.determinant()) < 1e-3;
-    Motion &motion = motions_.emplace_back();
-    for (int a = 0; a < nc; ++a)
-      add(motion, {m.nodes[a], m.value[a], (alone ? 1. : 0.) * half_curl<dim>(m.gradient.col(a))});
-    if (alone)
-      continue;
-    const Matrix inverse = moment.inverse();
-    for (const int j : neighbours[i]) {
-      const auto &other = overlap_.members[j];
-      const Vector<dim> r = overlap_.offset(x, get(particles_.reference, other.particle));
-      // gradient = sum (u_j - u_i) (x) g
-      const auto spin = half_curl<dim>(inverse * r / r.squaredNorm());
-      for (int a = 0; a < nc; ++a) {
-        add(motion, {other.nodes[a], 0, other.value[a] * spin});
-        add(motion, {m.nodes[a], 0, -m.value[a] * spin});
-      }
-    }
-  }
-}
-
-// 1 - a of a term of the discrete energy: subtracted only where all its particles lie in the
-// overlap; wholly where one of them is pad.
-template <int dim>
-double Assembly<dim>::subtracted_share(const particles::QuadraticTerm<dim> &term) const
-{
-  bool pad = false;
-  for (const int i : term.members) {
-    const int m = overlap_.member_of_particle[i];
-    if (m < 0)
-      return 0;
-    pad |= overlap_.members[m].pad;
-  }
-  return pad ? 1 : 1 - overlap_.weight(term.location);
 }
 
 template <int dim>
@@ -232,7 +146,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
                                        get(particles_.reference, term.members[i]));
     gradient.col(s) = term.stiffness.cwiseProduct(term.rows * q);
   }
-  const double share = subtracted_share(term);
+  const double share = overlap_.subtracted_share(term.location, term.members);
   for (std::size_t i = 0; i < term.members.size(); ++i) {
     const int index = overlap_.member_of_particle[term.members[i]];
     if (index < 0)
@@ -242,11 +156,13 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
         term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
     const Eigen::MatrixXd torque =
         term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
-    for (const Share &s : motions_[index])
+    for (const NodeShare<dim> &s : motions_[index]) {
+      const auto spin = half_curl<dim>(s.gradient);
       for (int c = 0; c < dim; ++c)
         residual.row(c * n_ + s.node) -=
             (1 - share) * s.value * force.row(c) +
-            ((m.pad ? 1. : 0.) - share) * s.spin.col(c).transpose() * torque;
+            ((m.pad ? 1. : 0.) - share) * spin.col(c).transpose() * torque;
+    }
   }
   if (share == 0)
     return;
@@ -254,16 +170,17 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
   // The subtracted stiffness: rows on the interpolated motion.
   nodes_.clear();
   for (const int i : term.members)
-    for (const Share &s : motions_[overlap_.member_of_particle[i]])
+    for (const NodeShare<dim> &s : motions_[overlap_.member_of_particle[i]])
       if (std::find(nodes_.begin(), nodes_.end(), s.node) == nodes_.end())
         nodes_.push_back(s.node);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(term.rows.rows(), dim * nodes_.size());
   for (std::size_t i = 0; i < term.members.size(); ++i)
-    for (const Share &s : motions_[overlap_.member_of_particle[term.members[i]]]) {
+    for (const NodeShare<dim> &s : motions_[overlap_.member_of_particle[term.members[i]]]) {
       const int column =
           dim * int(std::find(nodes_.begin(), nodes_.end(), s.node) - nodes_.begin());
-      rows.middleCols(column, dim) += s.value * term.rows.middleCols(i * nd, dim) +
-                                      term.rows.middleCols(i * nd + dim, n_spins<dim>) * s.spin;
+      rows.middleCols(column, dim) +=
+          s.value * term.rows.middleCols(i * nd, dim) +
+          term.rows.middleCols(i * nd + dim, n_spins<dim>) * half_curl<dim>(s.gradient);
     }
   stiffness.add(nodes_, (rows.transpose() * term.stiffness.asDiagonal() * rows).eval(), -share);
 }
@@ -320,6 +237,23 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
 } // namespace
 
 template <int dim>
+fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
+                                            const typename Overlap<dim>::Cell &cell,
+                                            const fem::Body<dim> &body)
+{
+  const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
+  const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
+  fem::CellMatrix<dim> k;
+  k.setZero();
+  for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
+    w *= (cell.layer == 0 ? 1 - overlap.weight(x) : 1) * body.thickness;
+    const auto b = fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, x));
+    k += w * b.transpose() * body.stiffness * b;
+  });
+  return k;
+}
+
+template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k)
 {
   Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
@@ -335,11 +269,12 @@ Eigen::Matrix<double, dim, dim> unit_strain(int k)
 }
 
 template <int dim>
-BlendedOperators<dim>
-make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                       const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
+BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
+                                             const particles::Particles<dim> &particles,
+                                             const particles::ParticleForce<dim> &force,
+                                             const fem::Body<dim> &body, double coarse_mass)
 {
-  Assembly<dim> assembly(overlap, particles, force, body);
+  Assembly<dim> assembly(overlap, particles, force, body, coarse_mass);
   assembly.add_cells();
   assembly.add_masses();
   force.add_tangent([&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });
@@ -358,11 +293,15 @@ make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<d
 template BlendedOperators<2> make_blended_operators(const Overlap<2> &,
                                                     const particles::Particles<2> &,
                                                     const particles::ParticleForce<2> &,
-                                                    const fem::Body<2> &);
+                                                    const fem::Body<2> &, double);
 template BlendedOperators<3> make_blended_operators(const Overlap<3> &,
                                                     const particles::Particles<3> &,
                                                     const particles::ParticleForce<3> &,
-                                                    const fem::Body<3> &);
+                                                    const fem::Body<3> &, double);
+template fem::CellMatrix<2> blended_cell_stiffness(const Overlap<2> &, const Overlap<2>::Cell &,
+                                                   const fem::Body<2> &);
+template fem::CellMatrix<3> blended_cell_stiffness(const Overlap<3> &, const Overlap<3>::Cell &,
+                                                   const fem::Body<3> &);
 template Eigen::Matrix<double, 2, 2> unit_strain<2>(int);
 template Eigen::Matrix<double, 3, 3> unit_strain<3>(int);
 } // namespace ligament::coupling

@@ -2,7 +2,8 @@
 // fit has to remove.
 #pragma once
 
-#include "coupling/overlap.h"
+#include "coupling/interpolated_motion.h"
+#include "fem/corotated_cell.h"
 #include "fem/fem_solver.h"
 
 #include <Eigen/SparseCore>
@@ -30,10 +31,18 @@ struct BlendedOperators
   std::vector<std::vector<Vector<dim>>> free_normals;
 };
 
+/// `coarse_mass` multiplies the particles' share of the mass; the cells have the density of `body`.
 template <int dim>
-BlendedOperators<dim>
-make_blended_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                       const particles::ParticleForce<dim> &force, const fem::Body<dim> &body);
+BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
+                                             const particles::Particles<dim> &particles,
+                                             const particles::ParticleForce<dim> &force,
+                                             const fem::Body<dim> &body, double coarse_mass = 1);
+
+/// Stiffness in N/m of a near cell with its share of the energy: 1 - a in the overlap, else whole.
+template <int dim>
+fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
+                                            const typename Overlap<dim>::Cell &cell,
+                                            const fem::Body<dim> &body);
 
 /// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
 template <int dim>

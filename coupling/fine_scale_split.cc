@@ -16,17 +16,19 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
       transfer_(overlap_, bodies.zone->state),
-      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver),
+      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver), parts_(overlap_),
       mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
   const int n = overlap_.n_nodes();
   const auto operators =
-      make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body());
+      make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body(),
+                             parameters.coarse_mass);
   stiffness_ = operators.stiffness;
   if (parameters.patch_fit) {
     const PatchFit fit = fit_patch(overlap_, operators, far.body());
-    stiffness_ += fit.correction;
+    correction_ = fit.correction;
+    stiffness_ += correction_;
     report_.patch_residual_before = fit.residual_before;
     report_.patch_residual = fit.residual;
     report_.patch_modulus = fit.largest_modulus;
@@ -36,7 +38,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                               "keep the overlap away from corners, holes and loads",
                               fit.residual));
   }
-  stiffness_blocks_ = std::make_unique<BlockMatrix<dim>>(stiffness_);
+  coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
 
   std::vector<int> released;
   for (const auto &cell : overlap_.cells)
@@ -92,6 +94,26 @@ void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
           transfer_.inverse_mass(k) > 0 ? zone.velocity[c][transfer_.particle(k)] : 0;
   transfer_.subtract(velocity_, fluctuation_);
   projector_.project(fluctuation_);
+  if (regime_ != Regime::linear)
+    transfer_.turn_pads(displacement_, bodies.zone->state);
+  write_velocities(bodies);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
+{
+  if (regime == regime_)
+    return;
+  core::require(regime != Regime::linear, "an overlap that turns cannot be linear again");
+  auto &zone = bodies.zone->state;
+  if (regime == Regime::corotated)
+    coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_);
+  else
+    coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
+        overlap_, parts_, zone, *bodies.zone->force, bodies.far->body(), correction_);
+  regime_ = regime;
+  transfer_.turn_pads(displacement_, zone);
+  bodies.far->set_corotated(true);
   write_velocities(bodies);
 }
 
@@ -114,6 +136,8 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
     bodies.zone->update_ghosts();
   }
   displacement_ += step.dt * velocity_;
+  if (regime_ != Regime::linear)
+    transfer_.turn_pads(displacement_, bodies.zone->state);
   // The far field moves in one go, just before it acts again: it is needed nowhere in between.
   if ((step.step + 1) % parameters_.step_ratio == 0) {
     const auto timing = this->timers_.scope(this->far_);
@@ -147,7 +171,7 @@ void FineScaleSplit<dim>::compute_near_force(const Bodies<dim> &bodies, const St
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < overlap_.n_nodes(); ++i)
         force(i, c) = parameters_.step_ratio * bodies.far->force[c][overlap_.near_nodes[i]];
-  stiffness_blocks_->subtract_product(displacement_, force);
+  coarse_->subtract_forces(displacement_, force);
   transfer_.add_forces(bodies.zone->state, force);
 }
 
@@ -324,8 +348,7 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   e.potential_discrete = bodies.zone->potential_energy();
   e.potential_far = bodies.far->potential_energy();
   Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-  stiffness_blocks_->subtract_product(displacement_, force);
-  e.blended = -0.5 * displacement_.cwiseProduct(force).sum();
+  e.blended = coarse_->subtract_forces(displacement_, force);
   const Halfway near = halfway(bodies, step);
   e.kinetic_far =
       bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) + coarse_kinetic(near, step.dt);

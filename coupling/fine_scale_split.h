@@ -2,7 +2,7 @@
 // part of its motion, and only the coarse energy and mass are blended.
 #pragma once
 
-#include "coupling/block_matrix.h"
+#include "coupling/coarse_energy.h"
 #include "coupling/coupler.h"
 #include "coupling/fluctuation_projector.h"
 #include "coupling/patch_fit.h"
@@ -16,6 +16,8 @@ struct FineScaleSplitParameters
   double gap_filter = 4;  // c_g
   bool patch_fit = true;
   std::string solver = "eigen";
+  /// Factor on the particles' share of M_c; the far field's density carries it already.
+  double coarse_mass = 1;
 };
 
 /// Figures of the set-up, for the log and for verification.
@@ -51,6 +53,17 @@ public:
   /// Splits the particles' present velocities (at half steps) into V and w; the nodes' velocities
   /// beyond the particles' reach are taken as they are. For runs that start in motion.
   void take_velocities(Bodies<dim> &bodies);
+
+  /// From now on both halves move in this regime; forces must be computed again before the next
+  /// kick. The energy jumps by what the regimes differ in the present motion. Throws
+  /// core::InputError when the discrete law cannot follow, and when asked to become linear again.
+  void set_regime(Regime regime, Bodies<dim> &bodies);
+  Regime regime() const { return regime_; }
+  /// Of the near cells, in the present state.
+  typename NearParts<dim>::Motion largest_motion() const
+  {
+    return parts_.largest_motion(displacement_);
+  }
 
   const SplitReport &report() const { return report_; }
   const Overlap<dim> &overlap() const { return overlap_; }
@@ -88,8 +101,10 @@ private:
   FluctuationProjector<dim> projector_;
   SplitReport report_;
 
-  Eigen::SparseMatrix<double> stiffness_; // K_near
-  std::unique_ptr<BlockMatrix<dim>> stiffness_blocks_;
+  Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
+  NearParts<dim> parts_;
+  Regime regime_ = Regime::linear;
+  std::unique_ptr<CoarseEnergy<dim>> coarse_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> mass_, filter_; // M_c, D
   std::unique_ptr<LinearSolver> mass_solver_;
   std::vector<double> damping_; // 1 - exp(-c_f dt) of the members

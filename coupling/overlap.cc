@@ -54,6 +54,20 @@ Vector<dim> Overlap<dim>::offset(const Vector<dim> &from, const Vector<dim> &to)
   return x;
 }
 
+template <int dim>
+double Overlap<dim>::subtracted_share(const Vector<dim> &location,
+                                      const std::vector<int> &particles) const
+{
+  bool pad = false;
+  for (const int i : particles) {
+    const int m = member_of_particle[i];
+    if (m < 0)
+      return 0;
+    pad |= members[m].pad;
+  }
+  return pad ? 1 : 1 - weight(location);
+}
+
 // Pad particles: those whose cell the faces do not close (a neighbour is missing at the edge of the
 // packing; faces on the specimen's surface do close), and all their neighbours.
 template <int dim>

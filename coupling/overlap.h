@@ -89,6 +89,10 @@ public:
   /// Vector from one particle to another or to the nearest of its periodic images, in m.
   Vector<dim> offset(const Vector<dim> &from, const Vector<dim> &to) const;
 
+  /// 1 - a: what is subtracted of a term of the discrete energy at `location` (m) between these
+  /// particles. Only where all of them lie in the overlap, else 0; wholly where one is pad.
+  double subtracted_share(const Vector<dim> &location, const std::vector<int> &particles) const;
+
   /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
 

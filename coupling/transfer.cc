@@ -1,5 +1,8 @@
 #include "coupling/transfer.h"
 
+#include "core/polar_rotation.h"
+#include "particles/orientation.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -26,7 +29,7 @@ Transfer<dim>::Transfer(const Overlap<dim> &overlap, const particles::Particles<
     inverse_mass_.push_back(m.pad ? 0 : particles.inverse_mass[m.particle]);
     position_.push_back(m.position);
     if (m.pad) {
-      Pad pad = {m.particle, m.nodes, {}};
+      Pad pad = {m.particle, m.nodes, m.gradient, {}};
       for (int a = 0; a < nc; ++a)
         pad.spin[a] = Overlap<dim>::spin_block(m, a);
       pads_.push_back(pad);
@@ -109,6 +112,21 @@ void Transfer<dim>::write_velocities(const Nodal<dim> &nodal, const Components<d
     for (int a = 0; a < nc; ++a)
       spin += pad.spin[a] * nodal.row(pad.nodes[a]).transpose();
     set(particles.spin, pad.particle, spin);
+  }
+}
+
+template <int dim>
+void Transfer<dim>::turn_pads(const Nodal<dim> &u, particles::Particles<dim> &particles)
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  for (auto &pad : pads_) {
+    Matrix f = Matrix::Identity();
+    for (int a = 0; a < nc; ++a)
+      f += u.row(pad.nodes[a]).transpose() * pad.gradient.col(a).transpose();
+    const core::PolarRotation<dim> rotation(f);
+    ligament::particles::set_orientation<dim>(particles, pad.particle, rotation.matrix());
+    for (int a = 0; a < nc; ++a)
+      pad.spin[a] = rotation.spin_block(pad.gradient.col(a));
   }
 }
 

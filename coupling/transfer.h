@@ -38,6 +38,10 @@ public:
   void write_velocities(const Nodal<dim> &nodal, const Components<dim> &w,
                         particles::Particles<dim> &particles) const;
 
+  /// Large rotation: gives pads the orientation of the mesh's motion U (m), theory.md eq. (C15);
+  /// from now on they turn with its rate, until the next call.
+  void turn_pads(const Nodal<dim> &u, particles::Particles<dim> &particles);
+
 private:
   static constexpr int nc = fem::n_cell_nodes<dim>;
   struct CellGroup
@@ -49,6 +53,7 @@ private:
   {
     int particle;
     std::array<int, nc> nodes;
+    Eigen::Matrix<double, dim, nc> gradient; // of the shape functions, 1/m
     std::array<Eigen::Matrix<double, n_spins<dim>, dim>, nc> spin;
   };
 

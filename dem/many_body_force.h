@@ -57,6 +57,11 @@ public:
   void
   for_each_face(const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
 
+  /// Of the bonds that are intact now.
+  std::unique_ptr<particles::PartialForce<dim>>
+  part(const std::vector<int> &members,
+       const typename particles::ParticleForce<dim>::TermShare &share) const override;
+
   /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10).
   void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const;
 

@@ -1,5 +1,6 @@
 // What the coupler asks of the many-body law: its energy linearised, its faces, and tensors.
 #include "dem/many_body_force.h"
+#include "dem/partial_many_body.h"
 
 namespace ligament::dem
 {
@@ -138,6 +139,40 @@ void ManyBodyForce<dim>::for_each_face(
 }
 
 template <int dim>
+std::unique_ptr<particles::PartialForce<dim>>
+ManyBodyForce<dim>::part(const std::vector<int> &members,
+                         const typename particles::ParticleForce<dim>::TermShare &share) const
+{
+  std::vector<int> index(packing_.size(), -1);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    index[members[k]] = int(k);
+  std::vector<double> volume_share(members.size(), 0.), lambda_per_volume(members.size(), 0.);
+  if (material_.poissons_ratio != 0)
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const int i = members[k];
+      std::vector<int> of = {i};
+      bonds_.for_each_bond_of(
+          i, [&](BondId, const Bond<dim> &b) { of.push_back(b.i == i ? b.j : b.i); });
+      volume_share[k] = share(get(packing_.centre, i), of);
+      lambda_per_volume[k] = lambda_per_volume_[i];
+    }
+  std::vector<typename PartialManyBody<dim>::SharedBond> bonds;
+  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+    if (index[b.i] < 0 || index[b.j] < 0)
+      return;
+    Bond<dim> renumbered = b;
+    renumbered.i = index[b.i];
+    renumbered.j = index[b.j];
+    const double s = share(Vector<dim>(get(packing_.centre, b.i) + b.lever_i), {b.i, b.j});
+    if (s != 0 || volume_share[renumbered.i] != 0 || volume_share[renumbered.j] != 0)
+      bonds.push_back({renumbered, s});
+  });
+  return std::make_unique<PartialManyBody<dim>>(std::move(bonds), std::move(volume_share),
+                                                std::move(lambda_per_volume),
+                                                material_.shear_modulus());
+}
+
+template <int dim>
 void ManyBodyForce<dim>::stresses(const Particles &particles,
                                   Components<n_strains<dim>> &stress) const
 {
@@ -180,6 +215,12 @@ template void
 ManyBodyForce<2>::for_each_face(const std::function<void(const particles::FaceView<2> &)> &) const;
 template void
 ManyBodyForce<3>::for_each_face(const std::function<void(const particles::FaceView<3> &)> &) const;
+template std::unique_ptr<particles::PartialForce<2>>
+ManyBodyForce<2>::part(const std::vector<int> &,
+                       const particles::ParticleForce<2>::TermShare &) const;
+template std::unique_ptr<particles::PartialForce<3>>
+ManyBodyForce<3>::part(const std::vector<int> &,
+                       const particles::ParticleForce<3>::TermShare &) const;
 template void ManyBodyForce<2>::stresses(const Particles &, Components<3> &) const;
 template void ManyBodyForce<3>::stresses(const Particles &, Components<6> &) const;
 template double ManyBodyForce<2>::max_tension(const Particles &, const std::vector<int> &) const;

@@ -1,9 +1,11 @@
 // What the loop and the coupler know of a force between particles: not the law, only its answers.
 #pragma once
 
+#include "core/check.h"
 #include "particles/particles.h"
 
 #include <functional>
+#include <memory>
 
 namespace ligament::particles
 {
@@ -50,6 +52,18 @@ struct ElasticConstants
   double wave_speed_s;      // m/s
 };
 
+/// Some terms of a force, each with a share of its energy, on particles of their own numbering.
+template <int dim>
+class PartialForce
+{
+public:
+  virtual ~PartialForce() = default;
+
+  /// Overwrites force and torque of all particles with those of the present state; returns the
+  /// energy in J. Calling it again in the same state changes nothing more.
+  virtual double compute(Particles<dim> &particles) = 0;
+};
+
 /// Adds forces to all particles: one virtual call per step.
 template <int dim>
 class ParticleForce
@@ -72,7 +86,25 @@ public:
   /// Every quadratic term of the linearised energy of the present bonds, once.
   virtual void add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
 
+  /// Share of the energy of a term at `location` (m, reference) that `particles` enter.
+  using TermShare =
+      std::function<double(const Vector<dim> &location, const std::vector<int> &particles)>;
+
+  /// The intact law with each term's energy times its share, on the particles `members` alone, in
+  /// this order; a history starts anew. Terms that reach other particles must have the share 0.
+  /// Throws core::InputError from a force that has no such part.
+  virtual std::unique_ptr<PartialForce<dim>> part(const std::vector<int> &members,
+                                                  const TermShare &share) const;
+
   /// Every face of every cell, once per side (i, j), then the faces on the surface (j = -1).
   virtual void for_each_face(const std::function<void(const FaceView<dim> &)> &visit) const = 0;
 };
+
+template <int dim>
+std::unique_ptr<PartialForce<dim>> ParticleForce<dim>::part(const std::vector<int> &,
+                                                            const TermShare &) const
+{
+  throw core::InputError("/coupling/regime: this force cannot be evaluated on the motion of the "
+                         "mesh; choose \"linear\" or \"corotated\"");
+}
 } // namespace ligament::particles

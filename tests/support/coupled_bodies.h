@@ -40,6 +40,10 @@ struct CoupledBodiesParameters
   int levels = 0;
   coupling::FineScaleSplitParameters split;
   double step_fraction = 0.9;
+  /// Puts another law in the place of the many-body law; empty: keeps it.
+  std::function<std::unique_ptr<particles::ParticleForce<dim>>(
+      std::unique_ptr<particles::ParticleForce<dim>>)>
+      replace_law;
 };
 
 template <int dim>
@@ -77,10 +81,11 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   auto packing = particles::make_lattice_packing<dim>(lattice);
   particles::Particles<dim> state;
   particles::fill_particles(packing, p.material.density, state);
-  body.zone = std::make_unique<particles::ParticleSolver<dim>>(
-      std::move(state),
-      std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), p.material,
-                                                std::vector<core::BoundaryLoad<dim>>()));
+  std::unique_ptr<particles::ParticleForce<dim>> law = std::make_unique<dem::ManyBodyForce<dim>>(
+      std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>());
+  if (p.replace_law)
+    law = p.replace_law(std::move(law));
+  body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(law));
   fem::Body<dim> material;
   material.stiffness = p.material.template elastic_constants<dim>().stiffness;
   material.density = p.material.density;
