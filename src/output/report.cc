@@ -167,6 +167,8 @@ std::string model(const RunRecord &r)
   maybe("stable step, far field", r.dt_far, "s");
   if (r.step_ratio > 1)
     add("far field steps once per", fmt::format("{} steps", r.step_ratio));
+  if (!r.regime.empty())
+    add("regime of the overlap", r.regime);
   add("steps", grouped(r.steps));
   add("simulated time", quantity(r.simulated_time, "s"));
   add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));

@@ -67,6 +67,7 @@ void for_each_field(RunRecord &r, Visit &&visit)
   visit("dt_critical", r.dt_critical);
   visit("dt_far", r.dt_far);
   visit("step_ratio", r.step_ratio);
+  visit("regime", r.regime);
   visit("steps", r.steps);
   visit("simulated_time", r.simulated_time);
   visit("wall_seconds", r.wall_seconds);

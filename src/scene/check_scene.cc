@@ -247,6 +247,29 @@ void check_ratio(const Scene &scene, Findings &f)
               remedy(2.5, 8));
 }
 
+/// Light coarse masses: a numerical device for static answers.
+void check_coarse_mass(const Scene &scene, Findings &f)
+{
+  const std::string key = "/coupling/coarse_mass";
+  if (!f.sound_and_given({key}) || scene.coupling.coarse_mass == 1)
+    return;
+  const auto &damping = scene.damping;
+  if (f.sound({"/damping"}) && damping.local == 0 && damping.mass == 0 && !damping.kinetic)
+    f.error(key,
+            fmt::format("\"coarse_mass\" in /coupling is {:.4g} without damping",
+                        scene.coupling.coarse_mass),
+            "waves would travel faster in the far field than in the discrete zone: only static "
+            "answers do not depend on masses",
+            "leave it out, or add \"kinetic\": true, \"local\" or \"mass\" to /damping");
+  const double lowest = scene.zone.spacing / scene.far_field->cell_size;
+  if (f.sound({cell_key, spacing_key}) && scene.coupling.coarse_mass < lowest * (1 - 1e-9))
+    f.error(key,
+            fmt::format("\"coarse_mass\" in /coupling is {:.4g}, below spacing/cell_size",
+                        scene.coupling.coarse_mass),
+            "the coarse motion would need a smaller step than the particles",
+            fmt::format("give at least {:.4g}", lowest));
+}
+
 /// Room for the overlaps inside the zone and for the far field beside it.
 void check_widths(const Scene &scene, const Layout &layout, Findings &f)
 {
@@ -302,11 +325,17 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
   if (!spacing || !f.sound({cell_key}))
     return {};
   check_ratio(scene, f);
+  check_coarse_mass(scene, f);
   if (scene.coupling.scheme == "none")
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",
               "they overlap but are not joined", "");
+  if (f.sound({"/coupling/regime", "/coupling/scheme"}) && scene.coupling.scheme == "none" &&
+      scene.coupling.regime == "nonlinear")
+    f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" without a coupler",
+            "it is about the energy of the overlap, and \"scheme\" is \"none\"",
+            "choose \"corotated\" for a far field that turns, or another scheme");
   if (!layout || !f.sound({cell_key, spacing_key, "/far_field/levels", "/coupling/overlap_cells"}))
     return {};
   layout->cell_size = scene.far_field->cell_size;

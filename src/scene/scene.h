@@ -102,8 +102,10 @@ struct CouplingParameters
   double fine_damper = 8;   // c_f
   double gap_filter = 4;    // c_g
   bool patch_fit = true;
-  std::string solver = "eigen"; // eigen, amesos
-  std::string guard = "stop";   // stop, warn
+  std::string solver = "eigen";     // eigen, amesos
+  std::string guard = "stop";       // stop, warn
+  std::string regime = "automatic"; // linear, corotated, nonlinear
+  double coarse_mass = 1;           // factor on the masses of the coarse motion and the far field
 };
 
 struct Damping

@@ -87,7 +87,9 @@ void declare_coupling(Section &s, CouplingParameters &c)
   s.add("gap_filter", c.gap_filter, "c_g, filter of the waves that neither model carries well; 4 for fracture, 0: off").at_least(0).at_most(100);
   s.add("patch_fit", c.patch_fit, "corrects the overlap so that homogeneous strains are exact");
   s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
-  s.add("guard", c.guard, "what happens when fracture approaches the overlap").one_of({"stop", "warn"});
+  s.add("guard", c.guard, "what happens when fracture approaches the overlap or the body leaves the range of its regime").one_of({"stop", "warn"});
+  s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it").one_of({"automatic", "linear", "corotated", "nonlinear"});
+  s.add("coarse_mass", c.coarse_mass, "factor on the masses of the coarse motion and of the far field, for fewer steps to a static answer; down to spacing/cell_size, with damping only").above(0).at_most(1);
 }
 
 void declare_damping(Section &s, Damping &d)

@@ -255,7 +255,7 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   const auto constants = material_of(scene).elastic_constants<dim>();
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
-  material.density = constants.density;
+  material.density = scene.coupling.coarse_mass * constants.density;
   material.thickness = body.thickness;
   body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(p), material, body.loads);
   body.dt_far = body.far->stable_step();
@@ -299,6 +299,7 @@ void make_coupler(const Scene &scene, CoupledBody<dim> &body, core::Log &log, co
   p.gap_filter = scene.coupling.gap_filter;
   p.patch_fit = scene.coupling.patch_fit;
   p.solver = scene.coupling.solver;
+  p.coarse_mass = scene.coupling.coarse_mass;
   auto bodies = body.bodies();
   auto split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p, body.dt, timers);
   const auto &report = split->report();

@@ -18,9 +18,6 @@ constexpr long guard_interval = 50;
 
 // Overlap bonds must not break: the run is trusted up to half their strength.
 constexpr double guarded_share = 0.5;
-
-// Half a degree, in rad: up to here a linear overlap is as exact as a turning one.
-constexpr double guarded_rotation = M_PI / 360;
 } // namespace
 
 template <int dim>
@@ -118,29 +115,14 @@ void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::
   fields_.write(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
 }
 
-// What the coupler cannot carry: fracture near the overlap, and a turning overlap, whose coarse
-// stiffness is that of the reference.
 template <int dim>
-std::optional<std::string>
-Recorder<dim>::overlap_leaves_its_range(const CoupledBody<dim> &body) const
+std::optional<Stop> Recorder<dim>::report_excess(const std::string &finding,
+                                                 const coupling::StepTime &step)
 {
-  const auto &state = body.zone->state;
-  const double strength = body.force->fracture().strength;
-  if (!guarded_.empty())
-    if (const double tension = body.force->max_tension(state, guarded_);
-        tension > guarded_share * strength)
-      return fmt::format("the tension in the overlap is {:.0f} % of the strength: fracture comes "
-                         "near it; make /discrete_zone/region larger",
-                         100 * tension / strength);
-  double rotation = 0;
-  for (const auto &m : body.split->overlap().members)
-    if (m.pad)
-      for (int c = dim == 2 ? 0 : 1; c < particles::Particles<dim>::n_rotations; ++c)
-        rotation = std::max(rotation, (dim == 2 ? 1 : 2) * std::abs(state.rotation[c][m.particle]));
-  if (rotation > guarded_rotation)
-    return fmt::format("the overlap has turned by {:.2f} degrees, more than its linear stiffness "
-                       "carries; hold the specimen against rotation or end the run earlier",
-                       rotation * 180 / M_PI);
+  const std::string reason = fmt::format("at {:.4g} s {}", step.time, finding);
+  log_.warning(reason);
+  if (scene_.coupling.guard == "stop")
+    return Stop{true, reason};
   return {};
 }
 
@@ -148,14 +130,20 @@ template <int dim>
 std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
                                                 const coupling::StepTime &step)
 {
-  if (body.split && !warned_)
-    if (const auto finding = overlap_leaves_its_range(body)) {
+  // Overlap bonds must not break.
+  if (!guarded_.empty() && !warned_) {
+    const double strength = body.force->fracture().strength;
+    const double tension = body.force->max_tension(body.zone->state, guarded_);
+    if (tension > guarded_share * strength) {
       warned_ = true;
-      const std::string reason = fmt::format("at {:.4g} s {}", step.time, *finding);
-      log_.warning(reason);
-      if (scene_.coupling.guard == "stop")
-        return Stop{true, reason};
+      if (const auto stop = report_excess(
+              fmt::format("the tension in the overlap is {:.0f} % of the strength: fracture comes "
+                          "near it; make /discrete_zone/region larger",
+                          100 * tension / strength),
+              step))
+        return stop;
     }
+  }
   if (scene_.time.stop_when == "specimen_broken" && body.force) {
     const std::size_t n_broken = body.force->broken_bonds().size();
     if (n_broken != broken_before_) {

@@ -31,6 +31,9 @@ public:
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping);
 
+  /// Logs what leaves the range of the models; a stop when the scene's guard says so.
+  std::optional<Stop> report_excess(const std::string &finding, const coupling::StepTime &step);
+
   /// Last row, last fields, pictures, tables; completes the record.
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
               RunRecord &record);
@@ -40,7 +43,6 @@ private:
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
             const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
-  std::optional<std::string> overlap_leaves_its_range(const CoupledBody<dim> &body) const;
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;

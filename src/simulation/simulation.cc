@@ -15,7 +15,8 @@ namespace ligament::program
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress)
     : scene_(scene), folder_(folder), log_(folder.log()),
-      body_(make_body<dim>(scene_, log_, timers_)), damping_(scene_.damping), clock_(clock_of()),
+      body_(make_body<dim>(scene_, log_, timers_)), regime_(scene_.coupling.regime, body_),
+      damping_(scene_.damping), clock_(clock_of()),
       recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps)
 {
   if (body_.seeds)
@@ -40,9 +41,13 @@ std::optional<Stop> Simulation<dim>::loop()
   auto &coupler = *body_.coupler;
   coupler.compute_forces(bodies, clock_.now);
   while (!clock_.is_at_end()) {
-    if (clock_.now.step % coupler.step_ratio() == 0)
+    if (clock_.now.step % coupler.step_ratio() == 0) {
+      if (const auto reason = regime_.look(body_, clock_.now, log_))
+        if (const auto stop = recorder_.report_excess(*reason, clock_.now))
+          return stop;
       if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
         return stop;
+    }
     damping_.before_kick(body_, clock_.now);
     coupler.kick(bodies, clock_.now); // velocities, one body in the overlap
     damping_.after_kick(body_, clock_.now);
@@ -97,6 +102,7 @@ RunRecord Simulation<dim>::run()
   const auto stop = loop();
   record.status = stop && stop->by_guard ? "guard" : "done";
   record.reason = stop ? stop->reason : "end of the scene's duration";
+  record.regime = regime_.history();
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;

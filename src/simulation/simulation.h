@@ -6,6 +6,7 @@
 #include "src/simulation/damping.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/recorder.h"
+#include "src/simulation/regime_control.h"
 
 namespace ligament::program
 {
@@ -45,6 +46,7 @@ private:
   core::Log log_;
   core::Timers timers_;
   CoupledBody<dim> body_;
+  RegimeControl<dim> regime_;
   BodyDamping<dim> damping_;
   Clock clock_;
   Recorder<dim> recorder_;

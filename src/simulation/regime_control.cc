@@ -1,0 +1,118 @@
+#include "src/simulation/regime_control.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+using coupling::Regime;
+
+constexpr long look_interval = 50; // steps of the far field
+constexpr double degree = M_PI / 180;
+
+// A linear model that turns by phi feels a strain of phi^2/2: 1.5e-6 at the change of regime,
+// 4e-5 at the limit of a fixed regime.
+constexpr double change_at = 0.1 * degree, limit = 0.5 * degree;
+
+// The linear matrices of a turning overlap err by the strain squared.
+constexpr double largest_corotated_strain = 0.01;
+
+// The laws of both models are meant for strains up to here.
+constexpr double largest_strain = 0.1;
+} // namespace
+
+template <int dim>
+RegimeControl<dim>::RegimeControl(const std::string &key, CoupledBody<dim> &body)
+    : automatic_(key == "automatic")
+{
+  if (!body.far)
+    return;
+  if (key == "corotated")
+    set(Regime::corotated, body);
+  else if (key == "nonlinear")
+    set(Regime::nonlinear, body);
+  history_ = name_of(regime_);
+}
+
+template <int dim>
+void RegimeControl<dim>::set(Regime regime, CoupledBody<dim> &body)
+{
+  auto bodies = body.bodies();
+  if (body.split)
+    body.split->set_regime(regime, bodies);
+  else
+    body.far->set_corotated(true);
+  regime_ = regime;
+}
+
+template <int dim>
+Regime RegimeControl<dim>::needed(const CoupledBody<dim> &body) const
+{
+  if (body.split && (near_.bending > change_at || near_.strain > largest_corotated_strain))
+    return Regime::nonlinear;
+  return std::max(near_.rotation, far_.rotation) > change_at ? Regime::corotated : Regime::linear;
+}
+
+template <int dim>
+std::optional<std::string> RegimeControl<dim>::excess() const
+{
+  const double rotation = std::max(near_.rotation, far_.rotation);
+  const double strain = std::max(near_.strain, far_.strain);
+  if (strain > largest_strain)
+    return fmt::format("overlap or far field is strained by {:.1f} %, more than its law is for; "
+                       "make /discrete_zone/region larger or end the run earlier",
+                       100 * strain);
+  if (regime_ == Regime::linear && rotation > limit)
+    return fmt::format("overlap or far field has turned by {:.2f} degrees, more than the linear "
+                       "regime carries; set /coupling/regime to \"automatic\"",
+                       rotation / degree);
+  if (regime_ == Regime::corotated && near_.bending > limit)
+    return fmt::format("the overlap bends by {:.2f} degrees, more than one rotation carries; set "
+                       "/coupling/regime to \"automatic\" or \"nonlinear\"",
+                       near_.bending / degree);
+  return {};
+}
+
+template <int dim>
+std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
+                                                    const coupling::StepTime &step, core::Log &log)
+{
+  const int ratio = body.coupler->step_ratio();
+  if (!body.far || step.step % (ratio * look_interval) != 0)
+    return {};
+  far_ = body.far->largest_motion();
+  if (body.split)
+    near_ = body.split->largest_motion();
+  const Regime needed = automatic_ ? this->needed(body) : regime_;
+  if (needed > regime_) {
+    auto bodies = body.bodies();
+    const auto total = [&] {
+      const auto e = body.coupler->energy(bodies, step);
+      return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far +
+             e.blended + e.impulses;
+    };
+    const double before = total();
+    set(needed, body);
+    body.coupler->compute_forces(bodies, step);
+    const double jump = total() - before;
+    body.regime_change -= jump;
+    history_ += fmt::format(", {} from {:.4g} s", name_of(regime_), step.time);
+    log.info("{} regime from {:.4g} s: rotation {:.2f} degrees, bending {:.2f} degrees, strain "
+             "{:.2g}; the energy changes by {:.3g} J",
+             name_of(regime_), step.time, std::max(near_.rotation, far_.rotation) / degree,
+             near_.bending / degree, std::max(near_.strain, far_.strain), jump);
+  }
+  if (warned_)
+    return {};
+  const auto reason = excess();
+  warned_ = reason.has_value();
+  return reason;
+}
+
+template class RegimeControl<2>;
+template class RegimeControl<3>;
+} // namespace ligament::program

@@ -1,0 +1,39 @@
+// How far the body has turned and stretched, and the kinematics of overlap and far field that this
+// needs.
+#pragma once
+
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+/// Watches the motion of overlap and far field every 50 of its steps (theory.md, "Large rotation
+/// and finite strain"). A scene's fixed regime acts from the start; "automatic" starts linear and
+/// changes where rotations are still so small that the regimes hardly differ.
+template <int dim>
+class RegimeControl
+{
+public:
+  RegimeControl(const std::string &key, CoupledBody<dim> &body);
+
+  /// Between forces and kick of a step in which the far field acts: may change the regime and
+  /// compute the forces again; what the energy changes by is booked in the body. Returns why the
+  /// body leaves the range of its regime, once.
+  std::optional<std::string> look(CoupledBody<dim> &body, const coupling::StepTime &step,
+                                  core::Log &log);
+
+  /// Which regime acted, and since when: "linear, corotated from 0.0012 s"; empty without mesh.
+  const std::string &history() const { return history_; }
+
+private:
+  coupling::Regime needed(const CoupledBody<dim> &body) const;
+  std::optional<std::string> excess() const;
+  void set(coupling::Regime regime, CoupledBody<dim> &body);
+
+  bool automatic_;
+  coupling::Regime regime_ = coupling::Regime::linear;
+  typename coupling::NearParts<dim>::Motion near_; // at the last look
+  typename fem::FemSolver<dim>::Motion far_;
+  bool warned_ = false;
+  std::string history_;
+};
+} // namespace ligament::program

@@ -1,0 +1,88 @@
+// The regime follows the motion of the body, and its changes are booked.
+#include "src/simulation/energy_ledger.h"
+#include "src/simulation/regime_control.h"
+#include "tests/support/small_plate.h"
+
+#include <Eigen/Geometry>
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+/// A plate in the motion x = R S X at rest, and who watches it.
+struct WatchedPlate
+{
+  SmallBody small;
+  RegimeControl<2> control;
+  coupling::StepTime step{0, 0, small.body.dt};
+
+  WatchedPlate(const std::string &regime, double degrees, double strain,
+               const std::vector<std::string> &kind = {})
+      : small(small_scene(kind)), control(regime, small.body)
+  {
+    const double angle = degrees * M_PI / 180;
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
+    small.deform(turn * Eigen::Vector2d(1, 1 + strain).asDiagonal() - Eigen::Matrix2d::Identity());
+    if (small.body.zone)
+      for (double &a : small.body.zone->state.rotation[0])
+        a = angle;
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, step);
+  }
+
+  std::optional<std::string> look() { return control.look(small.body, step, *small.log); }
+  EnergyLedger ledger() const { return read_ledger(small.body, step, 0); }
+};
+
+TEST(RegimeControl, SmallRotationsStayLinear)
+{
+  WatchedPlate plate("automatic", 0.09, 1e-4);
+  EXPECT_FALSE(plate.look());
+  EXPECT_EQ(plate.control.history(), "linear");
+  EXPECT_EQ(plate.small.body.regime_change, 0);
+}
+
+TEST(RegimeControl, ChangeOfRegimeIsBooked)
+{
+  for (const auto &kind : {body_kinds[0], body_kinds[2]}) { // those with a mesh
+    SCOPED_TRACE(kind.name);
+    WatchedPlate plate("automatic", 0.3, 0, kind.overrides);
+    const EnergyLedger before = plate.ledger();
+    EXPECT_FALSE(plate.look());
+    EXPECT_EQ(plate.control.history(), "linear, corotated from 0 s");
+    const EnergyLedger after = plate.ledger();
+    // What the linear models felt of the rotation is gone from the body and stands in the ledger.
+    const double felt = before.potential();
+    EXPECT_GT(felt, 0);
+    EXPECT_NEAR(after.residual() / before.residual(), 1, 1e-9);
+    EXPECT_LT(std::abs(after.potential()), 1e-9 * felt);
+    EXPECT_NEAR(after.regime_change / before.residual(), 1, 1e-9);
+  }
+}
+
+TEST(RegimeControl, FiniteStrainBecomesNonlinear)
+{
+  WatchedPlate plate("automatic", 0, 0.02);
+  EXPECT_FALSE(plate.look());
+  EXPECT_EQ(plate.control.history(), "linear, nonlinear from 0 s");
+}
+
+TEST(RegimeControl, FixedRegimesAreKeptAndTheirLimitsReported)
+{
+  WatchedPlate linear("linear", 1, 0);
+  const auto reason = linear.look();
+  ASSERT_TRUE(reason);
+  EXPECT_NE(reason->find("/coupling/regime"), std::string::npos) << *reason;
+  EXPECT_FALSE(linear.look()) << "once is enough";
+  EXPECT_EQ(linear.control.history(), "linear");
+
+  WatchedPlate corotated("corotated", 90, 0);
+  EXPECT_FALSE(corotated.look());
+  EXPECT_EQ(corotated.control.history(), "corotated");
+
+  WatchedPlate torn("nonlinear", 0, 0.12);
+  EXPECT_TRUE(torn.look());
+}
+} // namespace
