@@ -14,6 +14,8 @@ std::vector<Case> all_cases()
   add(rotation_cases());
   add(patch_cases());
   add(critical_step_cases());
+  add(regime_cases());
+  add(coarse_mass_cases());
   add(drift_cases());
   add(wave_cases());
   add(wave_bench_cases());

@@ -39,6 +39,8 @@ struct Case
 std::vector<Case> moduli_cases();
 std::vector<Case> patch_cases();
 std::vector<Case> rotation_cases();
+std::vector<Case> regime_cases();
+std::vector<Case> coarse_mass_cases();
 std::vector<Case> drift_cases();
 std::vector<Case> critical_step_cases();
 std::vector<Case> wave_cases();
