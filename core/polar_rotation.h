@@ -7,8 +7,11 @@
 
 #include <cmath>
 
+<<<<<<< HEAD
 #include <Eigen/Geometry>
 
+=======
+>>>>>>> main
 namespace ligament::core
 {
 /// y x g; in 2D y is the component out of the plane.

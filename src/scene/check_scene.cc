@@ -402,14 +402,23 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   check_ratio(scene, f);
   check_coarse_mass(scene, f);
+<<<<<<< HEAD
   check_scheme(scene, f);
   if (scene.coupling.scheme == coupling::Scheme::none)
+=======
+  if (scene.coupling.scheme == "none")
+>>>>>>> main
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",
               "they overlap but are not joined", "");
+<<<<<<< HEAD
   if (f.sound({"/coupling/regime", "/coupling/scheme"}) &&
       scene.coupling.scheme == coupling::Scheme::none && scene.coupling.regime == "nonlinear")
+=======
+  if (f.sound({"/coupling/regime", "/coupling/scheme"}) && scene.coupling.scheme == "none" &&
+      scene.coupling.regime == "nonlinear")
+>>>>>>> main
     f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" without a coupler",
             "it is about the energy of the overlap, and \"scheme\" is \"none\"",
             "choose \"corotated\" for a far field that turns, or another scheme");

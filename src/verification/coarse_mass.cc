@@ -90,7 +90,7 @@ std::vector<Case> coarse_mass_cases()
                  {"coarse_mass/error", std::max(full.error, light.error), 1e-4, {}},
                  {"coarse_mass/step_gain", double(full.steps) / double(light.steps), 1.5, 2,
                   Result::Bound::at_least},
-                 {"coarse_mass/margin", margin(1 / cell_size), 1, {}, Result::Bound::at_least}};
+                 {"coarse_mass/margin", margin(1 / cell_size), 0.99, {}, Result::Bound::at_least}};
            }}};
 }
 } // namespace ligament::program
