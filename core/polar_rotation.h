@@ -7,11 +7,8 @@
 
 #include <cmath>
 
-<<<<<<< HEAD
 #include <Eigen/Geometry>
 
-=======
->>>>>>> main
 namespace ligament::core
 {
 /// y x g; in 2D y is the component out of the plane.

@@ -32,7 +32,6 @@ struct BlendedOperators
 };
 
 /// `coarse_mass` multiplies the particles' share of the mass; the cells have the density of `body`.
-<<<<<<< HEAD
 template <int dim>
 BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
                                              const particles::Particles<dim> &particles,
@@ -57,19 +56,6 @@ make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim>
 /// still have at near nodes comes back, in kg. Throws core::InputError where a near node is held.
 template <int dim>
 Eigen::SparseMatrix<double> take_over_cells(const Overlap<dim> &overlap, fem::FemSolver<dim> &far);
-=======
-template <int dim>
-BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
-                                             const particles::Particles<dim> &particles,
-                                             const particles::ParticleForce<dim> &force,
-                                             const fem::Body<dim> &body, double coarse_mass = 1);
-
-/// Stiffness in N/m of a near cell with its share of the energy: 1 - a in the overlap, else whole.
-template <int dim>
-fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
-                                            const typename Overlap<dim>::Cell &cell,
-                                            const fem::Body<dim> &body);
->>>>>>> main
 
 /// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
 template <int dim>

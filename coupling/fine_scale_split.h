@@ -64,17 +64,6 @@ public:
     return parts_.largest_motion(displacement_);
   }
 
-  /// From now on both halves move in this regime; forces must be computed again before the next
-  /// kick. The energy jumps by what the regimes differ in the present motion. Throws
-  /// core::InputError when the discrete law cannot follow, and when asked to become linear again.
-  void set_regime(Regime regime, Bodies<dim> &bodies);
-  Regime regime() const { return regime_; }
-  /// Of the near cells, in the present state.
-  typename NearParts<dim>::Motion largest_motion() const
-  {
-    return parts_.largest_motion(displacement_);
-  }
-
   const SplitReport &report() const { return report_; }
   const Overlap<dim> *overlap() const override { return &overlap_; }
   /// Coarse stiffness K_near including the patch fit, N/m.

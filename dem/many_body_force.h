@@ -64,12 +64,8 @@ public:
   part(const std::vector<int> &members,
        const typename particles::ParticleForce<dim>::TermShare &share) const override;
 
-<<<<<<< HEAD
   /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10);
   /// of the body before its energy was weighted.
-=======
-  /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10).
->>>>>>> main
   void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const;
 
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.

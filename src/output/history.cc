@@ -17,11 +17,7 @@ std::vector<Column> history_columns(int dimension)
   for (const char *energy :
        {"kinetic_discrete", "potential_discrete", "kinetic_far", "potential_far", "blended",
         "impulses", "breaking", "fracture", "friction", "damper_fine", "damper_gap", "damping",
-<<<<<<< HEAD
          "absorbed", "regime_change", "external_work", "residual"})
-=======
-        "absorbed", "regime_change", "external_work", "residual"})
->>>>>>> main
     columns.push_back({energy, "J"});
   columns.push_back({"broken_bonds", "1"});
   columns.push_back({"crack_length", dimension == 2 ? "m" : "m^2"});

@@ -11,13 +11,8 @@ namespace ligament::program
 {
 /// The columns that every run writes, with their units. Energies in J: kinetic_discrete,
 /// potential_discrete, kinetic_far, potential_far, blended, impulses, breaking (the step errors of
-<<<<<<< HEAD
 /// both), fracture, friction, damper_fine, damper_gap, damping, absorbed, regime_change,
 /// external_work, residual. crack_length is in m (2D) or m^2 (3D).
-=======
-/// both), fracture, friction, damper_fine, damper_gap, damping, regime_change, external_work,
-/// residual. crack_length is in m (2D) or m^2 (3D).
->>>>>>> main
 std::vector<Column> history_columns(int dimension);
 
 /// Appends rows; a row is on disk after at most `rows_per_flush` rows.

@@ -51,12 +51,8 @@ void check_models(const Scene &scene, Findings &f)
             "the discrete zone is a part of the specimen, the rest needs finite elements",
             "add \"far_field\": {\"cell_size\": ..}, or \"far_field\": \"none\" for the pure "
             "discrete reference");
-  if (scene.zone.extent == Extent::box && f.given(region_key) && f.given(boxes_key))
-    f.error(boxes_key, "both \"region\" and \"boxes\" in /discrete_zone",
-            "they are two ways to say which part of the specimen is discrete",
-            "remove one of them");
-  if (scene.zone.extent == Extent::box && !f.given(region_key) && !f.given(boxes_key) &&
-      f.sound({region_key}))
+  if (scene.zone.extent == Extent::box && !f.given(region_key) && scene.zone.boxes.empty() &&
+      f.sound({region_key, boxes_key}))
     f.error(region_key, "missing key \"region\" in /discrete_zone",
             "it says which part of the specimen is discrete",
             "add \"region\": {\"lower\": [..], \"upper\": [..]}, or \"extent\": \"all\"");
@@ -402,23 +398,14 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   check_ratio(scene, f);
   check_coarse_mass(scene, f);
-<<<<<<< HEAD
   check_scheme(scene, f);
   if (scene.coupling.scheme == coupling::Scheme::none)
-=======
-  if (scene.coupling.scheme == "none")
->>>>>>> main
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",
               "they overlap but are not joined", "");
-<<<<<<< HEAD
   if (f.sound({"/coupling/regime", "/coupling/scheme"}) &&
       scene.coupling.scheme == coupling::Scheme::none && scene.coupling.regime == "nonlinear")
-=======
-  if (f.sound({"/coupling/regime", "/coupling/scheme"}) && scene.coupling.scheme == "none" &&
-      scene.coupling.regime == "nonlinear")
->>>>>>> main
     f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" without a coupler",
             "it is about the energy of the overlap, and \"scheme\" is \"none\"",
             "choose \"corotated\" for a far field that turns, or another scheme");

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -51,9 +52,21 @@ void enclose_boxes(DiscreteZone &zone)
     }
 }
 
+/// A region that says nothing leaves the choice to the boxes.
+void check_choice_of_zone(const DiscreteZone &zone, Findings &findings)
+{
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!zone.boxes.empty() && (std::any_of(zone.lower.begin(), zone.lower.end(), is_finite) ||
+                              std::any_of(zone.upper.begin(), zone.upper.end(), is_finite)))
+    findings.error("/discrete_zone/boxes", "both \"region\" and \"boxes\" in /discrete_zone",
+                   "they are two ways to say which part of the specimen is discrete",
+                   "remove one of them");
+}
+
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
+  enclose_boxes(scene.zone);
   for (int c = 0; c < 3; ++c) {
     const double size = scene.specimen.size[c];
     if (scene.zone.extent == DiscreteZone::Extent::all || std::isinf(scene.zone.lower[c]))
@@ -96,10 +109,10 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   apply_far_field_word(json, scene);
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
-    if (findings.sound_and_given({"/discrete_zone/boxes"}) &&
-        !findings.given("/discrete_zone/region"))
-      enclose_boxes(scene.zone);
-    check_scene(scene, findings);
+    check_choice_of_zone(scene.zone, findings);
+    Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
+    enclose_boxes(enclosed.zone);
+    check_scene(enclosed, findings);
   }
   core::sort_by_place(result.errors);
   core::sort_by_place(result.warnings);

@@ -111,14 +111,11 @@ struct CouplingParameters
   double fine_damper = 8;   // c_f
   double gap_filter = 4;    // c_g
   bool patch_fit = true;
-<<<<<<< HEAD
   // Energy-weighted schemes only:
   coupling::WeightShape weight = coupling::WeightShape::cubic;
   coupling::DamperForm damper_form = coupling::DamperForm::symmetrised;
   int multiplier_cells = 1;
   Point ghost_force_correction = {0, 0, 0}; // normal strains
-=======
->>>>>>> main
   std::string solver = "eigen";     // eigen, amesos
   std::string guard = "stop";       // stop, warn
   std::string regime = "automatic"; // linear, corotated, nonlinear

@@ -18,7 +18,6 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"damping", damping},
           {"regime_change", regime_change},
           {"absorbed", absorbed},
-          {"regime_change", regime_change},
           {"external_work", external_work},
           {"residual", residual()}};
 }
@@ -35,7 +34,6 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
     ledger.absorbed += body.zone->dashpots.energy();
   if (body.far)
     ledger.absorbed += body.far->absorbed_energy();
-  ledger.regime_change = body.regime_change;
   if (body.force) {
     ledger.fracture = body.force->fracture_energy();
     ledger.breaking_step_error = body.force->breaking_step_error();

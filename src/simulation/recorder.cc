@@ -145,17 +145,6 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
                           100 * tension / strength),
               step))
         return stop;
-<<<<<<< HEAD
-=======
-    }
-  }
-  if (scene_.time.stop_when == "specimen_broken" && body.force) {
-    const std::size_t n_broken = body.force->broken_bonds().size();
-    if (n_broken != broken_before_) {
-      broken_before_ = n_broken;
-      if (is_broken_across(body, machine_.axis()))
-        return Stop{false, fmt::format("specimen broken at {:.4g} s", step.time)};
->>>>>>> main
     }
   }
   if (body.force && !broken_)

@@ -27,12 +27,8 @@ constexpr double largest_strain = 0.1;
 
 template <int dim>
 RegimeControl<dim>::RegimeControl(const std::string &key, CoupledBody<dim> &body)
-<<<<<<< HEAD
     : weighted_(body.coupler->overlap() && !body.split),
       automatic_(key == "automatic" && !weighted_)
-=======
-    : automatic_(key == "automatic")
->>>>>>> main
 {
   if (!body.far)
     return;
@@ -73,16 +69,11 @@ std::optional<std::string> RegimeControl<dim>::excess() const
                        100 * strain);
   if (regime_ == Regime::linear && rotation > limit)
     return fmt::format("overlap or far field has turned by {:.2f} degrees, more than the linear "
-<<<<<<< HEAD
                        "regime carries; {}",
                        rotation / degree,
                        weighted_ ? "energy-weighted schemes have no other: hold the specimen "
                                    "against rotation or end the run earlier"
                                  : "set /coupling/regime to \"automatic\"");
-=======
-                       "regime carries; set /coupling/regime to \"automatic\"",
-                       rotation / degree);
->>>>>>> main
   if (regime_ == Regime::corotated && near_.bending > limit)
     return fmt::format("the overlap bends by {:.2f} degrees, more than one rotation carries; set "
                        "/coupling/regime to \"automatic\" or \"nonlinear\"",

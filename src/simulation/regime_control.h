@@ -29,10 +29,7 @@ private:
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
-<<<<<<< HEAD
   bool weighted_; // an energy-weighted coupler, which is linear
-=======
->>>>>>> main
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
   typename coupling::NearParts<dim>::Motion near_; // at the last look

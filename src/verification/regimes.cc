@@ -63,11 +63,7 @@ struct MovingBody
     step.dt = 1;
     unit.body.coupler->compute_forces(bodies, step);
     unit.body.coupler->kick(bodies, step);
-<<<<<<< HEAD
     const auto &near = unit.body.split->overlap()->near_nodes;
-=======
-    const auto &near = unit.body.split->overlap().near_nodes;
->>>>>>> main
     Eigen::MatrixXd v(near.size(), dim);
     for (std::size_t i = 0; i < near.size(); ++i)
       v.row(i) = get(unit.body.far->velocity, near[i]).transpose();
@@ -103,11 +99,7 @@ std::vector<Result> rotate(const std::string &name)
     auto &body = moving.unit.body;
     moving.move(right_angle<dim>(random), Matrix<dim>::Identity());
     const double unit = moving.unit.c11();
-<<<<<<< HEAD
     const double h = body.split->overlap()->cell_size;
-=======
-    const double h = body.split->overlap().cell_size;
->>>>>>> main
     keep_worst(force, moving.near_force().cwiseAbs().maxCoeff() / (unit * std::pow(h, dim - 1)));
     for (int i = 0; i < body.zone->state.n_owned; ++i) {
       keep_worst(force, get(body.zone->state.force, i).norm() / unit);
@@ -136,11 +128,7 @@ std::vector<Result> turned_patch()
     for (const double size : {1e-5, 0.05}) {
       MovingBody<2> moving(small_scene(2, regime));
       moving.move(right_angle<2>(random), Matrix<2>::Identity() + size * strain);
-<<<<<<< HEAD
       const double unit = moving.unit.c11() * moving.unit.body.split->overlap()->cell_size;
-=======
-      const double unit = moving.unit.c11() * moving.unit.body.split->overlap().cell_size;
->>>>>>> main
       const double residual = moving.near_force().rowwise().norm().maxCoeff() / unit;
       keep_worst(size < 1e-3 ? small : finite, size < 1e-3 ? residual : residual / (size * size));
     }
@@ -152,11 +140,7 @@ std::vector<Result> turned_patch()
 template <int dim>
 Spin<dim> angular_momentum(const CoupledBody<dim> &body, const Eigen::SparseMatrix<double> &mass)
 {
-<<<<<<< HEAD
   const auto &overlap = *body.split->overlap();
-=======
-  const auto &overlap = body.split->overlap();
->>>>>>> main
   const auto &far = *body.far;
   const auto &zone = body.zone->state;
   Spin<dim> sum = Spin<dim>::Zero();

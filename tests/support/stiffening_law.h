@@ -42,13 +42,10 @@ public:
   {
     return law_->elastic_constants();
   }
-<<<<<<< HEAD
   void set_energy_weights(const std::vector<double> &weights) override
   {
     law_->set_energy_weights(weights);
   }
-=======
->>>>>>> main
   void
   add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override
   {

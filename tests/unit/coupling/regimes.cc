@@ -200,11 +200,7 @@ double largest_near_force(CoupledBodies<dim> &body)
   step.dt = 1;
   body.split->compute_forces(bodies, step);
   body.split->kick(bodies, step);
-<<<<<<< HEAD
   const auto &near = body.split->overlap()->near_nodes;
-=======
-  const auto &near = body.split->overlap().near_nodes;
->>>>>>> main
   Eigen::MatrixXd v(near.size(), dim);
   for (std::size_t i = 0; i < near.size(); ++i)
     v.row(i) = get(body.far->velocity, near[i]).transpose();
@@ -222,11 +218,7 @@ std::pair<double, double> turned(Regime regime, const Matrix<dim> &strain)
   const double c11 = body.zone->force->elastic_constants().stiffness(0, 0);
   move<dim>(body, some_rotation<dim>(M_PI / 2), Matrix<dim>::Identity() + strain);
   const double energy = potential(body, {}) / (c11 * small_body<dim>(0.3).size.prod());
-<<<<<<< HEAD
   const double h = body.split->overlap()->cell_size;
-=======
-  const double h = body.split->overlap().cell_size;
->>>>>>> main
   return {largest_near_force(body) / (c11 * std::pow(h, dim - 1)), energy};
 }
 
