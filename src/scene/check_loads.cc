@@ -68,6 +68,18 @@ void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, 
   }
 }
 
+/// Whether several boxes leave no gap in this side of the specimen, down to a depth in m.
+bool cover_side(const Layout &layout, int side, double depth)
+{
+  Vector<3> lower(layout.specimen.lower.data()), upper(layout.specimen.upper.data());
+  const int axis = side / 2;
+  if (side % 2)
+    lower[axis] = upper[axis] - depth;
+  else
+    upper[axis] = lower[axis] + depth;
+  return layout.boxes.covers(lower, upper, 1e-9 * layout.cell_size);
+}
+
 /// The layer must leave room for the overlap and its transition.
 void check_layer(const Scene &scene, const LoadParameters &load, const std::string &key,
                  const Layout &layout, Findings &f)
@@ -81,7 +93,14 @@ void check_layer(const Scene &scene, const LoadParameters &load, const std::stri
            scene.coupling.transition_cells * layout.cell_size;
   else if (layout.coupled)
     room = layout.zone.upper[axis] - layout.zone.lower[axis] - layout.overlap;
-  if (load.absorbing_layer >= room)
+  const bool covered = layout.boxes.boxes.empty() || layout.coupled_side[side] ||
+                       cover_side(layout, side, load.absorbing_layer + layout.overlap);
+  if (load.absorbing_layer > 0 && !covered)
+    f.error(key + "/absorbing_layer",
+            fmt::format("\"absorbing_layer\" in {} reaches into the overlap", key),
+            "the union of /discrete_zone/boxes is not that deep everywhere behind the side",
+            "make the layer thinner, or the boxes deeper");
+  else if (load.absorbing_layer >= room)
     f.error(key + "/absorbing_layer",
             fmt::format("\"absorbing_layer\" in {} is {:.4g} m, more than the {:.4g} m that there "
                         "are between the side and the overlap with its transition",
@@ -96,6 +115,17 @@ void check_against_overlap(const LoadParameters &load, const std::string &key, c
   const int side = side_number(load.boundary), axis = side / 2;
   if (!layout.coupled || layout.coupled_side[side])
     return;
+  if (!layout.boxes.boxes.empty()) {
+    if (!cover_side(layout, side, 0))
+      f.error(
+          key + "/boundary",
+          fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
+                      key, load.boundary),
+          "the union of /discrete_zone/boxes reaches this side and covers a part of it; an "
+          "overlap may end only at free sides",
+          "end the boxes before this side, let them cover it, or load other sides");
+    return;
+  }
   // The zone reaches this side. Overlaps along the other axes end on it.
   for (int other = 0; other < 2 * layout.dim; ++other)
     if (other / 2 != axis && layout.coupled_side[other]) {

@@ -318,6 +318,14 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
             "choose a lattice packing, or one \"region\"");
     return false;
   }
+  const Vector<3> lower(layout.specimen.lower.data()), upper(layout.specimen.upper.data());
+  if (layout.boxes.covers(lower, upper, 1e-9 * scene.specimen.size[0])) {
+    f.error(boxes_key,
+            "\"boxes\" in /discrete_zone cover the whole specimen: no overlap with /far_field",
+            "no place is left for the far field",
+            "make one smaller, or write \"far_field\": \"none\"");
+    return false;
+  }
   const double d = scene.zone.spacing;
   bool right = true;
   for (std::size_t i = 0; i < scene.zone.boxes.size(); ++i) {
@@ -384,7 +392,7 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   const bool particles = scene.zone.extent != Extent::none;
   const bool mesh = scene.zone.extent != Extent::all && scene.far_field.has_value();
-  if (particles && !f.sound({region_key}))
+  if (particles && !f.sound({region_key, boxes_key}))
     return {};
   std::optional<Layout> layout = check_region(scene, specimen, f);
   const bool spacing = particles && f.sound_and_given({spacing_key});

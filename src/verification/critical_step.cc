@@ -1,4 +1,5 @@
 // The stable step of the coupled body against that of the plain discrete model.
+#include "src/verification/box_zones.h"
 #include "src/verification/cases.h"
 #include "src/verification/linear_motion.h"
 #include "src/verification/unit_bodies.h"
@@ -90,12 +91,25 @@ std::vector<Result> random_packings()
   report("critical_step_random/equal_3d", three, results);
   return results;
 }
+std::vector<Result> zones_of_boxes()
+{
+  std::vector<Result> results;
+  Measured l_shape, two_zones;
+  for (const double nu : {0., 0.3, 0.45}) {
+    measure<2>(l_shape_2d(nu), l_shape);
+    measure<2>(two_zones_2d(nu), two_zones);
+  }
+  report("critical_step_boxes/l_shape", l_shape, results);
+  report("critical_step_boxes/two_zones", two_zones, results);
+  return results;
+}
 } // namespace
 
 std::vector<Case> critical_step_cases()
 {
   return {{"critical_step", "largest frequency of the step operator, coupled and plain discrete",
            false, critical_step},
-          {"critical_step_random", "the same of random packings", true, random_packings}};
+          {"critical_step_random", "the same of random packings", true, random_packings},
+          {"critical_step_boxes", "the same of zones of several boxes", true, zones_of_boxes}};
 }
 } // namespace ligament::program

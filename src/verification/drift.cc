@@ -1,4 +1,5 @@
 // Energy of coupled bodies that move as noise: kept when undamped, falling with dampers.
+#include "src/verification/box_zones.h"
 #include "src/verification/cases.h"
 #include "src/verification/noise_run.h"
 #include "src/verification/unit_bodies.h"
@@ -113,6 +114,10 @@ std::vector<Case> drift_cases()
        [] {
          return undamped<2>("drift_long_random", made_random(band_2d(1)), 1e-6, 100000, true);
        }},
+      {"drift_l_shape", text + "zone with a re-entrant corner, strain 1e-8, 2e3 steps", true,
+       [] { return undamped<2>("drift_l_shape", l_shape_2d(0.3), 1e-8, 2000, false); }},
+      {"drift_two_zones", text + "two zones, strain 1e-8, 2e3 steps", true,
+       [] { return undamped<2>("drift_two_zones", two_zones_2d(0.3), 1e-8, 2000, false); }},
       {"drift_ratio", text + "step ratio 4, strain 1e-8, 1e4 steps", true,
        [] { return undamped_ratio("drift_ratio", 4, 1e-8, 10000); }},
       {"drift_long", text + "strain 1e-6, 1e5 steps", true,
