@@ -24,6 +24,18 @@ TEST(BoxUnion, DistanceIsThatOfTheLargestCube)
   EXPECT_EQ(apart.eroded(3).boxes.size(), 2u);
 }
 
+// The same L in boxes that only touch: their common side is no edge.
+TEST(BoxUnion, TouchingBoxesAreOnePiece)
+{
+  const Zone2 touching{{{{0, -30}, {31, 1}}, {{-32, -30}, {0, 30}}}};
+  for (double x = -40; x <= 40; x += 2.5)
+    for (double y = -40; y <= 40; y += 2.5)
+      EXPECT_DOUBLE_EQ(touching.distance({x, y}), l_shape.distance({x, y})) << x << " " << y;
+  EXPECT_DOUBLE_EQ(touching.distance({0, -15}), 15); // on the common side
+  EXPECT_TRUE(touching.covers({-10, -20}, {10, 0}, 1e-9));
+  EXPECT_FALSE(touching.covers({-10, -20}, {10, 2}, 1e-9)); // around the corner
+}
+
 void check_patch(const Zone2 &zone, const Vector<2> &size)
 {
   CoupledBodiesParameters<2> p;
