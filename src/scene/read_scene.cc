@@ -53,11 +53,12 @@ void enclose_boxes(DiscreteZone &zone)
 }
 
 /// A region that says nothing leaves the choice to the boxes.
-void check_choice_of_zone(const DiscreteZone &zone, Findings &findings)
+void check_choice_of_zone(const DiscreteZone &zone, int dimension, Findings &findings)
 {
-  const auto is_finite = [](double x) { return std::isfinite(x); };
-  if (!zone.boxes.empty() && (std::any_of(zone.lower.begin(), zone.lower.end(), is_finite) ||
-                              std::any_of(zone.upper.begin(), zone.upper.end(), is_finite)))
+  bool says_something = false;
+  for (int c = 0; c < dimension; ++c)
+    says_something |= std::isfinite(zone.lower[c]) || std::isfinite(zone.upper[c]);
+  if (!zone.boxes.empty() && says_something)
     findings.error("/discrete_zone/boxes", "both \"region\" and \"boxes\" in /discrete_zone",
                    "they are two ways to say which part of the specimen is discrete",
                    "remove one of them");
@@ -109,7 +110,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   apply_far_field_word(json, scene);
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
-    check_choice_of_zone(scene.zone, findings);
+    check_choice_of_zone(scene.zone, dimension, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
     enclose_boxes(enclosed.zone);
     check_scene(enclosed, findings);

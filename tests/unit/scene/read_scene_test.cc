@@ -142,6 +142,21 @@ TEST(ReadScene, ResolvedEchoReadsBackToItself)
     }
 }
 
+TEST(ReadScene, BoxesTakeThePlaceOfARegionOfNulls)
+{
+  const ReadResult first =
+      read_scene(plate, {"/discrete_zone/region/lower=[null, null]",
+                         "/discrete_zone/region/upper=[null, null]",
+                         R"(/discrete_zone/boxes=[{"lower": [null, "-30 mm"], "upper": [null, 0]},
+                                                  {"lower": [null, 0], "upper": [null, "30 mm"]}])"});
+  ASSERT_TRUE(first.scene) << all(first);
+  EXPECT_EQ(first.scene->zone.lower[1], -0.03);
+  EXPECT_EQ(first.scene->zone.upper[1], 0.03);
+  const ReadResult second = parse_scene(first.resolved.dump(2), "echo");
+  ASSERT_TRUE(second.scene) << all(second);
+  EXPECT_EQ(second.resolved.dump(), first.resolved.dump());
+}
+
 TEST(ReadScene, ErrorsStandInTheOrderOfTheFileAndOverridesLast)
 {
   const ReadResult result =
