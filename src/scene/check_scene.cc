@@ -263,6 +263,11 @@ void check_coarse_mass(const Scene &scene, Findings &f)
             "waves would travel faster in the far field than in the discrete zone: only static "
             "answers do not depend on masses",
             "leave it out, or add \"kinetic\": true, \"local\" or \"mass\" to /damping");
+  if (f.sound({"/loads"}) && std::any_of(scene.loads.begin(), scene.loads.end(),
+                                         [](const auto &l) { return l.absorbing; }))
+    f.error(key, "\"coarse_mass\" in /coupling together with an absorbing side",
+            "absorbing sides are matched to the waves of the true masses",
+            "leave out one of the two");
   const double lowest = scene.zone.spacing / scene.far_field->cell_size;
   if (f.sound({cell_key, spacing_key}) && scene.coupling.coarse_mass < lowest * (1 - 1e-9))
     f.error(key,
