@@ -52,11 +52,19 @@ Packing<dim> small_random_packing()
 TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)
 {
   constexpr int dim = TypeParam::value;
-  for (const bool random : {false, true}) {
-    const auto packing = random ? small_random_packing<dim>() : ragged_lattice<dim>(4, 7);
-    const PlaneMode plane = random ? PlaneMode::stress : PlaneMode::strain;
+  const auto ragged = ragged_lattice<dim>(4, 7), random = small_random_packing<dim>();
+  struct Setting
+  {
+    const Packing<dim> &packing;
+    PlaneMode plane;
+  };
+  for (const Setting &setting : {Setting{ragged, PlaneMode::strain},
+                                 {ragged, PlaneMode::stress},
+                                 {random, PlaneMode::stress}})
+  {
+    const auto &packing = setting.packing;
     DemMaterial material;
-    material.poissons_ratio = 0.3, material.plane = plane;
+    material.poissons_ratio = 0.3, material.plane = setting.plane;
     ManyBodyForce<dim> force(packing, material, some_loads<dim>());
     auto p = at_rest(packing, material);
     // The walls don't turn with the body: a moderate turn keeps them in play.

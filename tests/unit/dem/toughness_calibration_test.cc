@@ -53,4 +53,27 @@ TEST(ToughnessCalibration, SimpleCubicSlabIsTheSquareLatticeInPlaneStrain)
       crack_tip_factor<2>(Kind::square, Spin<2>(0.), material(0.2), {}, {0.1, 0.}, 8);
   EXPECT_NEAR(slab, plane, 0.02);
 }
+
+TEST(ToughnessCalibration, RandomPackingsCarryTheMeanOfTheirTips)
+{
+  particles::RandomParameters<2> packing;
+  packing.relaxation_sweeps = 10;
+  const DemMaterial glass = material(0.22);
+  const int n = 16;
+  double sum = 0, squares = 0;
+  for (int k = 1; k <= n; ++k) {
+    // Samples and radius as calibrate_toughness documents them.
+    const double c = crack_tip_factor<2>(packing, packing.seed + 7919 * k, glass, 8);
+    sum += c, squares += c * c;
+  }
+  const double mean = sum / n, spread = std::sqrt(squares / n - mean * mean) / mean;
+  EXPECT_NEAR(calibrate_toughness<2>(packing, glass), mean, 1e-14);
+  // theory.md section 1.8: one tip differs by 7 % to 10 %; the standard deviation of 16 is known to
+  // 1/sqrt(2 * 15) = 18 % of itself, three times that to either side.
+  EXPECT_GT(spread, 0.07 * (1 - 3 * 0.18));
+  EXPECT_LT(spread, 0.10 * (1 + 3 * 0.18));
+  // Within the range of turned lattices, see calibrate_toughness.
+  EXPECT_GT(mean, 0.60);
+  EXPECT_LT(mean, 0.87);
+}
 } // namespace ligament::dem::testing

@@ -1,0 +1,68 @@
+// Contacts that the search finds: their distance and face follow the sizes of the particles.
+#include "dem/contact_search.h"
+
+#include "tests/unit/dem/body.h"
+
+#include <gtest/gtest.h>
+
+namespace ligament::dem::testing
+{
+template <int dim>
+struct TwoParticles
+{
+  Packing<dim> packing;
+  DemMaterial material;
+  Particles<dim> state;
+  Contacts<dim> contacts{material};
+
+  /// Of diameters 1 and 5, d = 2, on a surface, with these distances along the last axis in the
+  /// reference and now; no bond between them.
+  TwoParticles(double reference, double now)
+  {
+    packing.spacing = 2;
+    packing.diameter = {1, 5};
+    packing.volume = {1, 1};
+    packing.global_id = {0, 1};
+    for (auto &x : packing.centre)
+      x.assign(2, 0.);
+    packing.centre[dim - 1][1] = reference;
+    const Vector<dim> n = Vector<dim>::Unit(dim - 1);
+    packing.boundary_faces = {{0, n, 1, 0.5, 0.5 * n, 0}, {1, -n, 1, 2.5, -2.5 * n, 0}};
+    state = at_rest(packing, material);
+    state.displacement[dim - 1][1] = now - reference;
+    const BondNetwork<dim> bonds(packing, material);
+    ContactSearch<dim> search(packing, 5.);
+    search.update(state, bonds, contacts);
+  }
+};
+
+template <int dim>
+void check_sizes()
+{
+  const TwoParticles<dim> met(7, 2.9);
+  ASSERT_EQ(met.contacts.all().size(), 1u);
+  const auto &face = met.contacts.all()[0].face;
+  // Half the sum of the diameters, which the contact point divides as the sizes do; the face is in
+  // proportion to the mean size to the power of dim - 1, and 5 for d = 2.
+  EXPECT_DOUBLE_EQ(face.distance, 3);
+  EXPECT_DOUBLE_EQ(face.area, 5 * std::pow(1.5, dim - 1));
+  EXPECT_DOUBLE_EQ(face.lever_i.norm(), 0.5);
+  EXPECT_DOUBLE_EQ(face.lever_j.norm(), 2.5);
+
+  // Those nearer than that in the reference touch at that distance: no force appears at rest.
+  const TwoParticles<dim> near(1.6, 1.6);
+  ASSERT_EQ(near.contacts.all().size(), 1u);
+  EXPECT_DOUBLE_EQ(near.contacts.all()[0].face.distance, 1.6);
+  EXPECT_DOUBLE_EQ(near.contacts.all()[0].face.lever_i.norm(), 1.6 / 6);
+
+  // The reach is that distance and two skins of d/4: 4.
+  EXPECT_EQ(TwoParticles<dim>(7, 3.999).contacts.all().size(), 1u);
+  EXPECT_EQ(TwoParticles<dim>(7, 4.001).contacts.all().size(), 0u);
+}
+
+TEST(ContactSearch, DistancesFollowTheSizes)
+{
+  check_sizes<2>();
+  check_sizes<3>();
+}
+} // namespace ligament::dem::testing
