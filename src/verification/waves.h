@@ -12,6 +12,7 @@ struct WaveParameters
   double wave_length; // cells
   double fine_damper = 4, gap_filter = 0;
   int overlap_cells = 3;
+  int fine_layers = 0;     // of cells before they double, see StripParameters
   double mesh_shift = 0.5; // layers of the packing, see StripParameters
   coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
   // Energy-weighted schemes only:

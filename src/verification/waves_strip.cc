@@ -108,6 +108,46 @@ fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lo
   return mesh;
 }
 
+fem::Mesh<2> make_graded_mesh(int across, int fine, int coarse, double size, double lower)
+{
+  core::require(across % 2 == 0, "cells of twice the size need an even number of cells across");
+  fem::Mesh<2> mesh = make_periodic_mesh<2>(across, fine, size, lower);
+  mesh.boundary_faces.clear();
+  const int top = across * fine, half = across / 2, first = mesh.n_nodes();
+  const double step = lower + fine * size;
+  for (int i = 1; i < across; i += 2)
+    mesh.hanging.push_back({top + i, {{top + i - 1, 0.5}, {top + (i + 1) % across, 0.5}}});
+  for (int k = 1; k <= coarse; ++k)
+    for (int i = 0; i < half; ++i)
+      mesh.nodes.push_back({2 * size * i, step + 2 * size * k});
+  const auto node = [&](int i, int k) {
+    return k == 0 ? top + 2 * (i % half) : first + (k - 1) * half + i % half;
+  };
+  for (int k = 0; k < coarse; ++k)
+    for (int i = 0; i < half; ++i) {
+      mesh.cells.push_back({node(i, k), node(i + 1, k), node(i, k + 1), node(i + 1, k + 1)});
+      mesh.cell_lower.push_back({2 * size * i, step + 2 * size * k});
+      mesh.cell_size.push_back(Vector<2>::Constant(2 * size));
+      mesh.cell_level.push_back(1);
+      if (k == coarse - 1)
+        mesh.boundary_faces.push_back({mesh.n_cells() - 1, 3, 3});
+    }
+  return mesh;
+}
+
+namespace
+{
+template <int dim>
+fem::Mesh<dim> strip_mesh(const StripParameters &p, int layers, double lower)
+{
+  if constexpr (dim == 2)
+    if (p.fine_layers > 0)
+      return make_graded_mesh(p.cells_across, p.fine_layers, (layers - p.fine_layers) / 2,
+                              p.cell_size, lower);
+  return make_periodic_mesh<dim>(p.cells_across, layers, p.cell_size, lower);
+}
+} // namespace
+
 template <int dim>
 Strip<dim> make_strip(const StripParameters &p)
 {
@@ -134,9 +174,9 @@ Strip<dim> make_strip(const StripParameters &p)
   body.stiffness = p.material.template elastic_constants<dim>().stiffness;
   body.density = p.material.density;
   const int far_layers = int(std::ceil((p.far_length + overlap_length) / p.cell_size));
-  strip.far = std::make_unique<fem::FemSolver<dim>>(
-      make_periodic_mesh<dim>(p.cells_across, far_layers, p.cell_size, strip.mesh_begin), body,
-      std::vector<core::BoundaryLoad<dim>>());
+  strip.far =
+      std::make_unique<fem::FemSolver<dim>>(strip_mesh<dim>(p, far_layers, strip.mesh_begin), body,
+                                            std::vector<core::BoundaryLoad<dim>>());
 
   coupling::OverlapParameters<dim> overlap;
   auto &zone = overlap.zone.boxes.emplace_back();

@@ -22,9 +22,14 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
 template <int dim>
 fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower);
 
+/// The same in 2D with cells of twice the size from the layer `fine` on, `coarse` layers of them;
+/// `across` is even.
+fem::Mesh<2> make_graded_mesh(int across, int fine, int coarse, double size, double lower);
+
 struct StripParameters
 {
   dem::DemMaterial material;
+  int fine_layers = 0;  // of cells, before they double (2D); 0: they never do
   int cells_across = 3; // the patch fit's blocks of two cells need three
   int cell_size = 4;    // r: whole, so that the period fits the packing sideways
   int overlap_cells = 3;
