@@ -137,7 +137,8 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     return;
   require(term.kind != particles::QuadraticTerm<dim>::Kind::wall, loaded_side);
 
-  // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads.
+  // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads;
+  // less the share subtracted, by the interpolated motion.
   // Translations do nothing: the first member stands still.
   Eigen::MatrixXd gradient(term.rows.rows(), n_strains<dim>); // stiffness * row . q
   for (int s = 0; s < n_strains<dim>; ++s) {
@@ -158,13 +159,19 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
         term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
     const Eigen::MatrixXd torque =
         term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
-    for (const NodeShare<dim> &s : motions_[index]) {
-      const auto spin = half_curl<dim>(s.gradient);
-      for (int c = 0; c < dim; ++c)
-        residual.row(c * n_ + s.node) -=
-            (1 - share) * s.value * force.row(c) +
-            ((m.pad ? 1. : 0.) - share) * spin.col(c).transpose() * torque;
-    }
+    const auto add = [&](double factor, int node, double value, const Vector<dim> &gradient,
+                         bool turns) {
+      const auto spin = half_curl<dim>(gradient);
+      for (int c = 0; c < dim; ++c) {
+        residual.row(c * n_ + node) -= factor * value * force.row(c);
+        if (turns)
+          residual.row(c * n_ + node) -= factor * spin.col(c).transpose() * torque;
+      }
+    };
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+      add(1, m.nodes[a], m.value[a], m.gradient.col(a), m.pad);
+    for (const NodeShare<dim> &s : motions_[index])
+      add(-share, s.node, s.value, s.gradient, true);
   }
   if (share == 0)
     return;

@@ -18,9 +18,10 @@ struct NodeShare
 template <int dim>
 using InterpolatedMotion = std::vector<NodeShare<dim>>;
 
-/// The motion of every member of the overlap (theory.md eq. (C3)): its translation is that of its
-/// cell; pads also turn with their cell, the others with the gradient that they and their bonded
-/// neighbours see. Exact in affine motion.
+/// The motion of every member of the overlap that the subtracted energy sees (theory.md eq. (C3)).
+/// Pads move and turn with their cell, as they do in the step. The others turn with the gradient
+/// that they and their bonded neighbours see, and move with their cell but for a part of the way to
+/// the middle of those neighbours (eq. (C17)). Exact in affine motion, and turns with the mesh.
 template <int dim>
 std::vector<InterpolatedMotion<dim>>
 interpolate_motions(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
