@@ -9,6 +9,14 @@
 
 namespace ligament::coupling
 {
+namespace
+{
+// Cells hardly larger than particles are as fast as these; less of their mass is consistent, which
+// slows them down (theory.md eq. (C6)).
+constexpr double fine_cell = 2.5; // h/d
+constexpr double fine_cell_share = 0.75;
+} // namespace
+
 template <int dim>
 Overlap<dim>::Overlap(const particles::Particles<dim> &particles,
                       const particles::ParticleForce<dim> &force, const fem::Mesh<dim> &mesh,
@@ -196,8 +204,10 @@ void Overlap<dim>::find_cells()
       Cell cell;
       cell.cell = c;
       cell.layer = layer[c];
+      const bool is_fine = mesh.cell_size[c].minCoeff() < fine_cell * parameters.spacing;
       cell.consistent_share =
-          layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells;
+          std::min(is_fine ? fine_cell_share : 1.,
+                   layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells);
       for (int a = 0; a < n_cell_nodes; ++a)
         cell.nodes[a] = near[mesh.cells[c][a]];
       cells.push_back(cell);

@@ -1,5 +1,5 @@
 #include "src/commands/commands.h"
-#include "src/verification/cases.h"
+#include "src/verification/stability.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,7 +33,8 @@ void print(const Result &result)
 
 int verify_command(const CommandLine &line)
 {
-  const auto cases = select_cases(line.verify_case, line.full);
+  const auto cases =
+      line.stability ? select_stability(line.full) : select_cases(line.verify_case, line.full);
   nlohmann::ordered_json json = {{"cases", nlohmann::json::array()}};
   int n = 0, n_failed = 0;
   fmt::print("  {:<44} {:>12}    {:<9} {:<9}\n", "figure", "value", "must", "aim");

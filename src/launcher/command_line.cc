@@ -77,6 +77,10 @@ void declare(CLI::App &app, CommandLine &line)
   CLI::App &verify = *app.add_subcommand("verify", "runs the built-in cases: is this build right?");
   verify.add_option("case", line.verify_case, "one case; without it: all")->type_name("CASE");
   verify.add_flag("--full", line.full, "also the cases that take long");
+  verify
+      .add_flag("--stability", line.stability,
+                "stability under stress; with --full 1e5 steps of each setting")
+      ->excludes("case");
 
   for (CLI::App *command : app.get_subcommands({}))
     command->add_flag("--json", line.json, "ends with one JSON object on the last line");

@@ -27,6 +27,7 @@ struct CommandLine
   bool explain_study = false;         // explain: of study files
   std::string verify_case;            // verify; empty: all
   bool full = false;                  // verify: also the slow ones
+  bool stability = false;             // verify: those of stability under stress
 
   /// Set when nothing is left to do: help and version were printed, or a mistake (2).
   std::optional<int> exit_code;

@@ -288,6 +288,9 @@ template <int dim>
 void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
                           core::Timers &timers)
 {
+  require(
+      scene.coupling.step_ratio == 1,
+      "/coupling/step_ratio: energy-weighted schemes join all velocities in every step; give 1");
   coupling::OverlapParameters<dim> overlap = overlap_of<dim>(scene);
   overlap.shape = scene.coupling.weight;
   coupling::BridgingDomainParameters p;

@@ -43,26 +43,46 @@ int best_level(int f, int n_levels, const std::vector<int> &row, const std::set<
   }
   return best;
 }
+
+/// A row that holds the pair, its other levels those of `model`, or chosen for the missing pairs.
+std::vector<int> make_row(const Pair &pair, const std::vector<int> &levels,
+                          const std::set<Pair> &missing, int shift, const std::vector<int> *model)
+{
+  const int n = int(levels.size());
+  std::vector<int> row(n, -1);
+  if (model)
+    row = *model;
+  row[pair[0]] = pair[1];
+  row[pair[2]] = pair[3];
+  for (int f = 0; f < n; ++f)
+    if (row[f] < 0)
+      row[f] = best_level(f, levels[f], row, missing, shift);
+  return row;
+}
 } // namespace
 
-std::vector<std::vector<int>> covering_set(const std::vector<int> &levels)
+CoveringSet covering_set(const std::vector<int> &levels,
+                         const std::function<bool(const std::vector<int> &)> &accepts, int n_tries)
 {
   std::set<Pair> missing = all_pairs(levels);
-  std::vector<std::vector<int>> rows;
+  CoveringSet set;
   const int n = int(levels.size());
-  while (!missing.empty()) {
-    const Pair seed = *missing.begin();
-    std::vector<int> row(n, -1);
-    row[seed[0]] = seed[1];
-    row[seed[2]] = seed[3];
-    for (int f = 0; f < n; ++f)
-      if (row[f] < 0)
-        row[f] = best_level(f, levels[f], row, missing, int(rows.size()));
-    for (int f = 0; f < n; ++f)
-      for (int g = f + 1; g < n; ++g)
-        missing.erase({f, row[f], g, row[g]});
-    rows.push_back(row);
+  for (int n_rows = 0; !missing.empty();) {
+    const Pair pair = *missing.begin();
+    for (int k = 0; k < n_tries && missing.count(pair) > 0; ++k) {
+      const int n_accepted = int(set.rows.size());
+      const auto *model = k > 0 && k <= n_accepted ? &set.rows[n_accepted - k] : nullptr;
+      const auto row = make_row(pair, levels, missing, n_rows++, model);
+      if (!accepts(row))
+        continue;
+      set.rows.push_back(row);
+      for (int f = 0; f < n; ++f)
+        for (int g = f + 1; g < n; ++g)
+          missing.erase({f, row[f], g, row[g]});
+    }
+    if (missing.erase(pair) > 0)
+      set.given_up.push_back(pair);
   }
-  return rows;
+  return set;
 }
 } // namespace ligament::program

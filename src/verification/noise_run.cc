@@ -64,8 +64,7 @@ void start_noise(CoupledBody<dim> &body, double amplitude)
     body.far->distribute();
   }
   auto bodies = body.bodies();
-  if (body.split)
-    body.split->take_velocities(bodies);
+  body.coupler->take_velocities(bodies);
 }
 
 template <int dim>

@@ -1,6 +1,7 @@
 // Stability under stress: a covering set of settings, each accepted and stable, or refused.
+#include "src/verification/stability.h"
+
 #include "core/check.h"
-#include "src/verification/cases.h"
 #include "src/verification/covering_set.h"
 #include "src/verification/linear_motion.h"
 #include "src/verification/noise_run.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ligament::program
 {
@@ -24,7 +26,15 @@ constexpr Packing packings[] = {{"hexagonal", 2}, {"square", 2},       {"random"
                                 {"fcc", 3},       {"simple_cubic", 3}, {"random", 3}};
 constexpr double poissons_ratios[] = {0, 0.2, 0.3, 0.45, 0.49};
 constexpr double fractions[] = {0.5, 0.9, 0.95};
-constexpr int step_ratios[] = {1, 2, 4};
+struct Stepping
+{
+  coupling::Scheme scheme;
+  int step_ratio; // energy-weighted schemes have no other than 1
+};
+constexpr Stepping steppings[] = {{coupling::Scheme::fine_scale_split, 1},
+                                  {coupling::Scheme::fine_scale_split, 2},
+                                  {coupling::Scheme::fine_scale_split, 4},
+                                  {coupling::Scheme::acceleration, 1}};
 constexpr double size_ratios[][3] = {{2.6, 4.1, 7.9}, {2.6, 2.9, 3.1}}; // h/d in 2D, 3D
 constexpr int overlaps[] = {2, 3, 4};
 constexpr double strain = 1e-8;
@@ -47,14 +57,16 @@ Setting make_setting(const std::vector<int> &row)
   Setting s = {unit_scene(dim,
                           dim == 2 ? Point{17, whole, 0} : Point{2 * h + 0.2, 2 * h + 0.3, whole},
                           poissons_ratios[row[1]]),
-               fmt::format("{}_{}d/nu {} f {} m {} h {} cells {} {}", packing.name, dim,
-                           poissons_ratios[row[1]], fractions[row[2]], step_ratios[row[3]], h,
-                           overlap, row[6] ? "damped" : "undamped"),
+               fmt::format("{}_{}d/nu {} f {} m {} h {} cells {} {} {}", packing.name, dim,
+                           poissons_ratios[row[1]], fractions[row[2]], steppings[row[3]].step_ratio,
+                           h, overlap, row[6] ? "damped" : "undamped",
+                           coupling::scheme_names[int(steppings[row[3]].scheme)]),
                row[6] != 0};
   s.scene.zone.packing = packing.name;
+  s.scene.coupling.scheme = steppings[row[3]].scheme;
   add_far_field(s.scene, dim == 2 ? Point{0, zone, 0} : Point{0, 0, zone}, h);
   s.scene.time.step_fraction = fractions[row[2]];
-  s.scene.coupling.step_ratio = step_ratios[row[3]];
+  s.scene.coupling.step_ratio = steppings[row[3]].step_ratio;
   s.scene.coupling.overlap_cells = overlap;
   s.scene.coupling.transition_cells = transition;
   if (s.damped) {
@@ -87,16 +99,23 @@ double largest_rise(const std::vector<double> &series)
   return rise;
 }
 
+/// n_samples of the energy, one every five of the far field's steps.
 template <int dim>
-void judge(const Setting &setting, std::vector<Result> &results)
+void judge(const std::string &name, const Setting &setting, int n_samples,
+           std::vector<Result> &results)
 {
-  UnitBody<dim> unit(setting.scene);
+  UnitBody<dim> unit(setting.scene); // refuses
   const int m = setting.scene.coupling.step_ratio;
-  const std::string name = "stability/" + setting.name;
   if (m == 1 && !setting.damped)
     results.push_back({name + "/growth", growth(unit.body), 1e-9, {}});
   const int interval = 5 * m;
-  const auto energy = run_noise(unit.body, strain, 400 * interval, interval, 0).leap_frog;
+  std::vector<double> energy;
+  try {
+    energy = run_noise(unit.body, strain, long(n_samples) * interval, interval, 0).leap_frog;
+  } catch (const core::InputError &) { // a body that was accepted and blew up
+    results.push_back({name + "/energy", std::numeric_limits<double>::quiet_NaN(), 1, {}});
+    return;
+  }
   if (setting.damped) {
     results.push_back({name + "/rise", largest_rise(energy), m == 1 ? 1e-12 : 5e-3, {}});
     results.push_back({name + "/left", energy.back() / energy.front(), 1, {}});
@@ -106,29 +125,55 @@ void judge(const Setting &setting, std::vector<Result> &results)
   }
 }
 
-std::vector<Result> stability()
+std::vector<Result> stability(const std::string &name, int n_samples)
 {
   std::vector<Result> results;
-  int n = 0, n_refused = 0;
-  for (const auto &row : covering_set({6, 5, 3, 3, 3, 3, 2})) {
+  int n_refused = 0;
+  const auto accepts = [&](const std::vector<int> &row) {
     const Setting setting = make_setting(row);
-    ++n;
     try {
-      setting.scene.dimension == 2 ? judge<2>(setting, results) : judge<3>(setting, results);
+      const std::string figure = name + "/" + setting.name;
+      setting.scene.dimension == 2 ? judge<2>(figure, setting, n_samples, results)
+                                   : judge<3>(figure, setting, n_samples, results);
+      return true;
     } catch (const core::InputError &error) {
       ++n_refused;
       fmt::print("  refused: {}: {}\n", setting.name, error.what());
+      return false;
     }
-  }
-  results.push_back({"stability/settings", double(n), 80, {}});
-  results.push_back({"stability/refused", double(n_refused), n / 2., {}});
+  };
+  const auto set = covering_set({6, 5, 3, 4, 3, 3, 2}, accepts);
+  for (const auto &p : set.given_up)
+    fmt::print("  refused wherever they met: level {} of factor {}, level {} of factor {}\n", p[1],
+               p[0], p[3], p[2]);
+  results.push_back({name + "/settings", double(set.rows.size()), 80, {}});
+  results.push_back({name + "/refused", double(n_refused), 80, {}});
+  results.push_back({name + "/pairs_refused", double(set.given_up.size()), 20, {}});
   return results;
 }
 } // namespace
 
 std::vector<Case> stability_cases()
 {
-  return {
-      {"stability", "settings in which any two meet, from noise of strain 1e-8", true, stability}};
+  const std::string text = "settings in which any two meet, from noise of strain 1e-8, ";
+  std::vector<Case> cases = {{"stability", text + "2e3 steps of the far field", true,
+                              [] { return stability("stability", 400); }},
+                             {"stability_long", text + "1e5 steps of the far field", true,
+                              [] { return stability("stability_long", 20000); }}};
+  for (const auto &c : stress_cases())
+    cases.push_back(c);
+  return cases;
+}
+
+std::vector<Case> select_stability(bool full)
+{
+  std::vector<Case> selected;
+  for (const auto &c : all_cases()) {
+    const bool is_long = c.name.find("_long") != std::string::npos;
+    const bool belongs = c.name.rfind("stability", 0) == 0 || c.name.rfind("spin_", 0) == 0;
+    if (belongs && (full || !is_long))
+      selected.push_back(c);
+  }
+  return selected;
 }
 } // namespace ligament::program

@@ -110,6 +110,23 @@ TEST(Program, WrongInputIsTwoAndAGuardIsThree)
   EXPECT_EQ(guarded.json()["status"], "guard");
 }
 
+// What only the set-up can see is refused by `check` too, with the keys to change.
+TEST(Program, CheckRefusesWithTheKeyToChange)
+{
+  const std::string scene = scene_file("refused.json");
+  for (const auto &[setting, key] : std::vector<std::pair<std::string, std::string>>{
+           {"/coupling/step_ratio=16", "/coupling/step_ratio"},
+           {"/coupling/overlap_cells=1", "/coupling/overlap_cells"},
+           {"/far_field/cell_size=2.6", "/coupling/overlap_cells"},
+           {R"('/discrete_zone/region={"lower": [null, -0.5], "upper": [null, 0.5]}')",
+            "/discrete_zone/region"}})
+  {
+    const auto outcome = ligament("check " + scene + " --set " + setting + " --json");
+    EXPECT_EQ(outcome.code, 2) << setting;
+    EXPECT_NE(outcome.json()["errors"].dump().find(key), std::string::npos) << outcome.last_line;
+  }
+}
+
 TEST(Program, AnOlderRunIsKept)
 {
   for (const char *folder : {"kept", "kept.1", "kept.2"})

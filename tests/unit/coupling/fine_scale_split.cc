@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 
 namespace ligament
@@ -38,6 +40,21 @@ TEST(FineScaleSplit, PatchFitOfABandThatEndsAtFreeEdges)
       EXPECT_LT(report.patch_residual, 1e-12) << "nu " << nu;
       EXPECT_LT(report.patch_modulus, 0.02);
     }
+}
+
+// (C6): consistent in the overlap, then linearly to lumped; at most 0.75 in cells below 2.5 d.
+TEST(FineScaleSplit, ShareOfTheConsistentMass)
+{
+  for (const double h : {4.1, 2.3}) {
+    auto p = band<2>(0.22);
+    p.cell_size = h;
+    p.transition_cells = 3;
+    const auto body = make_coupled_bodies(p);
+    const double most = h < 2.5 ? 0.75 : 1;
+    const std::array<double, 4> share = {most, std::min(most, 5. / 6), 1. / 2, 1. / 6};
+    for (const auto &cell : body.split->overlap()->cells)
+      EXPECT_DOUBLE_EQ(cell.consistent_share, share[cell.layer]);
+  }
 }
 
 TEST(FineScaleSplit, PatchFitOfABandIn3D)

@@ -1,6 +1,6 @@
 // The built-in verification cases hold; the list finds them by name.
 #include "core/check.h"
-#include "src/verification/cases.h"
+#include "src/verification/stability.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +41,9 @@ TEST(Cases, AreFoundByNameAndPrefix)
   for (const auto &c : select_cases("patch_", true))
     EXPECT_EQ(c.name.rfind("patch_", 0), 0u);
   EXPECT_LT(select_cases("patch_", false).size(), select_cases("patch_", true).size());
+  for (const auto &c : select_stability(false))
+    EXPECT_EQ(c.name.find("_long"), std::string::npos) << c.name;
+  EXPECT_LT(select_stability(false).size(), select_stability(true).size());
   EXPECT_THROW(select_cases("nothing", false), core::InputError);
   EXPECT_THROW(select_cases("patch_ring_3", false), core::InputError); // only a slow one
 }
