@@ -74,8 +74,8 @@ void BridgingDomain<dim>::weigh(Bodies<dim> &bodies)
   }
 }
 
-// The forces that a uniform strain would leave at the members, their neighbours and the near nodes,
-// with the opposite sign.
+// The forces and torques that a uniform strain would leave at the members, their neighbours and the
+// near nodes, with the opposite sign.
 template <int dim>
 void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
 {
@@ -107,9 +107,14 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
   compute_near_force(bodies, dead_nodal_);
   dead_nodal_ *= -1;
   dead_ = zone.force;
-  for (auto &f : dead_)
-    for (int i = 0; i < zone.n_owned; ++i)
-      f[i] *= -is_near[i];
+  dead_torque_ = zone.torque;
+  const auto reverse = [&](auto &components) {
+    for (auto &component : components)
+      for (int i = 0; i < zone.n_owned; ++i)
+        component[i] *= -is_near[i];
+  };
+  reverse(dead_);
+  reverse(dead_torque_);
   zone.displacement = zone_before;
   far.displacement = far_before;
 }
@@ -203,6 +208,9 @@ void BridgingDomain<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
     for (int c = 0; c < dim; ++c)
       for (std::size_t i = 0; i < dead_[c].size(); ++i)
         zone.force[c][i] += dead_[c][i];
+    for (int c = 0; c < n_spins<dim>; ++c)
+      for (std::size_t i = 0; i < dead_torque_[c].size(); ++i)
+        zone.torque[c][i] += dead_torque_[c][i];
   }
   const auto timing = this->timers_.scope(this->far_);
   bodies.far->compute_forces(step.time);
@@ -338,6 +346,11 @@ CoupledEnergy BridgingDomain<dim>::energy(const Bodies<dim> &bodies, const StepT
   for (int c = 0; c < dim; ++c)
     for (std::size_t i = 0; i < dead_[c].size(); ++i)
       e.blended -= dead_[c][i] * bodies.zone->state.displacement[c][i];
+  // Small rotations; in 3D half of them is the vector part of the quaternion.
+  const auto &rotation = bodies.zone->state.rotation;
+  for (int c = 0; c < n_spins<dim>; ++c)
+    for (std::size_t i = 0; i < dead_torque_[c].size(); ++i)
+      e.blended -= dead_torque_[c][i] * (dim == 2 ? rotation[c][i] : 2 * rotation[c + 1][i]);
   return e;
 }
 

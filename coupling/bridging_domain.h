@@ -70,10 +70,11 @@ private:
   std::unique_ptr<BlockMatrix<dim>> stiffness_blocks_;
   std::unique_ptr<LinearSolver> mass_solver_;
 
-  Nodal<dim> displacement_, velocity_; // U, V of the near nodes
-  Nodal<dim> force_;                   // on the near nodes at the last kick, N
-  Nodal<dim> dead_nodal_;              // N
-  Components<dim> dead_;               // of all particles, N; empty without
+  Nodal<dim> displacement_, velocity_;   // U, V of the near nodes
+  Nodal<dim> force_;                     // on the near nodes at the last kick, N
+  Nodal<dim> dead_nodal_;                // N
+  Components<dim> dead_;                 // of all particles, N; empty without
+  Components<n_spins<dim>> dead_torque_; // likewise, N m
   Components<dim> member_velocity_;
   Components<dim> lost_;          // momentum that the damper took in this step, of the members
   Components<dim> before_damper_; // velocities of the members before the step

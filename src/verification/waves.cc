@@ -48,7 +48,13 @@ WaveFigures measure_wave(const WaveParameters &p)
   const double wave_length = p.wave_length * h, width = 2 * wave_length;
   // The envelope falls to 4e-5 within 4.5 widths; short packets spread.
   const double reach = std::max(4.5 * width, 20 * h);
-  strip_parameters.zone_length = 2 * reach;
+  // Until the packet has passed overlap and transition and what comes back has left them; it must
+  // not meet the zone's other end: there it would interfere with itself, and its kinetic energy
+  // would no longer be half of all.
+  const int cells =
+      std::max(p.fine_layers, p.overlap_cells + strip_parameters.transition_cells + 2);
+  const double way = 2 * reach + 3 * cells * h;
+  strip_parameters.zone_length = way;
   strip_parameters.far_length = reach + (20 + 3 * p.fine_layers) * h;
   Strip<dim> strip = make_strip<dim>(strip_parameters);
 
@@ -62,10 +68,6 @@ WaveFigures measure_wave(const WaveParameters &p)
   strip.coupler->take_velocities(bodies);
   const double before = kinetic_energy(strip);
 
-  // Until the packet has passed overlap and transition and what comes back has left them.
-  const int cells =
-      std::max(p.fine_layers, p.overlap_cells + strip_parameters.transition_cells + 2);
-  const double way = 2 * reach + 3 * cells * h;
   const double speed = waves.group_velocity(wave_number, polarisation<dim>(p.kind, wave_vector));
   coupling::StepTime time;
   time.dt = strip.dt;
