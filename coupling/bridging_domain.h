@@ -22,7 +22,7 @@ struct BridgingDomainParameters
   std::string solver = "eigen";
 };
 
-/// Energy-weighted bridging domain (theory.md section 3.8). The zone's particles carry their
+/// Energy-weighted bridging domain (theory.md section 3.9). The zone's particles carry their
 /// weighted masses and inertias from now on, and its force the weighted energy: kinetic and
 /// potential energy of the halves are those of the blended body.
 template <int dim>

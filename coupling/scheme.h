@@ -6,7 +6,7 @@
 
 namespace ligament::coupling
 {
-/// What joins the two halves (theory.md sections 3.1 and 3.8); values in the order of scheme_names.
+/// What joins the two halves (theory.md sections 3.1 and 3.9); values in the order of scheme_names.
 enum class Scheme
 {
   fine_scale_split,
