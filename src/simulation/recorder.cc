@@ -167,6 +167,8 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling:
   if (!is_broken_across(body, axis))
     return;
   broken_ = true;
+  break_particles_ = particle_fields(body);
+  break_cells_ = cell_fields(body);
   const double place = bonds.back().position[axis];
   const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
   break_.time = bonds.back().time;
@@ -234,6 +236,9 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
     const std::vector<BrokenBond> at_peak(bonds.begin(), bonds.begin() + peak_broken_);
     draw("peak", "Stress near the peak load", peak_particles_, peak_cells_, at_peak, record);
   }
+  if (broken_)
+    draw("broken", "Stress when the specimen is in two", break_particles_, break_cells_,
+         {bonds.begin(), bonds.begin() + broken_before_}, record);
   draw("end", "Stress at the end", particles, cells, bonds, record);
   record.stiffness = fit_stiffness(strain_, stress_);
   record.broken_bonds = std::int64_t(bonds.size());

@@ -76,5 +76,7 @@ private:
   ParticleFields peak_particles_;
   CellFields peak_cells_;
   std::size_t peak_broken_ = 0;
+  ParticleFields break_particles_; // when the specimen was found in two
+  CellFields break_cells_;
 };
 } // namespace ligament::program
