@@ -19,6 +19,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace ligament::program
 {
@@ -227,6 +228,28 @@ double mean_time(const std::vector<BrokenBond> &bonds)
   return sum / double(bonds.size());
 }
 
+/// Fields are compared up to this share of the time of the onset: nearer to it the crack of one run
+/// is on its way already, and a difference of a per mille in strength moves everything.
+constexpr double share_of_onset = 0.99;
+
+/// The latest states of the two runs at the same common time up to `limit`. Both look at the rows
+/// of their histories: with other intervals the times differ, and motions that grow cannot be
+/// compared.
+std::optional<std::pair<Snapshot, Snapshot>>
+snapshots_of_one_time(const RunFolder &run, const RunFolder &reference, double limit)
+{
+  for (const std::string &a : run.snapshots())
+    for (const std::string &b : reference.snapshots())
+      if (std::filesystem::exists(a) && std::filesystem::exists(b)) {
+        std::pair pair(read_snapshot(a), read_snapshot(b));
+        const double ta = pair.first.time, tb = pair.second.time;
+        if (common_time_index(ta) == common_time_index(tb) && std::abs(ta - tb) < 1e-3 * tb &&
+            std::max(ta, tb) <= limit)
+          return pair;
+      }
+  return {};
+}
+
 class Comparison
 {
 public:
@@ -314,6 +337,7 @@ private:
                          "and the potential energies");
       return;
     }
+    still_until_ = share_of_onset * std::min(*ta, *tb);
     const auto before = crack_distance(part(a, *ta, false), a, part(b, *tb, false), b, d);
     r_.crack_distance_mean_to_onset = before.mean;
     r_.crack_distance_max_to_onset = before.max;
@@ -328,12 +352,13 @@ private:
 
   void fields()
   {
-    const std::string a = run_.folder->peak_snapshot(), b = reference_.folder->peak_snapshot();
-    if (!std::filesystem::exists(a) || !std::filesystem::exists(b)) {
-      r_.notes.push_back("fields: not both runs kept a snapshot at the peak");
+    const auto pair = snapshots_of_one_time(*run_.folder, *reference_.folder, still_until_);
+    if (!pair) {
+      r_.notes.push_back(
+          "fields: the runs kept no state of the same time before fracture took over");
       return;
     }
-    const FieldError error = field_error(read_snapshot(a), read_snapshot(b));
+    const FieldError error = field_error(pair->first, pair->second);
     r_.matched_particles = error.matched;
     r_.displacement_error = error.displacement;
     r_.displacement_error_max = error.displacement_max;
@@ -345,10 +370,11 @@ private:
       return l2 ? fmt::format("{:.2f} % / {:.2f} %", 100 * *l2, 100 * max.value_or(0)) : "-";
     };
     const std::string matched = grouped(error.matched) + " particles";
-    line("displacement at the peak, L2 / largest", matched, "",
+    line("time of the fields below", quantity(pair->first.time, "s"),
+         quantity(pair->second.time, "s"), "");
+    line("displacement, L2 / largest", matched, "",
          both(error.displacement, error.displacement_max));
-    line("velocity at the peak, L2 / largest", matched, "",
-         both(error.velocity, error.velocity_max));
+    line("velocity, L2 / largest", matched, "", both(error.velocity, error.velocity_max));
   }
 
   void cost()
@@ -393,6 +419,7 @@ private:
 
   Side run_, reference_;
   Measure measure_ = by_load;
+  double still_until_ = std::numeric_limits<double>::infinity(); // s
   CompareResult r_;
 };
 } // namespace

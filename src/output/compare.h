@@ -29,8 +29,10 @@ struct CompareResult
   std::optional<double> breaking_time_error; // mean time at which the faces broke
   std::optional<double> time_ratio;          // wall time of the reference over that of the run
   std::optional<double> particle_ratio;      // particles of the reference over those of the run
-  /// Over particles at the same reference position, at the peak of each run, relative to the
-  /// reference: |difference|_2/|reference|_2 and largest difference over largest value.
+  /// Over particles at the same reference position, at the last common time at which both bodies
+  /// are still (kinetic energy below a hundredth of the elastic one) and 1 % before the onset,
+  /// relative to the reference: |difference|_2/|reference|_2 and largest difference over largest
+  /// value.
   std::optional<double> displacement_error, displacement_error_max;
   std::optional<double> velocity_error, velocity_error_max;
   std::int64_t matched_particles = 0;

@@ -1,6 +1,7 @@
 // Where things lie in the output folder of a run: writers and readers take the names from here.
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace ligament::program
@@ -16,9 +17,12 @@ struct RunFolder
   std::string log() const { return path + "/run.log"; }
   std::string history() const { return path + "/history.csv"; }
   std::string broken_bonds() const { return path + "/broken_bonds.csv"; }
-  /// Particles when the load was highest, and at the end.
-  std::string peak_snapshot() const { return path + "/snapshot_peak.bin"; }
-  std::string end_snapshot() const { return path + "/snapshot_end.bin"; }
+  /// Motion of the particles at the last common times (see common_time_index) before fracture took
+  /// over, the latest first.
+  std::array<std::string, 3> snapshots() const
+  {
+    return {path + "/snapshot_0.bin", path + "/snapshot_1.bin", path + "/snapshot_2.bin"};
+  }
   std::string pvd() const { return path + "/fields.pvd"; }
   std::string fields() const { return path + "/fields"; }
   std::string pictures() const { return path + "/pictures"; }

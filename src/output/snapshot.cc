@@ -5,6 +5,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 
 namespace ligament::program
@@ -33,6 +34,11 @@ void append(std::string &text, const T *values, std::size_t n)
   text.append(reinterpret_cast<const char *>(values), n * sizeof(T));
 }
 } // namespace
+
+int common_time_index(double time)
+{
+  return int(std::floor(std::log(time) / std::log(1.02)));
+}
 
 void write_snapshot(const std::string &path, const Snapshot &s)
 {

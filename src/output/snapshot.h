@@ -21,6 +21,11 @@ struct Snapshot
   std::size_t size() const { return global_id.size(); }
 };
 
+/// Runs keep snapshots at common times 1.02^k seconds, k a whole number, so that runs of the same
+/// scene with other meshes, steps or zones have states of the same times. Index k of the last
+/// common time up to `time` > 0, in s.
+int common_time_index(double time);
+
 /// Binary with a checksum; replaced at once.
 void write_snapshot(const std::string &path, const Snapshot &snapshot);
 /// InputError when the file is missing, cut short or damaged.

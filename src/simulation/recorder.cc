@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ligament::program
@@ -92,19 +93,25 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   }
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
-  // Which state is the peak is known only later: keep copies on the way up, of the motion closely,
-  // of the fields, which take longer, more rarely. A crack that runs moves within microseconds,
-  // while the grips still feel a rising load: the last state before it is the one to show and to
-  // compare.
-  const bool still = ledger.kinetic() < 0.01 * ledger.potential() || !peak_snapshot_;
-  if (!still)
-    return;
-  if (std::abs(r.load) > 1.002 * std::abs(motion_copied_at_)) {
-    motion_copied_at_ = r.load;
-    peak_snapshot_ = snapshot(body, step.time);
+  // A crack that runs moves within microseconds, while the grips still feel a rising load: the
+  // states before it are the ones to show and to compare.
+  if (ledger.kinetic() < 0.01 * ledger.potential())
+    keep_copies(body, step.time, r.load);
+}
+
+// Which state is the last before fracture is known only later: copies are kept on the way up, of
+// the motion at the times that other runs of the scene copy it too, of the fields, which take
+// longer, as the load grows.
+template <int dim>
+void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, double load)
+{
+  if (const int index = common_time_index(time); index > common_time_) {
+    common_time_ = index;
+    std::rotate(snapshots_.begin(), snapshots_.end() - 1, snapshots_.end());
+    snapshots_[0] = snapshot(body, time);
   }
-  if (std::abs(r.load) > 1.02 * std::abs(fields_copied_at_)) {
-    fields_copied_at_ = r.load;
+  if (std::abs(load) > 1.02 * std::abs(fields_copied_at_)) {
+    fields_copied_at_ = load;
     peak_particles_ = particle_fields(body);
     peak_cells_ = cell_fields(body);
     peak_broken_ = body.force ? body.force->broken_bonds().size() : 0;
@@ -224,15 +231,14 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   if (std::isfinite(scene_.output.field_interval))
     fields_.write(step.time, particles, cells, bonds);
   write_broken_bonds(folder_.broken_bonds(), bonds, dim);
-  if (body.zone)
-    write_snapshot(folder_.end_snapshot(), snapshot(body, step.time));
+  for (std::size_t i = 0; i < snapshots_.size(); ++i)
+    if (body.zone && snapshots_[i])
+      write_snapshot(folder_.snapshots()[i], *snapshots_[i]);
 
   if (const auto peak = peak_index(load_)) {
     record.peak_load = load_[*peak];
     record.peak_stress = stress_[*peak];
     record.peak_time = time_[*peak];
-    if (body.zone && peak_snapshot_)
-      write_snapshot(folder_.peak_snapshot(), *peak_snapshot_);
     const std::vector<BrokenBond> at_peak(bonds.begin(), bonds.begin() + peak_broken_);
     draw("peak", "Stress near the peak load", peak_particles_, peak_cells_, at_peak, record);
   }

@@ -4,10 +4,15 @@
 #include "src/output/history.h"
 #include "src/output/progress.h"
 #include "src/output/run_folder.h"
+#include "src/output/snapshot.h"
 #include "src/output/vtk.h"
 #include "src/simulation/body_fields.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/test_machine.h"
+
+#include <array>
+#include <limits>
+#include <optional>
 
 namespace ligament::program
 {
@@ -40,6 +45,7 @@ public:
 
 private:
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
+  void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
             const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
@@ -71,8 +77,9 @@ private:
 
   // What the record needs from the history; loads up to the time when the sides feel the break.
   std::vector<double> load_, stress_, strain_, time_, residual_, work_;
-  double motion_copied_at_ = 0, fields_copied_at_ = 0; // N, loads of the copies below
-  std::optional<Snapshot> peak_snapshot_;
+  std::array<std::optional<Snapshot>, 2> snapshots_;  // the later one first
+  int common_time_ = std::numeric_limits<int>::min(); // index of the last one
+  double fields_copied_at_ = 0;                       // N, load of the copies below
   ParticleFields peak_particles_;
   CellFields peak_cells_;
   std::size_t peak_broken_ = 0;

@@ -53,6 +53,30 @@ TEST(Compare, FindsTheFactorsBetweenTwoRuns)
   EXPECT_TRUE(std::filesystem::exists(r.html_file));
 }
 
+// The run breaks first, and its last state is too near to its onset.
+TEST(Compare, FieldsAreThoseOfTheSameTimeBeforeTheOnset)
+{
+  SyntheticRun run, reference;
+  run.displacement_factor = 1.25;
+  run.peak_time = 1e-3;
+  reference.peak_time = 1.02e-3;
+  const double onset = run.onset * run.peak_time;
+  run.snapshot_times = {0.995 * onset, 0.975 * onset, 0.955 * onset};
+  reference.snapshot_times = {1.015 * onset, 0.995 * onset, 0.975 * onset};
+  run.write("first");
+  reference.write("second");
+  const CompareResult same = compare("first", "second");
+  EXPECT_NEAR(same.displacement_error.value(), 0.25, rounding);
+  EXPECT_NE(table(same).find("926 µs"), std::string::npos) << table(same);
+
+  // 5 per mille apart: no error is better than a wrong one.
+  run.snapshot_times = {0.97 * onset};
+  run.write("other");
+  const CompareResult other = compare("other", "second");
+  EXPECT_FALSE(other.displacement_error);
+  EXPECT_FALSE(other.notes.empty());
+}
+
 // The run's crack is longer by n faces: only its own direction sees 1, 2, ... n diameters.
 TEST(Compare, LongerCrackCountsInOneDirection)
 {
@@ -74,9 +98,9 @@ TEST(Compare, WhatCannotBeComputedIsNull)
 {
   SyntheticRun run, intact;
   intact.n_broken_before = intact.n_broken_after = 0;
+  intact.snapshot_times = {};
   run.write("broken");
   intact.write("intact");
-  std::filesystem::remove("intact/snapshot_peak.bin");
   const auto json = to_json(compare("broken", "intact"));
   for (const char *name :
        {"crack_distance_mean", "crack_distance_max", "displacement_error", "velocity_error"})

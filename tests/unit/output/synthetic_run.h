@@ -26,6 +26,7 @@ struct SyntheticRun
   double onset = 0.95;      // of the peak's time: the stored energy falls from then on
   int n_broken_before = 3, n_broken_after = 4;
   double displacement_factor = 1;
+  std::vector<double> snapshot_times = {0.9e-4}; // s, the latest first, at most three
   std::int64_t first_id = 0;
   double wall_seconds = 10;
   std::int64_t particles = 1000;
@@ -92,7 +93,6 @@ struct SyntheticRun
 
     Snapshot snapshot;
     snapshot.spacing = spacing;
-    snapshot.time = peak_time;
     for (int i = 0; i < 10; ++i) {
       snapshot.global_id.push_back(first_id + i);
       const double x = i * spacing;
@@ -101,7 +101,10 @@ struct SyntheticRun
                                    {displacement_factor * 1e-6 * (i + 1), 0});
       snapshot.velocity.insert(snapshot.velocity.end(), {0, 0.1 * i});
     }
-    write_snapshot(folder.peak_snapshot(), snapshot);
+    for (std::size_t i = 0; i < snapshot_times.size(); ++i) {
+      snapshot.time = snapshot_times[i];
+      write_snapshot(folder.snapshots()[i], snapshot);
+    }
     return folder;
   }
 };
