@@ -1,22 +1,19 @@
 #include "src/output/compare.h"
 
-#include "core/check.h"
 #include "core/files.h"
 #include "src/output/broken_bonds.h"
+#include "src/output/compared_side.h"
 #include "src/output/crack_path.h"
-#include "src/output/curve.h"
 #include "src/output/field_error.h"
 #include "src/output/format.h"
 #include "src/output/html.h"
 #include "src/output/plot.h"
 #include "src/output/run_folder.h"
 #include "src/output/run_record.h"
-#include "src/output/table.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -25,70 +22,6 @@ namespace ligament::program
 {
 namespace
 {
-/// A run, or a curve of which nothing else is known.
-struct Side
-{
-  std::string name;
-  std::optional<RunFolder> folder;
-  std::optional<RunRecord> record;
-  Table curve;
-
-  std::optional<std::vector<double>> values(const char *column, const char *unit) const
-  {
-    if (!curve.has(column))
-      return {};
-    auto numbers = curve.column(column, unit);
-    const bool known =
-        std::any_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
-    return known ? std::optional(std::move(numbers)) : std::nullopt;
-  }
-
-  /// Row of the peak. A run knows its time: when a specimen has broken, its halves swing, and the
-  /// largest load of the whole history may be later.
-  std::optional<std::size_t> peak_row(const std::vector<double> &load) const
-  {
-    const auto time = values("time", "s");
-    if (!record || !record->peak_time || !time)
-      return peak_index(load);
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < time->size(); ++i)
-      if (std::abs((*time)[i] - *record->peak_time) < std::abs((*time)[row] - *record->peak_time))
-        row = i;
-    return row;
-  }
-};
-
-std::string name_of(const std::string &path)
-{
-  auto normal = std::filesystem::path(path).lexically_normal();
-  if (!normal.has_filename())
-    normal = normal.parent_path();
-  std::string name = normal.extension() == ".csv" ? normal.stem() : normal.filename();
-  for (char &c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.')
-      c = '_';
-  return name;
-}
-
-Side read_run(const std::string &path)
-{
-  Side side{name_of(path), RunFolder{path}, {}, {}};
-  core::require(side.folder->holds_a_run(),
-                path + ": not the output folder of a run (no run.json in it)");
-  side.record = read_run_record(side.folder->record());
-  side.curve = read_csv(side.folder->history());
-  return side;
-}
-
-Side read_reference(const std::string &path)
-{
-  if (std::filesystem::is_directory(path))
-    return read_run(path);
-  core::require(std::filesystem::is_regular_file(path),
-                path + ": neither the output folder of a run nor a CSV file");
-  return {name_of(path), {}, {}, read_csv(path)};
-}
-
 std::optional<double> relative_error(const std::optional<double> &run,
                                      const std::optional<double> &reference)
 {
@@ -103,82 +36,6 @@ std::optional<double> ratio(const std::optional<double> &a, const std::optional<
     return {};
   return *a / *b;
 }
-
-/// What both sides can be measured by: load over displacement, or stress over strain.
-struct Measure
-{
-  const char *x, *x_unit, *y, *y_unit;
-};
-constexpr Measure by_stress = {"strain", "1", "stress", "Pa"};
-constexpr Measure by_load = {"displacement", "m", "load", "N"};
-
-bool has(const Side &side, const Measure &m)
-{
-  return side.values(m.x, m.x_unit) && side.values(m.y, m.y_unit);
-}
-
-std::optional<double> stiffness(const Side &side, const Measure &m)
-{
-  if (!has(side, m))
-    return {};
-  auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
-  if (const auto peak = side.peak_row(y)) {
-    x.resize(*peak + 1);
-    y.resize(*peak + 1);
-  }
-  return fit_stiffness(x, y);
-}
-
-std::optional<double> peak(const Side &side, const Measure &m)
-{
-  const bool load = std::string(m.y) == "load";
-  if (side.record && (load ? side.record->peak_load : side.record->peak_stress))
-    return load ? side.record->peak_load : side.record->peak_stress;
-  const auto values = side.values(m.y, m.y_unit);
-  if (!values)
-    return {};
-  const auto index = peak_index(*values);
-  return index ? std::optional((*values)[*index]) : std::nullopt;
-}
-
-/// External work up to the peak: booked by a run, else the area under the curve.
-std::optional<double> work_at_peak(const Side &side)
-{
-  const auto load = side.values("load", "N");
-  const auto index = load ? side.peak_row(*load) : std::nullopt;
-  if (!index)
-    return {};
-  if (const auto work = side.values("external_work", "J"))
-    return std::isfinite((*work)[*index]) ? std::optional((*work)[*index]) : std::nullopt;
-  const auto displacement = side.values("displacement", "m");
-  if (!displacement)
-    return {};
-  double area = 0;
-  for (std::size_t i = 1; i <= *index; ++i)
-    area += 0.5 * ((*load)[i] + (*load)[i - 1]) * ((*displacement)[i] - (*displacement)[i - 1]);
-  return area;
-}
-
-/// When the crack takes over: the time up to the load's peak at which the body stores most elastic
-/// energy. The grips see their peak later, by the way of a wave from the crack.
-std::optional<double> onset_time(const Side &side)
-{
-  const auto time = side.values("time", "s"), load = side.values("load", "N"),
-             discrete = side.values("potential_discrete", "J"),
-             far = side.values("potential_far", "J"), blended = side.values("blended", "J");
-  if (!time || !load || !discrete || !far || !blended)
-    return {};
-  const auto peak = side.peak_row(*load);
-  if (!peak)
-    return {};
-  std::size_t onset = 0;
-  const auto stored = [&](std::size_t i) { return (*discrete)[i] + (*far)[i] + (*blended)[i]; };
-  for (std::size_t i = 1; i <= *peak; ++i)
-    if (stored(i) > stored(onset))
-      onset = i;
-  return (*time)[onset];
-}
-
 struct Distances
 {
   std::optional<double> mean, max;
@@ -253,7 +110,10 @@ snapshots_of_one_time(const RunFolder &run, const RunFolder &reference, double l
 class Comparison
 {
 public:
-  Comparison(Side run, Side reference) : run_(std::move(run)), reference_(std::move(reference)) {}
+  Comparison(ComparedSide run, ComparedSide reference)
+      : run_(std::move(run)), reference_(std::move(reference))
+  {
+  }
 
   CompareResult result()
   {
@@ -395,7 +255,7 @@ private:
     plot.title = run_.name + " against " + reference_.name;
     plot.x = {measure_.x, measure_.x_unit, false};
     plot.y = {measure_.y, measure_.y_unit, false};
-    for (const Side *side : {&run_, &reference_})
+    for (const ComparedSide *side : {&run_, &reference_})
       if (has(*side, measure_))
         plot.series.push_back({side->name, *side->values(measure_.x, measure_.x_unit),
                                *side->values(measure_.y, measure_.y_unit), side == &reference_,
@@ -417,7 +277,7 @@ private:
     core::write_file(r_.html_file, html_page(plot.title, body));
   }
 
-  Side run_, reference_;
+  ComparedSide run_, reference_;
   Measure measure_ = by_load;
   double still_until_ = std::numeric_limits<double>::infinity(); // s
   CompareResult r_;
