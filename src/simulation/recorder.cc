@@ -122,7 +122,15 @@ template <int dim>
 void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
   next_fields_ += scene_.output.field_interval;
-  fields_.write(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
+  write_fields(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
+}
+
+template <int dim>
+void Recorder<dim>::write_fields(double time, ParticleFields particles, CellFields cells,
+                                 std::vector<BrokenBond> bonds)
+{
+  writer_.submit([this, time, particles = std::move(particles), cells = std::move(cells),
+                  bonds = std::move(bonds)] { fields_.write(time, particles, cells, bonds); });
 }
 
 template <int dim>
@@ -155,7 +163,7 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
     }
   }
   if (body.force && !broken_)
-    look_for_break(body, step);
+    look_for_break(body);
   if (broken_ && step.time >= break_.felt_at && scene_.time.stop_when == "specimen_broken")
     return Stop{false, fmt::format("specimen broken at {:.4g} s", break_.time)};
   return {};
@@ -164,7 +172,7 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
 // The sides feel the break when a wave from it has reached them; what they feel later is the swing
 // of the halves, which is no load that the specimen carries.
 template <int dim>
-void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step)
+void Recorder<dim>::look_for_break(const CoupledBody<dim> &body)
 {
   const auto &bonds = body.force->broken_bonds();
   if (bonds.size() == broken_before_)
@@ -229,7 +237,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   const auto particles = particle_fields(body);
   const auto cells = cell_fields(body);
   if (std::isfinite(scene_.output.field_interval))
-    fields_.write(step.time, particles, cells, bonds);
+    write_fields(step.time, particles, cells, bonds);
   write_broken_bonds(folder_.broken_bonds(), bonds, dim);
   for (std::size_t i = 0; i < snapshots_.size(); ++i)
     if (body.zone && snapshots_[i])
@@ -250,6 +258,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.broken_bonds = std::int64_t(bonds.size());
   record.crack_length = crack_length(body, machine_.axis());
   record.energy_residual = relative_residual(residual_, work_);
+  writer_.wait();
 }
 
 template class Recorder<2>;

@@ -1,6 +1,7 @@
 // The observers of a run: history, fields, peak, progress line, guards and the end of the scene.
 #pragma once
 
+#include "core/background_writer.h"
 #include "src/output/history.h"
 #include "src/output/progress.h"
 #include "src/output/run_folder.h"
@@ -47,10 +48,12 @@ private:
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  void write_fields(double time, ParticleFields particles, CellFields cells,
+                    std::vector<BrokenBond> bonds);
   void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
             const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  void look_for_break(const CoupledBody<dim> &body);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;
 
@@ -85,5 +88,6 @@ private:
   std::size_t peak_broken_ = 0;
   ParticleFields break_particles_; // when the specimen was found in two
   CellFields break_cells_;
+  core::BackgroundWriter writer_; // of fields_; last, so that its jobs end before what they use
 };
 } // namespace ligament::program
