@@ -308,8 +308,16 @@ void BridgingDomain<dim>::book_damper(const Bodies<dim> &bodies)
 }
 
 template <int dim>
-double BridgingDomain<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step,
-                                             double factor)
+void BridgingDomain<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
+{
+  bodies.zone->scale_velocities(factor);
+  bodies.far->scale_velocities(factor);
+  velocity_ *= factor;
+}
+
+template <int dim>
+double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &step,
+                                            double factor)
 {
   const auto timing = this->timers_.scope(this->coupling_);
   const double still = 0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_)).sum();
@@ -319,9 +327,7 @@ double BridgingDomain<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime
   const double loss = scaling_loss(still, moving, factor) +
                       scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor) +
                       scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
-  zone.scale_velocities(factor);
-  far.scale_velocities(factor);
-  velocity_ *= factor;
+  scale_velocities(bodies, factor);
   return loss;
 }
 

@@ -37,7 +37,8 @@ public:
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
   void kick(Bodies<dim> &bodies, const StepTime &step) override;
-  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
+  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 
   void take_velocities(Bodies<dim> &bodies) override;

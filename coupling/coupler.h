@@ -58,9 +58,12 @@ public:
   virtual void compute_forces(Bodies<dim> &bodies, const StepTime &step) = 0;
   /// Velocities of both halves from these forces.
   virtual void kick(Bodies<dim> &bodies, const StepTime &step) = 0;
-  /// Multiplies all velocities that no load prescribes (mass damping; 0 in kinetic damping), after
-  /// kick; returns the energy in J that this takes (theory.md eq. (E3)).
-  virtual double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) = 0;
+  /// Multiplies all velocities that no load prescribes.
+  virtual void scale_velocities(Bodies<dim> &bodies, double factor) = 0;
+  /// Mass damping: velocities keep this factor in each step. After kick; returns the energy in J
+  /// that it takes (theory.md eqs. (E3), (E9)).
+  virtual double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) = 0;
+  /// Of a step before its kick. With the sign of dt changed: after it, of the same positions.
   virtual CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const = 0;
 
   /// Steps between two actions of the far field: positions agree everywhere, and observers look, at
@@ -98,7 +101,8 @@ public:
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
   void kick(Bodies<dim> &bodies, const StepTime &step) override;
-  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
+  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 };
 } // namespace ligament::coupling

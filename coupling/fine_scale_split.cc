@@ -21,9 +21,8 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
 {
   auto &far = *bodies.far;
   const int n = overlap_.n_nodes();
-  const auto operators =
-      make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force, far.body(),
-                             parameters.coarse_mass);
+  const auto operators = make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force,
+                                                far.body(), parameters.coarse_mass);
   stiffness_ = operators.stiffness;
   if (parameters.patch_fit) {
     const PatchFit fit = fit_patch(overlap_, operators, far.body());
@@ -300,30 +299,67 @@ void FineScaleSplit<dim>::kick_fine(const Bodies<dim> &bodies, const StepTime &s
 }
 
 template <int dim>
-double FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step,
-                                             double factor)
+void FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
 {
-  const auto timing = this->timers_.scope(this->coupling_);
-  const Nodal<dim> momentum = mass_ * velocity_;
-  const double still = 0.5 * velocity_.cwiseProduct(momentum).sum();
-  const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
-  double loss = scaling_loss(fine_kinetic(bodies, 0), fine_kinetic(bodies, step.dt), factor) +
-                scaling_loss(still, moving, factor);
   bodies.zone->scale_velocities(factor);
+  bodies.far->scale_velocities(factor);
+  scale_fluctuation(factor);
+  velocity_ *= factor;
+  write_velocities(bodies);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::scale_fluctuation(double factor)
+{
   for (auto &w : fluctuation_)
     for (double &v : w)
       v *= factor;
-  velocity_ *= factor;
+}
+
+// The far field keeps its velocities for m steps and takes their damping at once; so does V, which
+// the impulses of the far field move.
+template <int dim>
+double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &step,
+                                            double factor)
+{
+  const auto timing = this->timers_.scope(this->coupling_);
+  double loss = scaling_loss(fine_kinetic(bodies, 0), fine_kinetic(bodies, step.dt), factor);
+  bodies.zone->scale_velocities(factor);
+  scale_fluctuation(factor);
   if (is_far_step(step)) {
-    // The far field keeps its velocities for m steps: it takes their damping at once.
-    auto &far = *bodies.far;
     const double whole = std::pow(factor, parameters_.step_ratio);
+    auto &far = *bodies.far;
     loss += scaling_loss(far.kinetic_energy(0),
                          far.kinetic_energy(parameters_.step_ratio * step.dt), whole);
     far.scale_velocities(whole);
+    loss += damp_coarse(bodies, step, whole);
   }
   write_velocities(bodies);
   return loss;
+}
+
+// Just after an impulse V is ahead of its mean by what the near forces take back until the next
+// one: that swing moves nothing and is left as it is.
+template <int dim>
+double FineScaleSplit<dim>::damp_coarse(const Bodies<dim> &bodies, const StepTime &step,
+                                        double factor)
+{
+  const int m = parameters_.step_ratio;
+  Nodal<dim> force = force_; // near forces and the far field's, without its factor m
+  Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  if (m > 1) {
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < overlap_.n_nodes(); ++i)
+        swing(i, c) = (m - 1) * bodies.far->force[c][overlap_.near_nodes[i]];
+    force -= swing;
+    swing *= step.dt / 2;
+    mass_solver_->solve(swing.data(), dim);
+  }
+  const Nodal<dim> mean = velocity_ - swing;
+  const Nodal<dim> momentum = mass_ * mean;
+  const double still = 0.5 * mean.cwiseProduct(momentum).sum();
+  velocity_ = factor * mean + swing;
+  return scaling_loss(still, still + 0.5 * step.dt * mean.cwiseProduct(force).sum(), factor);
 }
 
 template <int dim>

@@ -46,7 +46,8 @@ public:
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
   void kick(Bodies<dim> &bodies, const StepTime &step) override;
-  double scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
+  void scale_velocities(Bodies<dim> &bodies, double factor) override;
+  double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
   int step_ratio() const override { return parameters_.step_ratio; }
 
@@ -75,6 +76,9 @@ private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
   void kick_coarse(const Bodies<dim> &bodies, const StepTime &step);
   void kick_fine(const Bodies<dim> &bodies, const StepTime &step);
+  void scale_fluctuation(double factor);
+  /// Mass damping of V; returns the energy in J that it takes.
+  double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, double factor);
   void write_velocities(Bodies<dim> &bodies);
   /// Force on the near nodes at this step: near cells, particles, and in the steps in which it acts
   /// the far field's impulse.

@@ -51,19 +51,25 @@ void NullCoupler<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 }
 
 template <int dim>
-double NullCoupler<dim>::scale_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
+void NullCoupler<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
+{
+  if (bodies.zone)
+    bodies.zone->scale_velocities(factor);
+  if (bodies.far)
+    bodies.far->scale_velocities(factor);
+}
+
+template <int dim>
+double NullCoupler<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
 {
   double loss = 0;
-  if (bodies.zone) {
-    auto &zone = *bodies.zone;
-    loss += scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor);
-    zone.scale_velocities(factor);
-  }
-  if (bodies.far) {
-    auto &far = *bodies.far;
-    loss += scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
-    far.scale_velocities(factor);
-  }
+  if (bodies.zone)
+    loss +=
+        scaling_loss(bodies.zone->kinetic_energy(0), bodies.zone->kinetic_energy(step.dt), factor);
+  if (bodies.far)
+    loss +=
+        scaling_loss(bodies.far->kinetic_energy(0), bodies.far->kinetic_energy(step.dt), factor);
+  scale_velocities(bodies, factor);
   return loss;
 }
 

@@ -1,5 +1,7 @@
 #include "src/simulation/damping.h"
 
+#include "src/simulation/energy_ledger.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,11 +94,11 @@ void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepT
     restarts_ = kinetic < last_kinetic_;
     last_kinetic_ = restarts_ ? 0 : kinetic;
     if (restarts_) {
-      body.coupler->scale_velocities(bodies, step, 0);
-      energy_ += kinetic;
+      energy_ += read_ledger(body, step, 0).residual();
+      body.coupler->scale_velocities(bodies, 0);
     }
   }
-  if (parameters_.local > 0) {
+  if (parameters_.local > 0 && !restarts_) {
     add_local_forces(body, step.dt, far_acts);
     energy_ -= 0.5 * step.dt * local_power(body);
   }
@@ -105,15 +107,18 @@ void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepT
 template <int dim>
 void BodyDamping<dim>::after_kick(CoupledBody<dim> &body, const coupling::StepTime &step)
 {
-  if (parameters_.local > 0)
+  if (parameters_.local > 0 && !restarts_)
     energy_ -= 0.5 * step.dt * local_power(body);
   auto bodies = body.bodies();
   if (parameters_.mass > 0)
-    energy_ += body.coupler->scale_velocities(bodies, step, std::exp(-parameters_.mass * step.dt));
+    energy_ += body.coupler->damp_velocities(bodies, step, std::exp(-parameters_.mass * step.dt));
   // Rest at the time of the positions means half a kick half a step later. Rest half a step later
   // would let stiff modes grow: by 1/sqrt(1 - (omega dt/2)^2) with each restart.
-  if (restarts_)
-    energy_ += body.coupler->scale_velocities(bodies, step, 0.5);
+  if (restarts_) {
+    body.coupler->scale_velocities(bodies, 0.5);
+    const coupling::StepTime backwards = {step.step, step.time, -step.dt};
+    energy_ -= read_ledger(body, backwards, 0).residual();
+  }
   restarts_ = false;
 }
 
