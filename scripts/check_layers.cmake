@@ -24,7 +24,7 @@ set(may_use_particles ${vocabulary} MPI Zoltan Voro++ Highway)
 set(may_use_dem ${vocabulary} Highway)
 set(may_use_md ${vocabulary} Highway)
 set(may_use_fem ${vocabulary} MPI deal.II p4est Trilinos)
-set(may_use_coupling ${vocabulary} MPI deal.II Trilinos)
+set(may_use_coupling ${vocabulary} MPI deal.II Trilinos Highway)
 set(may_use_src ${vocabulary} MPI nlohmann-json zlib xxhash POSIX deal.II p4est Trilinos Zoltan
   CLI11 libpng)
 
