@@ -15,9 +15,15 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                                     core::Timers &timers)
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
-      transfer_(overlap_, bodies.zone->state),
-      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver), parts_(overlap_),
-      mass_solver_(make_linear_solver(parameters.solver))
+      fine_(
+          overlap_, bodies.zone->state,
+          [&, speed = bodies.zone->force->elastic_constants().wave_speed_p](double s) {
+            const double rate =
+                parameters.fine_damper * speed / overlap_.cell_size * std::pow(1 - s, 1.5);
+            return 1 - std::exp(-rate * dt);
+          },
+          parameters.solver),
+      parts_(overlap_), mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
   const int n = overlap_.n_nodes();
@@ -48,18 +54,9 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   if (parameters.gap_filter > 0)
     filter_ = make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
                               parameters.step_ratio * dt, operators.mass_bound);
-  for (int k = 0; k < transfer_.size(); ++k) {
-    const double s = transfer_.position(k);
-    const double rate =
-        parameters.fine_damper * constants.wave_speed_p / overlap_.cell_size * std::pow(1 - s, 1.5);
-    damping_.push_back(1 - std::exp(-rate * dt));
-    report_.pad_particles += transfer_.inverse_mass(k) == 0;
-  }
   displacement_ = velocity_ = force_ = change_ = Nodal<dim>::Zero(n, dim);
-  for (auto &w : fluctuation_)
-    w.assign(transfer_.size(), 0.);
-  previous_ = fluctuation_;
-  report_.overlap_particles = transfer_.size();
+  report_.overlap_particles = int(overlap_.members.size());
+  report_.pad_particles = fine_.n_pads();
   report_.near_nodes = n;
   take_velocities(bodies);
 }
@@ -68,21 +65,15 @@ template <int dim>
 void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
 {
   const auto &far = *bodies.far;
-  const auto &zone = bodies.zone->state;
   for (int i = 0; i < overlap_.n_nodes(); ++i)
     for (int c = 0; c < dim; ++c) {
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
-  for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k)
-      fluctuation_[c][k] =
-          transfer_.inverse_mass(k) > 0 ? zone.velocity[c][transfer_.particle(k)] : 0;
-  transfer_.subtract(velocity_, fluctuation_);
-  projector_.project(fluctuation_);
   if (regime_ != Regime::linear)
-    transfer_.turn_pads(displacement_, bodies.zone->state);
-  write_velocities(bodies);
+    fine_.turn_pads(displacement_, bodies.zone->state);
+  fine_.take_velocities(velocity_, bodies.zone->state);
+  write_far_velocities(*bodies.far);
 }
 
 template <int dim>
@@ -98,7 +89,7 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
     coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
         overlap_, parts_, zone, *bodies.zone->force, bodies.far->body(), correction_);
   regime_ = regime;
-  transfer_.turn_pads(displacement_, zone);
+  fine_.turn_pads(displacement_, zone);
   bodies.far->set_corotated(true);
   write_velocities(bodies);
 }
@@ -106,8 +97,13 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
 template <int dim>
 void FineScaleSplit<dim>::write_velocities(Bodies<dim> &bodies)
 {
-  transfer_.write_velocities(velocity_, fluctuation_, bodies.zone->state);
-  auto &far = *bodies.far;
+  fine_.write_velocities(velocity_, bodies.zone->state);
+  write_far_velocities(*bodies.far);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::write_far_velocities(fem::FemSolver<dim> &far) const
+{
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
       far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
@@ -123,7 +119,7 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
   }
   displacement_ += step.dt * velocity_;
   if (regime_ != Regime::linear)
-    transfer_.turn_pads(displacement_, bodies.zone->state);
+    fine_.turn_pads(displacement_, bodies.zone->state);
   // The far field moves in one go, just before it acts again: it is needed nowhere in between.
   if ((step.step + 1) % parameters_.step_ratio == 0) {
     const auto timing = this->timers_.scope(this->far_);
@@ -149,7 +145,7 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
 }
 
 template <int dim>
-void FineScaleSplit<dim>::compute_near_force(const Bodies<dim> &bodies, const StepTime &step,
+void FineScaleSplit<dim>::compute_mesh_force(const Bodies<dim> &bodies, const StepTime &step,
                                              Nodal<dim> &force) const
 {
   force.setZero(overlap_.n_nodes(), dim);
@@ -158,7 +154,6 @@ void FineScaleSplit<dim>::compute_near_force(const Bodies<dim> &bodies, const St
       for (int i = 0; i < overlap_.n_nodes(); ++i)
         force(i, c) = parameters_.step_ratio * bodies.far->force[c][overlap_.near_nodes[i]];
   coarse_->subtract_forces(displacement_, force);
-  transfer_.add_forces(bodies.zone->state, force);
 }
 
 template <int dim>
@@ -166,7 +161,8 @@ auto FineScaleSplit<dim>::halfway(const Bodies<dim> &bodies, const StepTime &ste
 {
   const int m = parameters_.step_ratio;
   Halfway near;
-  compute_near_force(bodies, step, near.force);
+  compute_mesh_force(bodies, step, near.force);
+  fine_.add_forces(bodies.zone->state, near.force);
   near.acceleration = near.force;
   mass_solver_->solve(near.acceleration.data(), dim);
   near.velocity = velocity_ + step.dt / 2 * near.acceleration;
@@ -216,11 +212,6 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 {
   const auto &zone = bodies.zone->state;
   double sum = 0;
-  for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k) {
-      const double w = fluctuation_[c][k];
-      sum += w * (transfer_.mass(k) * w + dt * zone.force[c][transfer_.particle(k)]);
-    }
   for (int i = 0; i < zone.n_owned; ++i) {
     const int index = overlap_.member_of_particle[i];
     if (index < 0)
@@ -230,7 +221,7 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
       for (int c = 0; c < n_spins<dim>; ++c)
         sum += zone.spin[c][i] * (zone.inertia[i] * zone.spin[c][i] + dt * zone.torque[c][i]);
   }
-  return sum / 2;
+  return fine_.kinetic_energy(zone, dt) + sum / 2;
 }
 
 template <int dim>
@@ -245,17 +236,18 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
     bodies.zone->kick(step.dt);
   }
   const auto timing = this->timers_.scope(this->coupling_);
-  kick_coarse(bodies, step);
-  kick_fine(bodies, step);
-  write_velocities(bodies);
+  compute_mesh_force(bodies, step, force_);
+  fine_.begin_kick(bodies.zone->state, step.dt, force_);
+  kick_coarse(step);
+  fine_damper_energy_ += fine_.finish_kick(velocity_, bodies.zone->state);
+  write_far_velocities(*bodies.far);
 }
 
 // V += M_c^-1 dt F. Between two impulses of the far field V swings about its mean, most where the
 // body is strained most: the gap-band filter acts with the impulse, on V half-way through it.
 template <int dim>
-void FineScaleSplit<dim>::kick_coarse(const Bodies<dim> &bodies, const StepTime &step)
+void FineScaleSplit<dim>::kick_coarse(const StepTime &step)
 {
-  compute_near_force(bodies, step, force_);
   change_ = step.dt * force_;
   mass_solver_->solve(change_.data(), dim);
   if (filter_.rows() == 0 || !is_far_step(step)) {
@@ -272,48 +264,14 @@ void FineScaleSplit<dim>::kick_coarse(const Bodies<dim> &bodies, const StepTime 
   gap_filter_energy_ += 0.5 * lost.cwiseProduct(before + velocity_).sum(); // theory.md eq. (E3)
 }
 
-// w <- Q (exp(-c_f dt) w + dt f/m): fluctuation damper and force in one projection.
-template <int dim>
-void FineScaleSplit<dim>::kick_fine(const Bodies<dim> &bodies, const StepTime &step)
-{
-  const auto &zone = bodies.zone->state;
-  const bool damps = parameters_.fine_damper > 0;
-  if (damps)
-    previous_ = fluctuation_;
-  for (int c = 0; c < dim; ++c) {
-    const double *f = zone.force[c].data();
-    for (int k = 0; k < transfer_.size(); ++k)
-      fluctuation_[c][k] += step.dt * f[transfer_.particle(k)] * transfer_.inverse_mass(k) -
-                            damping_[k] * fluctuation_[c][k];
-  }
-  projector_.project(fluctuation_);
-  if (!damps)
-    return;
-  // (E3) again; Q is orthogonal in M, so the loss is a sum over members.
-  double sum = 0;
-  for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k)
-      sum += damping_[k] * transfer_.mass(k) * previous_[c][k] *
-             (previous_[c][k] + fluctuation_[c][k]);
-  fine_damper_energy_ += sum / 2;
-}
-
 template <int dim>
 void FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
 {
   bodies.zone->scale_velocities(factor);
   bodies.far->scale_velocities(factor);
-  scale_fluctuation(factor);
+  fine_.scale(factor);
   velocity_ *= factor;
   write_velocities(bodies);
-}
-
-template <int dim>
-void FineScaleSplit<dim>::scale_fluctuation(double factor)
-{
-  for (auto &w : fluctuation_)
-    for (double &v : w)
-      v *= factor;
 }
 
 // The far field keeps its velocities for m steps and takes their damping at once; so does V, which
@@ -325,7 +283,7 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   const auto timing = this->timers_.scope(this->coupling_);
   double loss = scaling_loss(fine_kinetic(bodies, 0), fine_kinetic(bodies, step.dt), factor);
   bodies.zone->scale_velocities(factor);
-  scale_fluctuation(factor);
+  fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
     auto &far = *bodies.far;

@@ -4,7 +4,7 @@
 
 #include "coupling/coarse_energy.h"
 #include "coupling/coupler.h"
-#include "coupling/fluctuation_projector.h"
+#include "coupling/fine_motion.h"
 #include "coupling/patch_fit.h"
 
 namespace ligament::coupling
@@ -74,15 +74,14 @@ public:
 
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
-  void kick_coarse(const Bodies<dim> &bodies, const StepTime &step);
-  void kick_fine(const Bodies<dim> &bodies, const StepTime &step);
-  void scale_fluctuation(double factor);
+  void kick_coarse(const StepTime &step);
   /// Mass damping of V; returns the energy in J that it takes.
   double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, double factor);
   void write_velocities(Bodies<dim> &bodies);
-  /// Force on the near nodes at this step: near cells, particles, and in the steps in which it acts
-  /// the far field's impulse.
-  void compute_near_force(const Bodies<dim> &bodies, const StepTime &step, Nodal<dim> &force) const;
+  void write_far_velocities(fem::FemSolver<dim> &far) const;
+  /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far
+  /// field's impulse; without what the particles hand over.
+  void compute_mesh_force(const Bodies<dim> &bodies, const StepTime &step, Nodal<dim> &force) const;
   /// The near nodes half-way through kick and impulse, in a step in which the far field acts.
   struct Halfway
   {
@@ -100,8 +99,7 @@ private:
 
   FineScaleSplitParameters parameters_;
   Overlap<dim> overlap_;
-  Transfer<dim> transfer_;
-  FluctuationProjector<dim> projector_;
+  FineMotion<dim> fine_;
   SplitReport report_;
 
   Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
@@ -110,11 +108,8 @@ private:
   std::unique_ptr<CoarseEnergy<dim>> coarse_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> mass_, filter_; // M_c, D
   std::unique_ptr<LinearSolver> mass_solver_;
-  std::vector<double> damping_; // 1 - exp(-c_f dt) of the members
 
   Nodal<dim> displacement_, velocity_; // U, V of the near nodes
-  Components<dim> fluctuation_;        // w of the members, m/s; zero for pads
-  Components<dim> previous_;           // w before the kick
   Nodal<dim> force_;                   // on the near nodes at the last kick, N
   Nodal<dim> change_;                  // of V
   double fine_damper_energy_ = 0, gap_filter_energy_ = 0;

@@ -2,13 +2,11 @@
 // carry is taken out.
 #pragma once
 
-#include "coupling/linear_solver.h"
-#include "coupling/transfer.h"
+#include "coupling/carried_motion.h"
 
 namespace ligament::coupling
 {
 /// Q = 1 - Phi (Phi^T M Phi)^-1 Phi^T M over the members that are not pad (theory.md eq. (C1)).
-/// Columns of Phi that the others already span are left out, which does not change Q.
 template <int dim>
 class FluctuationProjector
 {
@@ -21,9 +19,7 @@ public:
 
 private:
   const Transfer<dim> &transfer_;
-  std::vector<int> nodes_; // near nodes that are unknowns
-  std::unique_ptr<LinearSolver> solver_;
-  mutable std::vector<double> unknowns_; // dim per unknown
+  CarriedMotion<dim> carried_;
   mutable Nodal<dim> nodal_;
 };
 } // namespace ligament::coupling

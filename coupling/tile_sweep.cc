@@ -14,19 +14,19 @@ namespace ligament::coupling::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes = hn::CappedTag<double, tile_size>;
+using Lanes = hn::CappedTag<double, octet_size>;
 using Vector = hn::Vec<Lanes>;
 // Independent sums hide the latency: each block waits for the one before.
 constexpr int n_chains = 4;
 
 /// sum -= rows `part` to `part` + lanes of tile * x
 template <int columns>
-HWY_INLINE void subtract_product(const Tile &tile, const TileVector *x, int part,
+HWY_INLINE void subtract_product(const Tile &tile, const Octet *x, int part,
                                  Vector (&sum)[columns][n_chains])
 {
   const Lanes d;
 #pragma GCC unroll 8
-  for (int j = 0; j < tile_size; ++j) {
+  for (int j = 0; j < octet_size; ++j) {
     const Vector t = hn::Load(d, tile.value[j] + part);
 #pragma GCC unroll 3
     for (int c = 0; c < columns; ++c)
@@ -48,16 +48,16 @@ HWY_INLINE Vector total(const Vector (&chain)[n_chains])
 }
 
 template <int columns>
-HWY_INLINE void sweep_columns(const TileSweep &sweep, TileVector *x)
+HWY_INLINE void sweep_columns(const TileSweep &sweep, Octet *x)
 {
   const Lanes d;
   const int n_lanes = int(hn::Lanes(d));
   Vector sum[columns][n_chains];
-  TileVector minus[columns]; // -(x_k - sum T x)
+  Octet minus[columns]; // -(x_k - sum T x)
   for (std::size_t k = 0; k < sweep.steps.size(); ++k) {
     const auto &step = sweep.steps[k];
-    TileVector *const own = x + columns * step.block;
-    for (int part = 0; part < tile_size; part += n_lanes) {
+    Octet *const own = x + columns * step.block;
+    for (int part = 0; part < octet_size; part += n_lanes) {
       set_zero(sum);
       for (int l = step.begin; l < step.end; ++l)
         subtract_product(sweep.tiles[l], x + columns * sweep.other[l], part, sum);
@@ -65,7 +65,7 @@ HWY_INLINE void sweep_columns(const TileSweep &sweep, TileVector *x)
         hn::Store(hn::Neg(hn::Add(hn::Load(d, own[c].value + part), total(sum[c]))), d,
                   minus[c].value + part);
     }
-    for (int part = 0; part < tile_size; part += n_lanes) {
+    for (int part = 0; part < octet_size; part += n_lanes) {
       set_zero(sum);
       subtract_product(sweep.diagonal[k], minus, part, sum);
       for (int c = 0; c < columns; ++c)
@@ -74,15 +74,15 @@ HWY_INLINE void sweep_columns(const TileSweep &sweep, TileVector *x)
   }
 }
 
-void sweep_tiles_1(const TileSweep &sweep, TileVector *x)
+void sweep_tiles_1(const TileSweep &sweep, Octet *x)
 {
   sweep_columns<1>(sweep, x);
 }
-void sweep_tiles_2(const TileSweep &sweep, TileVector *x)
+void sweep_tiles_2(const TileSweep &sweep, Octet *x)
 {
   sweep_columns<2>(sweep, x);
 }
-void sweep_tiles_3(const TileSweep &sweep, TileVector *x)
+void sweep_tiles_3(const TileSweep &sweep, Octet *x)
 {
   sweep_columns<3>(sweep, x);
 }
@@ -96,7 +96,7 @@ HWY_EXPORT(sweep_tiles_1);
 HWY_EXPORT(sweep_tiles_2);
 HWY_EXPORT(sweep_tiles_3);
 
-void sweep_tiles(const TileSweep &sweep, int n_columns, TileVector *x)
+void sweep_tiles(const TileSweep &sweep, int n_columns, Octet *x)
 {
   if (n_columns == 1)
     HWY_DYNAMIC_DISPATCH(sweep_tiles_1)(sweep, x);

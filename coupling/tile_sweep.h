@@ -1,19 +1,19 @@
 // A triangular solve over dense tiles, in the vectors of the machine that runs it.
 #pragma once
 
+#include "coupling/octet.h"
+
 #include <vector>
 
 namespace ligament::coupling
 {
-inline constexpr int tile_size = 8;
-
 /// Column by column.
 struct alignas(64) Tile
 {
-  double value[tile_size][tile_size] = {};
+  double value[octet_size][octet_size] = {};
 };
 
-/// Steps x_k <- D_k (x_k - sum_l T_l x_other(l)) over blocks x_k of `tile_size` unknowns.
+/// Steps x_k <- D_k (x_k - sum_l T_l x_other(l)) over blocks x_k of 8 unknowns.
 struct TileSweep
 {
   struct Step
@@ -27,12 +27,7 @@ struct TileSweep
   std::vector<Tile> diagonal; // D, one per step
 };
 
-/// The numbers of one block for one right-hand side; a block's n_columns (1 to 3) stand together.
-struct alignas(64) TileVector
-{
-  double value[tile_size] = {};
-};
-
-/// Goes through the steps for n_columns right-hand sides at once.
-void sweep_tiles(const TileSweep &sweep, int n_columns, TileVector *x);
+/// Goes through the steps for n_columns (1 to 3) right-hand sides at once, whose numbers of one
+/// block stand together: x holds n_columns per block.
+void sweep_tiles(const TileSweep &sweep, int n_columns, Octet *x);
 } // namespace ligament::coupling

@@ -58,12 +58,12 @@ Matrix in_order(const Matrix &matrix, const std::vector<int> &order)
 std::size_t count_tiles(const Matrix &matrix, const std::vector<int> &order)
 {
   const Matrix ordered = in_order(matrix, order);
-  const int n_blocks = (int(ordered.rows()) + tile_size - 1) / tile_size;
+  const int n_blocks = (int(ordered.rows()) + octet_size - 1) / octet_size;
   std::vector<std::set<int>> below(n_blocks);
   for (int j = 0; j < ordered.cols(); ++j)
     for (Matrix::InnerIterator it(ordered, j); it; ++it)
-      if (it.row() / tile_size > j / tile_size)
-        below[j / tile_size].insert(int(it.row()) / tile_size);
+      if (it.row() / octet_size > j / octet_size)
+        below[j / octet_size].insert(int(it.row()) / octet_size);
   std::size_t n_tiles = 0;
   for (const auto &rows : below) {
     n_tiles += rows.size();
@@ -132,8 +132,8 @@ void TiledCholesky::factorise_constrained(const Matrix &matrix)
 
 void TiledCholesky::take(const Matrix &lower, const std::vector<int> &order)
 {
-  using Dense = Eigen::Matrix<double, tile_size, tile_size>; // column by column, as Tile
-  const int n = int(order.size()), n_blocks = (n + tile_size - 1) / tile_size;
+  using Dense = Eigen::Matrix<double, octet_size, octet_size>; // column by column, as Tile
+  const int n = int(order.size()), n_blocks = (n + octet_size - 1) / octet_size;
   place_.resize(n);
   for (int i = 0; i < n; ++i)
     place_[order[i]] = i;
@@ -141,12 +141,12 @@ void TiledCholesky::take(const Matrix &lower, const std::vector<int> &order)
   std::map<std::pair<int, int>, Dense> tiles; // (row, column) of the lower triangle
   for (int k = 0; k < n_blocks; ++k)
     tiles.emplace(std::pair(k, k), Dense::Zero());
-  for (int i = n; i < n_blocks * tile_size; ++i) // unknowns that fill up the last block
-    tiles.at({n_blocks - 1, n_blocks - 1})(i % tile_size, i % tile_size) = 1;
+  for (int i = n; i < n_blocks * octet_size; ++i) // unknowns that fill up the last block
+    tiles.at({n_blocks - 1, n_blocks - 1})(i % octet_size, i % octet_size) = 1;
   for (int j = 0; j < n; ++j)
     for (Matrix::InnerIterator it(lower, j); it; ++it) {
-      const std::pair place(int(it.row()) / tile_size, j / tile_size);
-      tiles.try_emplace(place, Dense::Zero()).first->second(it.row() % tile_size, j % tile_size) =
+      const std::pair place(int(it.row()) / octet_size, j / octet_size);
+      tiles.try_emplace(place, Dense::Zero()).first->second(it.row() % octet_size, j % octet_size) =
           it.value();
     }
 
@@ -187,9 +187,9 @@ void TiledCholesky::take(const Matrix &lower, const std::vector<int> &order)
 void TiledCholesky::solve(double *x, int n_columns) const
 {
   const auto at = [&](int place, int c) -> double & {
-    return work_[place / tile_size * n_columns + c].value[place % tile_size];
+    return work_[place / octet_size * n_columns + c].value[place % octet_size];
   };
-  const int n = int(place_.size()), n_filled = n + (tile_size - n % tile_size) % tile_size;
+  const int n = int(place_.size()), n_filled = n + (octet_size - n % octet_size) % octet_size;
   for (int i = 0; i < n; ++i)
     for (int c = 0; c < n_columns; ++c)
       at(place_[i], c) = x[i * n_columns + c];

@@ -21,7 +21,7 @@ private:
   std::vector<int> place_; // of an unknown in the order of elimination
   TileSweep forward_, backward_;
   std::vector<int> negative_; // places where S is -1
-  mutable std::vector<TileVector> work_;
+  mutable std::vector<Octet> work_;
 };
 
 /// Unknowns of a symmetric matrix so that neighbours stand close together (reverse

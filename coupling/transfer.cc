@@ -1,8 +1,5 @@
 #include "coupling/transfer.h"
 
-#include "core/polar_rotation.h"
-#include "particles/orientation.h"
-
 #include <algorithm>
 #include <numeric>
 
@@ -26,34 +23,7 @@ Transfer<dim>::Transfer(const Overlap<dim> &overlap, const particles::Particles<
       value_[a].push_back(m.value[a]);
     free_.push_back(m.pad ? 0 : 1);
     mass_.push_back(m.pad ? 0 : particles.mass[m.particle]);
-    inverse_mass_.push_back(m.pad ? 0 : particles.inverse_mass[m.particle]);
     position_.push_back(m.position);
-    if (m.pad) {
-      Pad pad = {m.particle, m.nodes, m.gradient, {}};
-      for (int a = 0; a < nc; ++a)
-        pad.spin[a] = Overlap<dim>::spin_block(m, a);
-      pads_.push_back(pad);
-    }
-  }
-}
-
-template <int dim>
-void Transfer<dim>::add_forces(const particles::Particles<dim> &particles, Nodal<dim> &nodal) const
-{
-  for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c) {
-      const double *f = particles.force[c].data();
-      double sum[nc] = {};
-      for (int k = group.begin; k < group.end; ++k)
-        for (int a = 0; a < nc; ++a)
-          sum[a] += value_[a][k] * f[particle_[k]];
-      for (int a = 0; a < nc; ++a)
-        nodal(group.nodes[a], c) += sum[a];
-    }
-  for (const auto &pad : pads_) {
-    const Spin<dim> torque = get(particles.torque, pad.particle);
-    for (int a = 0; a < nc; ++a)
-      nodal.row(pad.nodes[a]) += torque.transpose() * pad.spin[a];
   }
 }
 
@@ -88,46 +58,6 @@ void Transfer<dim>::subtract(const Nodal<dim> &nodal, Components<dim> &w) const
         w[c][k] -= free_[k] * v;
       }
     }
-}
-
-template <int dim>
-void Transfer<dim>::write_velocities(const Nodal<dim> &nodal, const Components<dim> &w,
-                                     particles::Particles<dim> &particles) const
-{
-  for (const auto &group : groups_)
-    for (int c = 0; c < dim; ++c) {
-      double at_node[nc];
-      for (int a = 0; a < nc; ++a)
-        at_node[a] = nodal(group.nodes[a], c);
-      double *velocity = particles.velocity[c].data();
-      for (int k = group.begin; k < group.end; ++k) {
-        double v = w[c][k];
-        for (int a = 0; a < nc; ++a)
-          v += value_[a][k] * at_node[a];
-        velocity[particle_[k]] = v;
-      }
-    }
-  for (const auto &pad : pads_) {
-    Spin<dim> spin = Spin<dim>::Zero();
-    for (int a = 0; a < nc; ++a)
-      spin += pad.spin[a] * nodal.row(pad.nodes[a]).transpose();
-    set(particles.spin, pad.particle, spin);
-  }
-}
-
-template <int dim>
-void Transfer<dim>::turn_pads(const Nodal<dim> &u, particles::Particles<dim> &particles)
-{
-  using Matrix = Eigen::Matrix<double, dim, dim>;
-  for (auto &pad : pads_) {
-    Matrix f = Matrix::Identity();
-    for (int a = 0; a < nc; ++a)
-      f += u.row(pad.nodes[a]).transpose() * pad.gradient.col(a).transpose();
-    const core::PolarRotation<dim> rotation(f);
-    ligament::particles::set_orientation<dim>(particles, pad.particle, rotation.matrix());
-    for (int a = 0; a < nc; ++a)
-      pad.spin[a] = rotation.spin_block(pad.gradient.col(a));
-  }
 }
 
 template class Transfer<2>;

@@ -1,0 +1,26 @@
+// The part of a motion of the overlap's particles that the mesh can carry.
+#pragma once
+
+#include "coupling/linear_solver.h"
+#include "coupling/transfer.h"
+
+namespace ligament::coupling
+{
+/// x = (Phi^T M Phi)^-1 Phi^T M w over the members that are not pad (theory.md eq. (C1)). Columns
+/// of Phi that the others already span are left out, which does not change Phi x.
+template <int dim>
+class CarriedMotion
+{
+public:
+  CarriedMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                const std::string &solver);
+
+  /// Phi^T M w in, x out; rows are near nodes.
+  void solve(Nodal<dim> &nodal) const;
+
+private:
+  std::vector<int> nodes_; // near nodes that are unknowns
+  std::unique_ptr<LinearSolver> solver_;
+  mutable std::vector<double> unknowns_; // dim per unknown
+};
+} // namespace ligament::coupling

@@ -1,0 +1,213 @@
+#include "coupling/fine_motion.h"
+
+#include "core/polar_rotation.h"
+#include "particles/orientation.h"
+
+#include <algorithm>
+#include <map>
+
+namespace ligament::coupling
+{
+namespace
+{
+template <typename Field>
+auto pointers(Field &field)
+{
+  std::array<decltype(field[0].data()), std::tuple_size_v<std::remove_const_t<Field>>> p;
+  for (std::size_t c = 0; c < p.size(); ++c)
+    p[c] = field[c].data();
+  return p;
+}
+} // namespace
+
+template <int dim>
+FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                            const std::function<double(double)> &damping, const std::string &solver)
+    : carrier_(overlap, particles, solver), carried_(overlap.n_nodes(), dim)
+{
+  make_lanes(overlap, particles, damping);
+  motion_.resize(dim * lanes_.slots.size());
+  old_motion_ = motion_;
+  for (const auto &m : overlap.members)
+    if (m.pad) {
+      Pad pad = {m.particle, m.nodes, m.gradient, {}};
+      for (int a = 0; a < nc; ++a)
+        pad.spin[a] = Overlap<dim>::spin_block(m, a);
+      pads_.push_back(pad);
+    }
+}
+
+template <int dim>
+void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
+                                 const particles::Particles<dim> &particles,
+                                 const std::function<double(double)> &damping)
+{
+  using Member = typename Overlap<dim>::Member;
+  std::map<std::array<int, nc>, std::vector<const Member *>> members_of_cell;
+  for (const Member &m : overlap.members)
+    members_of_cell[m.nodes].push_back(&m);
+  std::vector<const std::vector<const Member *> *> cells;
+  for (const auto &[nodes, members] : members_of_cell)
+    cells.push_back(&members);
+
+  for (std::size_t first = 0; first < cells.size(); first += octet_size) {
+    const auto begin = cells.begin() + first,
+               end = cells.begin() + std::min(first + octet_size, cells.size());
+    // Fullest first, so that idle lanes come last in every slot.
+    std::stable_sort(begin, end, [](auto *a, auto *b) { return a->size() > b->size(); });
+    typename MemberLanes<dim>::Batch batch{};
+    batch.n_cells = int(end - begin);
+    for (int l = 0; l < octet_size; ++l)
+      for (int a = 0; a < nc; ++a)
+        batch.node[a][l] = begin[l < batch.n_cells ? l : 0]->front()->nodes[a];
+    batch.begin = int(lanes_.slots.size());
+    for (std::size_t k = 0; k < (*begin)->size(); ++k) {
+      Slot slot{};
+      for (int l = 0; l < octet_size; ++l) {
+        const bool idle = l >= batch.n_cells || k >= begin[l]->size();
+        const Member &m = idle ? *(*begin)->at(k) : *begin[l]->at(k);
+        slot.particle[l] = m.particle;
+        if (idle)
+          continue;
+        slot.n_members = l + 1;
+        for (int a = 0; a < nc; ++a)
+          slot.value[a].value[l] = m.value[a];
+        if (m.pad)
+          continue;
+        slot.mass.value[l] = particles.mass[m.particle];
+        slot.inverse_mass.value[l] = particles.inverse_mass[m.particle];
+        slot.damping.value[l] = damping(m.position);
+      }
+      lanes_.slots.push_back(slot);
+    }
+    batch.end = int(lanes_.slots.size());
+    lanes_.batches.push_back(batch);
+  }
+}
+
+template <int dim>
+void FineMotion<dim>::add_pad_torques(const particles::Particles<dim> &particles,
+                                      Nodal<dim> &force) const
+{
+  for (const auto &pad : pads_) {
+    const Spin<dim> torque = get(particles.torque, pad.particle);
+    for (int a = 0; a < nc; ++a)
+      force.row(pad.nodes[a]) += torque.transpose() * pad.spin[a];
+  }
+}
+
+template <int dim>
+void FineMotion<dim>::write_pad_spins(const Nodal<dim> &coarse,
+                                      particles::Particles<dim> &particles) const
+{
+  for (const auto &pad : pads_) {
+    Spin<dim> spin = Spin<dim>::Zero();
+    for (int a = 0; a < nc; ++a)
+      spin += pad.spin[a] * coarse.row(pad.nodes[a]).transpose();
+    set(particles.spin, pad.particle, spin);
+  }
+}
+
+template <int dim>
+void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
+                                 Nodal<dim> &force) const
+{
+  std::vector<Octet> motion(motion_.size());
+  Nodal<dim> momentum(carried_.rows(), dim);
+  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion_.data(), motion.data(),
+                             force.data(), momentum.data()});
+  add_pad_torques(particles, force);
+}
+
+template <int dim>
+void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, double dt,
+                                 Nodal<dim> &force)
+{
+  std::swap(motion_, old_motion_);
+  carried_.setZero();
+  kick_members<dim>(lanes_, {pointers(particles.force), dt, old_motion_.data(), motion_.data(),
+                             force.data(), carried_.data()});
+  add_pad_torques(particles, force);
+  carrier_.solve(carried_);
+}
+
+template <int dim>
+double FineMotion<dim>::finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles)
+{
+  const double twice =
+      split_members<dim>(lanes_, {carried_.data(), coarse.data(), old_motion_.data(),
+                                  motion_.data(), pointers(particles.velocity)});
+  write_pad_spins(coarse, particles);
+  return twice / 2; // (E3); Q is orthogonal in M, so the loss is a sum over members
+}
+
+template <int dim>
+void FineMotion<dim>::take_velocities(const Nodal<dim> &coarse,
+                                      particles::Particles<dim> &particles)
+{
+  carried_.setZero();
+  for (const auto &batch : lanes_.batches)
+    for (int k = batch.begin; k < batch.end; ++k) {
+      const Slot &slot = lanes_.slots[k];
+      for (int l = 0; l < slot.n_members; ++l)
+        for (int c = 0; c < dim; ++c) {
+          const bool free = slot.mass.value[l] > 0;
+          const double w = free ? particles.velocity[c][slot.particle[l]] : 0;
+          motion_[k * dim + c].value[l] = w;
+          for (int a = 0; a < nc; ++a)
+            carried_(batch.node[a][l], c) += slot.value[a].value[l] * slot.mass.value[l] * w;
+        }
+    }
+  carrier_.solve(carried_);
+  finish_kick(coarse, particles);
+}
+
+template <int dim>
+void FineMotion<dim>::write_velocities(const Nodal<dim> &coarse,
+                                       particles::Particles<dim> &particles)
+{
+  carried_.setZero();
+  finish_kick(coarse, particles);
+}
+
+template <int dim>
+void FineMotion<dim>::scale(double factor)
+{
+  for (Octet &w : motion_)
+    for (double &v : w.value)
+      v *= factor;
+}
+
+template <int dim>
+double FineMotion<dim>::kinetic_energy(const particles::Particles<dim> &particles, double dt) const
+{
+  double sum = 0;
+  for (std::size_t k = 0; k < lanes_.slots.size(); ++k) {
+    const Slot &slot = lanes_.slots[k];
+    for (int c = 0; c < dim; ++c)
+      for (int l = 0; l < slot.n_members; ++l) {
+        const double w = motion_[k * dim + c].value[l];
+        sum += w * (slot.mass.value[l] * w + dt * particles.force[c][slot.particle[l]]);
+      }
+  }
+  return sum / 2;
+}
+
+template <int dim>
+void FineMotion<dim>::turn_pads(const Nodal<dim> &u, particles::Particles<dim> &particles)
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  for (auto &pad : pads_) {
+    Matrix f = Matrix::Identity();
+    for (int a = 0; a < nc; ++a)
+      f += u.row(pad.nodes[a]).transpose() * pad.gradient.col(a).transpose();
+    const core::PolarRotation<dim> rotation(f);
+    ligament::particles::set_orientation<dim>(particles, pad.particle, rotation.matrix());
+    for (int a = 0; a < nc; ++a)
+      pad.spin[a] = rotation.spin_block(pad.gradient.col(a));
+  }
+}
+
+template class FineMotion<2>;
+template class FineMotion<3>;
+} // namespace ligament::coupling

@@ -1,0 +1,68 @@
+// The motion of the overlap's particles that the mesh cannot carry, and what particles and mesh
+// hand each other in a step.
+#pragma once
+
+#include "coupling/carried_motion.h"
+#include "coupling/member_lanes.h"
+
+#include <functional>
+
+namespace ligament::coupling
+{
+/// w of theory.md eq. (C1) with its damper, and the pads, which have none.
+template <int dim>
+class FineMotion
+{
+public:
+  /// damping: 1 - exp(-c_f dt) for a member's position s in [0, 1]. Starts with w = 0.
+  FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+             const std::function<double(double)> &damping, const std::string &solver);
+
+  int n_pads() const { return int(pads_.size()); }
+
+  /// force += Phi^T f + Psi_pad^T T_pad, in N.
+  void add_forces(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
+
+  /// w <- w - damping w + dt f/m, what the mesh carries not yet taken out; adds forces as above.
+  void begin_kick(const particles::Particles<dim> &particles, double dt, Nodal<dim> &force);
+  /// Once V is known: w <- Q w and v = Phi V + w; pads also turn with the mesh. Returns the energy
+  /// in J that the damper took, theory.md eq. (E3).
+  double finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
+
+  /// w = Q v of the particles' velocities, then as write_velocities.
+  void take_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
+  /// v = Phi V + w; pads also turn with the mesh.
+  void write_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
+
+  void scale(double factor);
+
+  /// 1/2 w M w + 1/2 dt w f, in J.
+  double kinetic_energy(const particles::Particles<dim> &particles, double dt) const;
+
+  /// Large rotation: gives pads the orientation of the mesh's motion U (m), theory.md eq. (C15);
+  /// from now on they turn with its rate, until the next call.
+  void turn_pads(const Nodal<dim> &u, particles::Particles<dim> &particles);
+
+private:
+  static constexpr int nc = fem::n_cell_nodes<dim>;
+  using Slot = typename MemberLanes<dim>::Slot;
+  struct Pad
+  {
+    int particle;
+    std::array<int, nc> nodes;
+    Eigen::Matrix<double, dim, nc> gradient; // of the shape functions, 1/m
+    std::array<Eigen::Matrix<double, n_spins<dim>, dim>, nc> spin;
+  };
+
+  void make_lanes(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                  const std::function<double(double)> &damping);
+  void add_pad_torques(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
+  void write_pad_spins(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const;
+
+  MemberLanes<dim> lanes_;
+  CarriedMotion<dim> carrier_;
+  std::vector<Octet> motion_, old_motion_; // w, dim per slot, m/s
+  Nodal<dim> carried_;                     // Phi^T M w', then x: what the mesh carries of w'
+  std::vector<Pad> pads_;
+};
+} // namespace ligament::coupling
