@@ -25,10 +25,11 @@ BlockMatrix<dim>::BlockMatrix(const Eigen::SparseMatrix<double> &matrix)
 }
 
 template <int dim>
-void BlockMatrix<dim>::subtract_product(const Nodal<dim> &u, Nodal<dim> &result) const
+double BlockMatrix<dim>::subtract_product(const Nodal<dim> &u, Nodal<dim> &result) const
 {
   const int n = int(row_start_.size()) - 1;
   const double *x = u.data();
+  double form = 0;
   for (int node = 0; node < n; ++node) {
     double sum[dim] = {};
     for (int k = row_start_[node]; k < row_start_[node + 1]; ++k) {
@@ -37,9 +38,12 @@ void BlockMatrix<dim>::subtract_product(const Nodal<dim> &u, Nodal<dim> &result)
         for (int j = 0; j < dim; ++j)
           sum[i] += block_[k](i, j) * xk[j];
     }
-    for (int i = 0; i < dim; ++i)
+    for (int i = 0; i < dim; ++i) {
       result(node, i) -= sum[i];
+      form += x[node * dim + i] * sum[i];
+    }
   }
+  return form;
 }
 
 template class BlockMatrix<2>;

@@ -16,8 +16,8 @@ public:
   /// c * n_nodes + node.
   explicit BlockMatrix(const Eigen::SparseMatrix<double> &matrix);
 
-  /// result -= A u
-  void subtract_product(const Nodal<dim> &u, Nodal<dim> &result) const;
+  /// result -= A u; returns u.A u.
+  double subtract_product(const Nodal<dim> &u, Nodal<dim> &result) const;
 
 private:
   std::vector<int> row_start_, column_;

@@ -14,10 +14,7 @@ std::string name_of(Regime regime)
 template <int dim>
 double LinearCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const
 {
-  Nodal<dim> own = Nodal<dim>::Zero(u.rows(), dim);
-  stiffness_.subtract_product(u, own);
-  force += own;
-  return -0.5 * u.cwiseProduct(own).sum();
+  return 0.5 * stiffness_.subtract_product(u, force);
 }
 
 template <int dim>
@@ -33,7 +30,7 @@ double CorotatedCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<di
       turned.row(i) =
           (u.row(i) - frames[p].translation.transpose()) * r + parts_.position.row(i) * change;
   }
-  stiffness_.subtract_product(turned, f);
+  const double energy = 0.5 * stiffness_.subtract_product(turned, f);
   for (std::size_t p = 0; p < frames.size(); ++p) {
     const auto &rotation = frames[p].rotation;
     Spin<dim> torque = Spin<dim>::Zero();
@@ -46,7 +43,7 @@ double CorotatedCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<di
           f.row(i) * rotation.matrix().transpose() -
           rotation.force(y, Vector<dim>(parts_.gradient.row(i).transpose())).transpose();
   }
-  return -0.5 * turned.cwiseProduct(f).sum();
+  return energy;
 }
 
 template <int dim>

@@ -52,8 +52,9 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
 
   const auto constants = bodies.zone->force->elastic_constants();
   if (parameters.gap_filter > 0)
-    filter_ = make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
-                              parameters.step_ratio * dt, operators.mass_bound);
+    filter_ =
+        ScalarMatrix<dim>(make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
+                                          parameters.step_ratio * dt, operators.mass_bound));
   displacement_ = velocity_ = force_ = change_ = Nodal<dim>::Zero(n, dim);
   report_.overlap_particles = int(overlap_.members.size());
   report_.pad_particles = fine_.n_pads();
@@ -250,18 +251,18 @@ void FineScaleSplit<dim>::kick_coarse(const StepTime &step)
 {
   change_ = step.dt * force_;
   mass_solver_->solve(change_.data(), dim);
-  if (filter_.rows() == 0 || !is_far_step(step)) {
+  if (filter_.is_empty() || !is_far_step(step)) {
     velocity_ += change_;
     return;
   }
-  const Nodal<dim> before = velocity_;
-  const Nodal<dim> middle = velocity_ + 0.5 * change_;
-  const Nodal<dim> lost = filter_ * middle; // momentum
+  middle_ = velocity_ + 0.5 * change_;
+  filter_.multiply(middle_, lost_); // momentum
   velocity_ += change_;
-  change_ = lost;
+  change_ = lost_;
   mass_solver_->solve(change_.data(), dim);
   velocity_ -= change_;
-  gap_filter_energy_ += 0.5 * lost.cwiseProduct(before + velocity_).sum(); // theory.md eq. (E3)
+  // theory.md eq. (E3); the mean of V before and after is middle_ - change_ / 2
+  gap_filter_energy_ += lost_.cwiseProduct(middle_ - 0.5 * change_).sum();
 }
 
 template <int dim>

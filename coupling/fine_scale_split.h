@@ -6,6 +6,7 @@
 #include "coupling/coupler.h"
 #include "coupling/fine_motion.h"
 #include "coupling/patch_fit.h"
+#include "coupling/scalar_matrix.h"
 
 namespace ligament::coupling
 {
@@ -106,12 +107,14 @@ private:
   NearParts<dim> parts_;
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_, filter_; // M_c, D
+  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c
+  ScalarMatrix<dim> filter_;                          // D
   std::unique_ptr<LinearSolver> mass_solver_;
 
   Nodal<dim> displacement_, velocity_; // U, V of the near nodes
   Nodal<dim> force_;                   // on the near nodes at the last kick, N
   Nodal<dim> change_;                  // of V
+  Nodal<dim> middle_, lost_;           // V half-way through it, and what the filter takes there
   double fine_damper_energy_ = 0, gap_filter_energy_ = 0;
 };
 } // namespace ligament::coupling

@@ -35,6 +35,20 @@ HWY_INLINE Vector gather(const double *field, const typename MemberLanes<dim>::S
                          hn::PromoteTo(index, hn::LoadU(half, slot.particle + part)));
 }
 
+template <int dim>
+HWY_INLINE void scatter(const Octet &values, const typename MemberLanes<dim>::Slot &slot,
+                        double *field)
+{
+  if (HWY_LIKELY(slot.n_members == octet_size)) {
+#pragma GCC unroll 8
+    for (int l = 0; l < octet_size; ++l)
+      field[slot.particle[l]] = values.value[l];
+    return;
+  }
+  for (int l = 0; l < slot.n_members; ++l)
+    field[slot.particle[l]] = values.value[l];
+}
+
 /// nodal += what the lanes have summed for the nodes of their cells, component c.
 template <int dim>
 HWY_INLINE void add_to_nodes(const typename MemberLanes<dim>::Batch &batch, const Octet *sum, int c,
@@ -121,8 +135,7 @@ HWY_INLINE double split_all(const MemberLanes<dim> &members, const FineSplit<dim
           store(w, split.motion[k * dim + c], part);
           store(hn::Add(v, w), velocity, part);
         }
-        for (int l = 0; l < slot.n_members; ++l)
-          split.velocity[c][slot.particle[l]] = velocity.value[l];
+        scatter<dim>(velocity, slot, split.velocity[c]);
       }
     }
   return hn::GetLane(hn::SumOfLanes(d, loss));

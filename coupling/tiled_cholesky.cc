@@ -181,28 +181,37 @@ void TiledCholesky::take(const Matrix &lower, const std::vector<int> &order)
     std::reverse(below[k].begin(), below[k].end());
     add_step(backward_, k, true, below[k]);
   }
-  work_.resize(3 * n_blocks);
+  work_.assign(3 * n_blocks, Octet()); // what fills up the last block touches nothing else
 }
 
 void TiledCholesky::solve(double *x, int n_columns) const
 {
-  const auto at = [&](int place, int c) -> double & {
-    return work_[place / octet_size * n_columns + c].value[place % octet_size];
+  if (n_columns == 1)
+    solve_columns<1>(x);
+  else if (n_columns == 2)
+    solve_columns<2>(x);
+  else
+    solve_columns<3>(x);
+}
+
+template <int columns>
+void TiledCholesky::solve_columns(double *x) const
+{
+  double *const work = work_.front().value;
+  const auto start = [](unsigned place) { // of an unknown's numbers, octet_size apart
+    return place / octet_size * octet_size * columns + place % octet_size;
   };
-  const int n = int(place_.size()), n_filled = n + (octet_size - n % octet_size) % octet_size;
-  for (int i = 0; i < n; ++i)
-    for (int c = 0; c < n_columns; ++c)
-      at(place_[i], c) = x[i * n_columns + c];
-  for (int i = n; i < n_filled; ++i)
-    for (int c = 0; c < n_columns; ++c)
-      at(i, c) = 0;
-  sweep_tiles(forward_, n_columns, work_.data());
+  const std::size_t n = place_.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (int c = 0; c < columns; ++c)
+      work[start(place_[i]) + octet_size * c] = x[i * columns + c];
+  sweep_tiles(forward_, columns, work_.data());
   for (const int i : negative_)
-    for (int c = 0; c < n_columns; ++c)
-      at(i, c) *= -1;
-  sweep_tiles(backward_, n_columns, work_.data());
-  for (int i = 0; i < n; ++i)
-    for (int c = 0; c < n_columns; ++c)
-      x[i * n_columns + c] = at(place_[i], c);
+    for (int c = 0; c < columns; ++c)
+      work[start(i) + octet_size * c] *= -1;
+  sweep_tiles(backward_, columns, work_.data());
+  for (std::size_t i = 0; i < n; ++i)
+    for (int c = 0; c < columns; ++c)
+      x[i * columns + c] = work[start(place_[i]) + octet_size * c];
 }
 } // namespace ligament::coupling

@@ -16,6 +16,8 @@ public:
   void solve(double *x, int n_columns) const override;
 
 private:
+  template <int columns>
+  void solve_columns(double *x) const;
   void take(const Eigen::SparseMatrix<double> &lower, const std::vector<int> &order);
 
   std::vector<int> place_; // of an unknown in the order of elimination
