@@ -3,6 +3,7 @@
 #include "core/check.h"
 #include "coupling/nodal_matrix.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -41,6 +42,27 @@ void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &size, Vis
   }
 }
 
+/// Smallest eigenvalue of a cell's consistent mass over its row sums.
+template <int dim>
+double consistent_bound(const fem::CondensedCell<dim> &shape)
+{
+  constexpr int nc = fem::n_cell_nodes<dim>;
+  if (!shape.hangs())
+    return dim == 2 ? 1. / 9 : 1. / 27;
+  using Matrix = Eigen::Matrix<double, nc, nc>;
+  Matrix corners; // of a cell of mass 1: products of the masses of lines
+  for (int a = 0; a < nc; ++a)
+    for (int b = 0; b < nc; ++b) {
+      corners(a, b) = 1;
+      for (int c = 0; c < dim; ++c)
+        corners(a, b) /= (a >> c & 1) == (b >> c & 1) ? 3 : 6;
+    }
+  const Matrix mass = shape.shares.transpose() * corners * shape.shares;
+  const Vec<nc> scale = mass.rowwise().sum().cwiseSqrt().cwiseInverse();
+  const Matrix scaled = scale.asDiagonal() * mass * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
 template <int dim>
 class Assembly
 {
@@ -68,7 +90,6 @@ public:
   Eigen::VectorXd mass_bound;
 
 private:
-  static constexpr double consistent_bound = dim == 2 ? 1. / 9 : 1. / 27;
   const double coarse_mass_;
   const Overlap<dim> &overlap_;
   const particles::Particles<dim> &particles_;
@@ -84,6 +105,7 @@ void Assembly<dim>::add_cells()
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
   for (const auto &cell : overlap_.cells) {
+    const double bound = consistent_bound<dim>(cell.shape);
     const Vector<dim> &lower = overlap_.mesh.cell_lower[cell.cell];
     const Vector<dim> &size = overlap_.mesh.cell_size[cell.cell];
     const fem::CellMatrix<dim> k = blended_cell_stiffness(overlap_, cell, body_);
@@ -91,14 +113,14 @@ void Assembly<dim>::add_cells()
     consistent.setZero();
     for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
       w *= (cell.layer == 0 ? 1 - overlap_.weight(x) : 1) * body_.thickness * body_.density;
-      const auto value = fem::shape_values<dim>(lower, size, x);
+      const auto value = overlap_.shape_values(cell, x);
       consistent += w * value * value.transpose();
     });
     const double mu = cell.consistent_share;
     for (int a = 0; a < nc; ++a) {
       const double row_sum = consistent.row(a).sum();
       mass.emplace_back(cell.nodes[a], cell.nodes[a], (1 - mu) * row_sum);
-      mass_bound[cell.nodes[a]] += row_sum * (1 - mu + mu * consistent_bound);
+      mass_bound[cell.nodes[a]] += row_sum * (1 - mu + mu * bound);
       for (int b = 0; b < nc; ++b)
         mass.emplace_back(cell.nodes[a], cell.nodes[b], mu * consistent(a, b));
     }
@@ -106,7 +128,7 @@ void Assembly<dim>::add_cells()
     Eigen::Matrix<double, dim * nc, 1> u;
     for (int s = 0; s < n_strains<dim>; ++s) {
       for (int a = 0; a < nc; ++a)
-        u.template segment<dim>(a * dim) = strain_[s] * fem::corner<dim>(size, a);
+        u.template segment<dim>(a * dim) = strain_[s] * cell.shape.place.col(a);
       const Eigen::Matrix<double, dim * nc, 1> f = k * u;
       for (int a = 0; a < nc; ++a)
         for (int i = 0; i < dim; ++i)
@@ -118,13 +140,15 @@ void Assembly<dim>::add_cells()
 template <int dim>
 void Assembly<dim>::add_masses()
 {
-  for (const auto &m : overlap_.members)
+  for (const auto &m : overlap_.members) {
+    const double bound = consistent_bound<dim>(overlap_.cells[m.cell].shape);
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
       const double share = coarse_mass_ * m.weight * particles_.mass[m.particle] * m.value[a];
-      mass_bound[m.nodes[a]] += share * consistent_bound;
+      mass_bound[m.nodes[a]] += share * bound;
       for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
         mass.emplace_back(m.nodes[a], m.nodes[b], share * m.value[b]);
     }
+  }
 }
 
 template <int dim>
@@ -256,7 +280,7 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
   k.setZero();
   for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
     w *= (cell.layer == 0 ? 1 - overlap.weight(x) : 1) * body.thickness;
-    const auto b = fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, x));
+    const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
     k += w * b.transpose() * body.stiffness * b;
   });
   return k;

@@ -23,7 +23,8 @@ struct BlendedOperators
   /// of cells that stay with the far-field solver.
   Eigen::SparseMatrix<double> mass;
   /// Per near node a lower bound of `mass` in the sense of quadratic forms, kg: consistent masses
-  /// count 1/3^dim of their row sum. Keeps the gap filter below the mass (theory.md, "Dampers").
+  /// count 1/3^dim of their row sum, less in cells with hanging corners. Keeps the gap filter below
+  /// the mass (theory.md, "Dampers").
   Eigen::VectorXd mass_bound;
   /// Force on the near nodes under each unit strain, spins at rest, N; one column per strain.
   Eigen::MatrixXd residual;

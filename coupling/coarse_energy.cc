@@ -57,16 +57,21 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
       state_(std::make_unique<particles::Particles<dim>>())
 {
   std::vector<Vector<dim>> sizes;
+  std::vector<typename fem::CondensedCell<dim>::Shares> shares;
   std::vector<int> whole; // stiffness of whole cells, by shape
   for (const auto &cell : overlap.cells) {
     const Vector<dim> &h = overlap.mesh.cell_size[cell.cell];
     int shape = 0;
     while (shape < int(sizes.size()) &&
-           ((sizes[shape] - h).array().abs() > 1e-12 * h.array()).any())
+           (shares[shape] != cell.shape.shares ||
+            ((sizes[shape] - h).array().abs() > 1e-12 * h.array()).any()))
       ++shape;
     if (shape == int(sizes.size())) {
       sizes.push_back(h);
+      shares.push_back(cell.shape.shares);
       shapes_.emplace_back(h);
+      shapes_.back().corner = cell.shape.place.colwise() - h / 2;
+      shapes_.back().gradient *= cell.shape.shares;
       whole.push_back(-1);
     }
     int &known = whole[shape];

@@ -201,6 +201,7 @@ double FineScaleSplit<dim>::impulse_energy(const Bodies<dim> &bodies, const Half
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
       v[c][overlap_.near_nodes[i]] = near.velocity(i, c);
+  far.follow_masters(v);
   // The kinetic energy of the far nodes lacks (m dt)^2/8 F M^-1 F already, not dt^2/8: 1/8 - 1/24.
   const Nodal<dim> a = 2 * near.acceleration - near.far_acceleration;
   return (m * m - 1) * dt * dt / 24 *

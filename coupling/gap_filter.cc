@@ -1,37 +1,69 @@
 #include "coupling/gap_filter.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace ligament::coupling
 {
 namespace
 {
-/// [-1 2 -1]/4 along an axis; nothing at nodes that lack a neighbour on one side.
+/// From a node to the corner next to it along an axis: the longest edge, because beside cells of
+/// twice the size the shorter ones end at hanging nodes.
+struct Edge
+{
+  double length = 0; // m; 0: there is none
+  int cell, corner;  // near cell, and the corner at the other end
+};
+
+/// Half the distance of a node from the straight line between its neighbours along an axis,
+/// [-1 2 -1]/4 where they are equally far; nothing at nodes that lack a neighbour on one side.
 template <int dim>
 Eigen::SparseMatrix<double, Eigen::RowMajor> second_difference(const Overlap<dim> &overlap,
                                                                int axis)
 {
+  constexpr int nc = fem::n_cell_nodes<dim>;
   const int n = overlap.n_nodes();
-  std::array<std::vector<int>, 2> next; // below and above
-  next.fill(std::vector<int>(n, -1));
-  for (const auto &cell : overlap.cells)
-    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-      if (!((a >> axis) & 1)) {
-        const int low = cell.nodes[a], high = cell.nodes[a | (1 << axis)];
-        next[1][low] = high;
-        next[0][high] = low;
-      }
+  std::array<std::vector<Edge>, 2> next; // below and above
+  next.fill(std::vector<Edge>(n));
+  for (std::size_t c = 0; c < overlap.cells.size(); ++c) {
+    const auto &cell = overlap.cells[c];
+    const double length = overlap.mesh.cell_size[cell.cell][axis];
+    for (int a = 0; a < nc; ++a)
+      if (Edge &edge = next[a >> axis & 1 ? 0 : 1][cell.nodes[a]];
+          cell.shape.is_free_corner(a) && length > edge.length)
+        edge = {length, int(c), a ^ (1 << axis)};
+  }
   std::vector<Eigen::Triplet<double>> stencil;
-  for (int i = 0; i < n; ++i)
-    if (next[0][i] >= 0 && next[1][i] >= 0) {
-      stencil.emplace_back(i, next[0][i], -0.25);
-      stencil.emplace_back(i, i, 0.5);
-      stencil.emplace_back(i, next[1][i], -0.25);
-    }
+  for (int i = 0; i < n; ++i) {
+    const Edge &below = next[0][i], &above = next[1][i];
+    if (below.length == 0 || above.length == 0)
+      continue;
+    stencil.emplace_back(i, i, 0.5);
+    const auto add = [&](const Edge &edge, double weight) {
+      const auto &cell = overlap.cells[edge.cell];
+      for (int b = 0; b < nc; ++b)
+        if (const double share = cell.shape.shares(edge.corner, b); share > 0)
+          stencil.emplace_back(i, cell.nodes[b], -weight * share);
+    };
+    const double whole = 2 * (below.length + above.length);
+    add(below, above.length / whole);
+    add(above, below.length / whole);
+  }
   Eigen::SparseMatrix<double, Eigen::RowMajor> difference(n, n);
   difference.setFromTriplets(stencil.begin(), stencil.end());
   return difference;
+}
+
+/// Smallest edge of the cells around each near node, in m.
+template <int dim>
+Eigen::VectorXd node_sizes(const Overlap<dim> &overlap)
+{
+  Eigen::VectorXd size =
+      Eigen::VectorXd::Constant(overlap.n_nodes(), std::numeric_limits<double>::max());
+  for (const auto &cell : overlap.cells)
+    for (const int node : cell.nodes)
+      size[node] = std::min(size[node], cell.size);
+  return size;
 }
 } // namespace
 
@@ -42,8 +74,8 @@ Eigen::SparseMatrix<double> make_gap_filter(const Overlap<dim> &overlap, double 
 {
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   const int n = overlap.n_nodes();
-  const double rate = dim * strength * wave_speed / overlap.cell_size;
-  const double share = (1 - std::exp(-rate * step)) / dim;
+  const Eigen::ArrayXd rate = dim * strength * wave_speed / node_sizes(overlap).array();
+  const Eigen::ArrayXd share = (1 - (-rate * step).exp()) / dim;
 
   Eigen::SparseMatrix<double> filter(n, n);
   for (int axis = 0; axis < dim; ++axis) {
@@ -58,7 +90,7 @@ Eigen::SparseMatrix<double> make_gap_filter(const Overlap<dim> &overlap, double 
       double most = 1;
       for (Matrix::InnerIterator entry(l, i); entry; ++entry)
         most = std::max(most, taken[entry.col()] / 2);
-      weight[i] = share * mass_bound[i] / most;
+      weight[i] = share[i] * mass_bound[i] / most;
     }
     filter += Eigen::SparseMatrix<double>(l.transpose() * weight.asDiagonal() * l);
   }

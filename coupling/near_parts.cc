@@ -33,8 +33,9 @@ NearParts<dim>::NearParts(const Overlap<dim> &overlap)
   }
   for (const auto &cell : overlap.cells) {
     const Vector<dim> &h = overlap.mesh.cell_size[cell.cell];
-    cells_.push_back({part_of_root[root(cell.nodes[0])], cell.nodes,
-                      fem::shape_gradients<dim>(Vector<dim>::Zero(), h, h / 2)});
+    cells_.push_back(
+        {part_of_root[root(cell.nodes[0])], cell.nodes,
+         fem::shape_gradients<dim>(Vector<dim>::Zero(), h, h / 2) * cell.shape.shares});
   }
   for (const auto &part : nodes) {
     Vector<dim> centre = Vector<dim>::Zero();

@@ -26,6 +26,7 @@ Overlap<dim>::Overlap(const particles::Particles<dim> &particles,
   core::require(!parameters.zone.boxes.empty(), "the discrete zone has no coupled side");
   find_members(particles, force);
   find_cells();
+  place_members(particles);
 }
 
 template <int dim>
@@ -134,9 +135,7 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     Member m;
     m.particle = i;
     m.pad = pad[i];
-    m.nodes = mesh.cells[cell]; // renumbered by find_cells
-    m.value = fem::shape_values<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], x);
-    m.gradient = fem::shape_gradients<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], x);
+    m.cell = cell; // of the mesh, until find_cells
     member_of_particle[i] = int(members.size());
     members.push_back(m);
     if (pad[i])
@@ -150,23 +149,23 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
       fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
                   "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
                   parameters.length, depth + 3 * parameters.spacing));
-  for (auto &m : members) {
-    const Vector<dim> x = get(particles.reference, m.particle);
-    m.position = position(x);
-    m.weight = weight(x);
-  }
 }
 
 // Layer 0: cells that reach into the packing's side of the edge. Each further layer: the cells
-// that share a node with the layer before.
+// that share a free node with the layer before.
 template <int dim>
 void Overlap<dim>::find_cells()
 {
+  const fem::CellCondenser<dim> condense(mesh);
+  auto free_nodes = mesh.cells;
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (condense.hangs(c))
+      free_nodes[c] = condense(c).nodes;
   std::vector<int> layer(mesh.n_cells(), -1);
   std::vector<int> node_layer(mesh.n_nodes(), -1);
   const auto take = [&](int cell, int l) {
     layer[cell] = l;
-    for (const int node : mesh.cells[cell])
+    for (const int node : free_nodes[cell])
       if (node_layer[node] < 0)
         node_layer[node] = l;
   };
@@ -175,48 +174,72 @@ void Overlap<dim>::find_cells()
     if (parameters.zone.meets(lower, lower + size, 1e-8 * size.minCoeff()))
       take(c, 0);
   }
-  for (const auto &m : members)
-    for (const int node : m.nodes)
-      core::require(node_layer[node] == 0,
-                    "a particle lies in the mesh beyond the edge of the packing");
   for (int l = 1; l <= parameters.transition_cells; ++l) {
     const std::vector<int> before = node_layer;
     for (int c = 0; c < mesh.n_cells(); ++c)
-      if (layer[c] < 0 && std::any_of(mesh.cells[c].begin(), mesh.cells[c].end(),
+      if (layer[c] < 0 && std::any_of(free_nodes[c].begin(), free_nodes[c].end(),
                                       [&](int node) { return before[node] == l - 1; }))
         take(c, l);
   }
 
-  std::vector<int> near(mesh.n_nodes(), -1);
+  std::vector<int> near(mesh.n_nodes(), -1), near_cell(mesh.n_cells(), -1);
   for (int node = 0; node < mesh.n_nodes(); ++node)
     if (node_layer[node] >= 0) {
       near[node] = int(near_nodes.size());
       near_nodes.push_back(node);
       is_overlap_node.push_back(node_layer[node] == 0);
     }
-  for (const auto &hanging : mesh.hanging)
-    core::require(near[hanging.node] < 0,
-                  "the mesh changes its size inside the overlap or its transition: give the far "
-                  "field more fine cells or lower /coupling/transition_cells");
   cell_size = std::numeric_limits<double>::max();
   for (int c = 0; c < mesh.n_cells(); ++c)
     if (layer[c] >= 0) {
       Cell cell;
       cell.cell = c;
       cell.layer = layer[c];
-      const bool is_fine = mesh.cell_size[c].minCoeff() < fine_cell * parameters.spacing;
+      cell.size = mesh.cell_size[c].minCoeff();
+      const bool is_fine = cell.size < fine_cell * parameters.spacing;
       cell.consistent_share =
           std::min(is_fine ? fine_cell_share : 1.,
                    layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells);
+      cell.shape = condense(c);
       for (int a = 0; a < n_cell_nodes; ++a)
-        cell.nodes[a] = near[mesh.cells[c][a]];
-      cells.push_back(cell);
+        cell.nodes[a] = near[cell.shape.nodes[a]];
       if (layer[c] == 0)
-        cell_size = std::min(cell_size, mesh.cell_size[c].minCoeff());
+        cell_size = std::min(cell_size, cell.size);
+      near_cell[c] = int(cells.size());
+      cells.push_back(cell);
     }
-  for (auto &m : members)
-    for (int &node : m.nodes)
-      node = near[node];
+  for (auto &m : members) {
+    core::require(layer[m.cell] == 0, "a particle lies in the mesh beyond the edge of the packing");
+    m.cell = near_cell[m.cell];
+  }
+}
+
+template <int dim>
+void Overlap<dim>::place_members(const particles::Particles<dim> &particles)
+{
+  for (auto &m : members) {
+    const Vector<dim> x = get(particles.reference, m.particle);
+    m.position = position(x);
+    m.weight = weight(x);
+    m.nodes = cells[m.cell].nodes;
+    m.value = shape_values(cells[m.cell], x);
+    m.gradient = shape_gradients(cells[m.cell], x);
+  }
+}
+
+template <int dim>
+Vec<fem::n_cell_nodes<dim>> Overlap<dim>::shape_values(const Cell &cell, const Vector<dim> &x) const
+{
+  return cell.shape.shares.transpose() *
+         fem::shape_values<dim>(mesh.cell_lower[cell.cell], mesh.cell_size[cell.cell], x);
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, fem::n_cell_nodes<dim>>
+Overlap<dim>::shape_gradients(const Cell &cell, const Vector<dim> &x) const
+{
+  return fem::shape_gradients<dim>(mesh.cell_lower[cell.cell], mesh.cell_size[cell.cell], x) *
+         cell.shape.shares;
 }
 
 template class Overlap<2>;

@@ -4,7 +4,7 @@
 
 #include "core/box_union.h"
 #include "coupling/scheme.h"
-#include "fem/mesh.h"
+#include "fem/condensed_cell.h"
 #include "particles/particle_force.h"
 
 #include <array>
@@ -41,8 +41,8 @@ class Overlap
 public:
   static constexpr int n_cell_nodes = fem::n_cell_nodes<dim>;
 
-  /// Throws core::InputError when pad particles reach out of the mesh, when the overlap is too
-  /// thin for them, or when its cells touch hanging nodes.
+  /// Throws core::InputError when pad particles reach out of the mesh or when the overlap is too
+  /// thin for them.
   Overlap(const particles::Particles<dim> &particles, const particles::ParticleForce<dim> &force,
           const fem::Mesh<dim> &mesh, const OverlapParameters<dim> &parameters);
 
@@ -60,6 +60,7 @@ public:
     bool pad;                                          // moves with the mesh
     double weight;                                     // a at its centre
     double position;                                   // s at its centre
+    int cell;                                          // index into `cells`
     std::array<int, n_cell_nodes> nodes;               // near nodes of its cell
     Vec<n_cell_nodes> value;                           // Phi: shape functions at its centre
     Eigen::Matrix<double, dim, n_cell_nodes> gradient; // of the shape functions, 1/m
@@ -71,12 +72,14 @@ public:
     int cell; // in the mesh
     int layer;
     double consistent_share;             // mu: share of the consistent mass
+    double size;                         // m, smallest edge
     std::array<int, n_cell_nodes> nodes; // near nodes
+    fem::CondensedCell<dim> shape;       // its `nodes` are those of the mesh
   };
 
   std::vector<Member> members;
   std::vector<Cell> cells;
-  std::vector<int> near_nodes;         // mesh node of every near node
+  std::vector<int> near_nodes;         // mesh node of every near node; hanging nodes are none
   std::vector<char> is_overlap_node;   // per near node: node of a cell of layer 0
   std::vector<int> member_of_particle; // index into members, or -1
   double depth = 0;                    // m
@@ -88,6 +91,11 @@ public:
 
   /// Vector from one particle to another or to the nearest of its periodic images, in m.
   Vector<dim> offset(const Vector<dim> &from, const Vector<dim> &to) const;
+
+  /// Shape functions of the nodes of a near cell at x, and their gradients in 1/m.
+  Vec<fem::n_cell_nodes<dim>> shape_values(const Cell &cell, const Vector<dim> &x) const;
+  Eigen::Matrix<double, dim, fem::n_cell_nodes<dim>> shape_gradients(const Cell &cell,
+                                                                     const Vector<dim> &x) const;
 
   /// 1 - a: what is subtracted of a term of the discrete energy at `location` (m) between these
   /// particles. Only where all of them lie in the overlap, else 0; wholly where one is pad.
@@ -102,6 +110,8 @@ private:
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
   void find_cells();
+  /// Their shape functions, once the cells are known.
+  void place_members(const particles::Particles<dim> &particles);
 };
 
 /// 1/2 curl(g . x u) = half_curl(g) u: the spin of a motion u that grows along the gradient g

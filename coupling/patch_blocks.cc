@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <limits>
 
 namespace ligament::coupling
 {
@@ -53,27 +54,36 @@ template <int dim>
 std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, double thickness)
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
-  std::vector<std::vector<int>> cells_of_node(overlap.n_nodes());
-  for (std::size_t c = 0; c < overlap.cells.size(); ++c)
-    if (overlap.cells[c].layer == 0)
-      for (const int node : overlap.cells[c].nodes)
-        cells_of_node[node].push_back(int(c));
+  // A node is inside the overlap when it is corner of cells all around and only overlap cells
+  // follow it. Cells that follow it by a hanging corner belong to its star, too.
+  std::vector<std::vector<int>> star(overlap.n_nodes());
+  std::vector<int> n_corners(overlap.n_nodes(), 0);
+  std::vector<char> leaves(overlap.n_nodes(), 0);
+  for (std::size_t c = 0; c < overlap.cells.size(); ++c) {
+    const auto &cell = overlap.cells[c];
+    for (int a = 0; a < nc; ++a) {
+      star[cell.nodes[a]].push_back(int(c));
+      n_corners[cell.nodes[a]] += cell.shape.is_free_corner(a);
+      leaves[cell.nodes[a]] |= cell.layer > 0;
+    }
+  }
   std::vector<std::shared_ptr<const PatchBasis<dim>>> shapes;
   std::vector<PatchBlock<dim>> blocks;
   for (int middle = 0; middle < overlap.n_nodes(); ++middle)
-    if (const auto &cells = cells_of_node[middle]; int(cells.size()) == nc) {
+    if (!leaves[middle] && n_corners[middle] == nc) {
       PatchBlock<dim> block;
       block.volume = 0;
-      Eigen::MatrixXd place(dim, nc * nc);
-      for (const int c : cells) {
-        const auto &nodes = overlap.cells[c].nodes;
-        const Vector<dim> &size = overlap.mesh.cell_size[overlap.cells[c].cell];
-        const int corner = int(std::find(nodes.begin(), nodes.end(), middle) - nodes.begin());
-        block.volume += thickness * size.prod();
+      block.length = std::numeric_limits<double>::max();
+      Eigen::MatrixXd place(dim, nc * int(star[middle].size()));
+      for (const int c : star[middle]) {
+        const auto &cell = overlap.cells[c];
+        const auto &nodes = cell.nodes;
+        const int own = int(std::find(nodes.begin(), nodes.end(), middle) - nodes.begin());
+        block.volume += thickness * overlap.mesh.cell_size[cell.cell].prod();
+        block.length = std::min(block.length, cell.size);
         for (int a = 0; a < nc; ++a)
           if (std::find(block.nodes.begin(), block.nodes.end(), nodes[a]) == block.nodes.end()) {
-            place.col(block.nodes.size()) =
-                fem::corner<dim>(size, a) - fem::corner<dim>(size, corner);
+            place.col(block.nodes.size()) = cell.shape.place.col(a) - cell.shape.place.col(own);
             block.nodes.push_back(nodes[a]);
           }
       }

@@ -44,7 +44,7 @@ template <int dim>
 PatchEquations<dim>::PatchEquations(std::vector<PatchBlock<dim>> &blocks,
                                     const std::vector<Eigen::MatrixXd> &states,
                                     const Overlap<dim> &overlap)
-    : blocks_(blocks), length_(overlap.cell_size)
+    : blocks_(blocks)
 {
   for (const auto &s : states)
     projectors_.push_back(s.cols() == ns  ? Stiffness<dim>(Stiffness<dim>::Identity())
@@ -53,7 +53,7 @@ PatchEquations<dim>::PatchEquations(std::vector<PatchBlock<dim>> &blocks,
   diagonal_ = Eigen::VectorXd::Zero(states.size());
   for (const auto &block : blocks_)
     for (const int node : block.nodes)
-      diagonal_[node] += std::pow(block.volume / length_, 2);
+      diagonal_[node] += std::pow(block.volume / block.length, 2);
   make_coarse_space(overlap);
 }
 
@@ -75,7 +75,7 @@ void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
   Vector<dim> low = overlap.mesh.nodes[overlap.near_nodes[0]];
   for (const int node : overlap.near_nodes)
     low = low.cwiseMin(overlap.mesh.nodes[node]);
-  for (double spacing = 4 * length_;; spacing *= 1.25) {
+  for (double spacing = 4 * overlap.cell_size;; spacing *= 1.25) {
     std::map<std::array<int, 3>, int> numbers;
     hats_.assign(n, {});
     for (int node = 0; node < n; ++node) {
@@ -147,7 +147,7 @@ void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
     const Stiffness<dim> s = symmetric_part<dim>(part * block.basis->strain);
     moduli.col(k) = Eigen::Map<const Eigen::VectorXd>(s.data(), ns * ns);
   }
-  const double scale = block.volume / length_;
+  const double scale = block.volume / block.length;
   const Eigen::MatrixXd share = block.volume * block.volume * moduli.transpose() * moduli -
                                 scale * scale * parts.transpose() * parts;
   for (std::size_t i = 0; i < used.size(); ++i)
@@ -164,7 +164,7 @@ void PatchEquations<dim>::add_transposed(const Field &y)
     const auto &q = block.basis->homogeneous;
     const Field local = gather(block, y), part = local * q;
     block.s += block.volume * block.volume * symmetric_part<dim>(part * block.basis->strain);
-    block.h += std::pow(block.volume / length_, 2) * (local - part * q.transpose());
+    block.h += std::pow(block.volume / block.length, 2) * (local - part * q.transpose());
   }
 }
 
@@ -192,7 +192,7 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::apply(const Field &y) c
         diagonal_[node] * y.template middleCols<dim>(dim * node);
   for (const auto &block : blocks_) {
     const auto &basis = *block.basis;
-    const double scale = block.volume / length_;
+    const double scale = block.volume / block.length;
     const Field part = gather(block, y) * basis.homogeneous;
     const Stiffness<dim> s = block.volume * block.volume * symmetric_part<dim>(part * basis.strain);
     const Field rest = s * basis.strain.transpose() - scale * scale * part;

@@ -25,13 +25,14 @@ struct PatchBasis
   Eigen::MatrixXd strain;      // Q^T P_a, 1/m: P_a = Q strain (theory.md eq. (C8))
 };
 
-/// The overlap cells around one node and their part of the correction Z. Its forces under the unit
-/// strains are P_a S + P_n H.
+/// The overlap cells that follow one node and their part of the correction Z. Its forces under the
+/// unit strains are P_a S + P_n H.
 template <int dim>
 struct PatchBlock
 {
   std::vector<int> nodes; // near nodes
   double volume;          // m^3
+  double length;          // m, h_b: smallest edge of the cells
   std::shared_ptr<const PatchBasis<dim>> basis;
   Stiffness<dim> s = Stiffness<dim>::Zero(); // S, N m
   StrainForces<dim> h;                       // (P_n H)^T, N
@@ -40,11 +41,13 @@ struct PatchBlock
   Eigen::MatrixXd correction() const;
 };
 
-/// One block around every node that only overlap cells share.
+/// One block around every node inside the overlap: a star of 2^dim cells, and of more beside
+/// hanging nodes.
 template <int dim>
 std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, double thickness);
 
-/// G x = R with x the S/V_b and H/(V_b/h) of all blocks, only at the states that each node admits.
+/// G x = R with x the S/V_b and H/(V_b/h_b) of all blocks, only at the states that each node
+/// admits.
 template <int dim>
 class PatchEquations
 {
@@ -74,9 +77,8 @@ private:
   Field conjugate_gradients(const Field &right, double tolerance) const;
 
   std::vector<PatchBlock<dim>> &blocks_;
-  const double length_;                    // m, h
   std::vector<Stiffness<dim>> projectors_; // per near node, on its states
-  Eigen::VectorXd diagonal_;               // per near node: sum of (V_b/h)^2
+  Eigen::VectorXd diagonal_;               // per near node: sum of (V_b/h_b)^2
   // Coarse level: hats over the overlap, per node the numbers and values of those that reach it.
   std::vector<std::vector<std::pair<int, double>>> hats_;
   int n_hats_ = 0;

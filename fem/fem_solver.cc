@@ -172,6 +172,18 @@ void FemSolver<dim>::release_cells(const std::vector<int> &cells)
     for (const int node : mesh_.cells[cell])
       released_node_[node] = 1;
   }
+  for (const HangingNode &h : mesh_.hanging)
+    if (released_node_[h.node])
+      for (const auto &master : h.masters)
+        released_node_[master.first] = 1;
+  for (const CellFace<dim> &face : mesh_.boundary_faces)
+    for (const auto &load : loads_)
+      core::require(is_own_cell_[face.cell] || face.boundary != load.boundary ||
+                        load.kind != core::BoundaryLoad<dim>::Kind::traction ||
+                        std::none_of(load.value.begin(), load.value.end(),
+                                     [](const auto &v) { return bool(v); }),
+                    "the overlap or its transition reaches a side of the specimen with a traction; "
+                    "keep the zone away from it or lower /coupling/transition_cells");
   update_own_cells();
 }
 
@@ -224,7 +236,7 @@ void FemSolver<dim>::scale_velocities(double factor)
 }
 
 template <int dim>
-void FemSolver<dim>::take_from_masters(Components<dim> &field) const
+void FemSolver<dim>::follow_masters(Components<dim> &field) const
 {
   for (auto &values : field)
     for (const HangingNode &h : mesh_.hanging) {
@@ -238,8 +250,8 @@ void FemSolver<dim>::take_from_masters(Components<dim> &field) const
 template <int dim>
 void FemSolver<dim>::distribute()
 {
-  take_from_masters(displacement);
-  take_from_masters(velocity);
+  follow_masters(displacement);
+  follow_masters(velocity);
 }
 
 template <int dim>
@@ -361,7 +373,7 @@ Components<dim> FemSolver<dim>::halfway_velocity(double dt) const
     for (int i = 0; i < mesh_.n_nodes(); ++i)
       if (!held_[c][i])
         v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
-  take_from_masters(v);
+  follow_masters(v);
   return v;
 }
 

@@ -71,6 +71,8 @@ public:
 
   /// Hanging nodes take displacement and velocity of their masters.
   void distribute();
+  /// The same of any nodal field.
+  void follow_masters(Components<dim> &field) const;
 
   /// Elastic energy of the solver's own cells, with the displacements as they are; in J.
   double potential_energy() const;
@@ -132,7 +134,6 @@ private:
   std::vector<double> side_areas(int boundary) const; // of the own cells, per node, m^2
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
-  void take_from_masters(Components<dim> &field) const;
   double load_force(const LoadedComponent &c) const; // on the body, in N
   void book_work();
 

@@ -84,6 +84,9 @@ void check_parameters(const MeshParameters<dim> &p)
                 fmt::format("far-field mesh: fine cells ({}) must be at least 0, cells per level "
                             "({}) at least 1",
                             p.fine_cells, p.cells_per_level));
+  core::require(
+      p.growth >= 1 && p.growth <= 2,
+      fmt::format("far-field mesh: cells grow by {}; allowed are factors of 1 to 2", p.growth));
 }
 
 /// Sections that get cells must not be thinner than their largest cells: squeezed cells would
@@ -145,6 +148,8 @@ Grid<dim> make_grid(const MeshParameters<dim> &p, int levels)
                                             "larger cells or more levels",
                                             base_size));
     std::vector<double> cuts;
+    SectionedAxis::Growth growth = {
+        p.growth, std::max(1, p.fine_cells), std::ldexp(p.cell_size, p.levels), {}};
     for (const auto &box : boxes) {
       core::require(box.lower[k] < p.upper[k] && box.upper[k] > p.lower[k],
                     fmt::format("far-field mesh: the discrete zone ({:.6g} m to {:.6g} m in {}) "
@@ -152,8 +157,9 @@ Grid<dim> make_grid(const MeshParameters<dim> &p, int levels)
                                 box.lower[k], box.upper[k], axis_name[k]));
       cuts.push_back(box.lower[k]);
       cuts.push_back(box.upper[k]);
+      growth.covered.emplace_back(box.lower[k], box.upper[k]);
     }
-    grid.axes.emplace_back(p.lower[k], p.upper[k], cuts, base_size, levels);
+    grid.axes.emplace_back(p.lower[k], p.upper[k], cuts, base_size, levels, growth);
   }
   for (const auto &box : boxes) {
     auto &part = grid.inner.emplace_back();
@@ -334,7 +340,8 @@ template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters)
 {
   check_parameters(parameters);
-  const int levels = inner_boxes(parameters).empty() ? 0 : parameters.levels;
+  const bool refines = parameters.growth == 1 && !inner_boxes(parameters).empty();
+  const int levels = refines ? parameters.levels : 0;
   const Grid<dim> grid = make_grid(parameters, levels);
 
   dealii::Triangulation<dim> triangulation(

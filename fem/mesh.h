@@ -40,6 +40,7 @@ struct MeshParameters
   int levels = 0;                   // largest cells have size h 2^levels
   int fine_cells = 0;               // cells of size h on every path out of the inner box
   int cells_per_level = 4;          // then as many cells on each coarser level
+  double growth = 1; // above 1: cells grow to that size one by one by this factor, none hangs
 };
 
 template <int dim>
@@ -59,11 +60,12 @@ struct Mesh
 
 /// Builds the mesh with deal.II (local refinement, hanging nodes). Every section beside or between
 /// the faces of inner boxes is filled with whole cells, so sizes differ a little from the ones
-/// asked for, within 3/4 and 3/2 in a section of one large cell. There are no hanging nodes within
-/// `fine_cells` cells of the inner box, its border included. Without inner box all cells have size
-/// h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError with reason and
-/// remedy when a section of the far field is thinner than 3/4 of its largest cells, when the inner
-/// box fills the specimen or lies outside, or when parameters are out of range.
+/// asked for, within 3/4 and 3/2 in a section of one large cell. Cells grow away from inner boxes
+/// along each axis for itself, beside and between them, never over their width. There are no
+/// hanging nodes within `fine_cells` cells of the inner box, its border included. Without inner box
+/// all cells have size h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError
+/// with reason and remedy when a section of the far field is thinner than 3/4 of its largest cells,
+/// when the inner box fills the specimen or lies outside, or when parameters are out of range.
 template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ligament::fem
@@ -15,14 +16,27 @@ class SectionedAxis
 public:
   using Index = std::int64_t;
 
+  /// From the ends of a section that are cuts on: `fine` cells of the base size, then each `factor`
+  /// times larger than the one before. Sections that a part covers stay uniform. Without levels.
+  struct Growth
+  {
+    double factor = 1;
+    int fine = 1;
+    double largest = 0;                             // m, of a cell
+    std::vector<std::pair<double, double>> covered; // m
+  };
+
   /// Lengths in m; cuts on or beyond the ends are none. A section gets the number of base cells
-  /// whose size comes nearest to base_size, at least one.
-  SectionedAxis(double lower, double upper, std::vector<double> cuts, double base_size, int levels);
+  /// whose size comes nearest to base_size, at least one. Growing sections get as many cells as the
+  /// factor asks for, and a factor that is smaller by what fits them in.
+  SectionedAxis(double lower, double upper, std::vector<double> cuts, double base_size, int levels,
+                const Growth &growth);
 
   struct Section
   {
-    double lower, upper; // m
-    Index begin, n;      // finest cells
+    double lower, upper;                // m
+    Index begin, n;                     // finest cells
+    std::vector<double> sizes, borders; // m, of growing cells; borders without the section's ends
   };
 
   Index n() const { return n_; }

@@ -175,19 +175,6 @@ void check_spacing(const Scene &scene, const Box &zone, Findings &f)
             "more than 1e9 cannot be numbered", "give a larger spacing, or check its unit");
 }
 
-void check_cell_number(const Scene &scene, Findings &f)
-{
-  const double largest = scene.far_field->cell_size * std::pow(2.0, scene.far_field->levels);
-  double number = 1;
-  for (int c = 0; c < scene.dimension; ++c)
-    number *= std::max(1.0, scene.specimen.size[c] / largest);
-  if (number > 1e9)
-    f.error(cell_key,
-            fmt::format("\"cell_size\" in /far_field is {} m, which makes at least {:.1e} cells",
-                        scene.far_field->cell_size, number),
-            "more than 1e9 cannot be numbered", "give a larger size, or check its unit");
-}
-
 /// Where the zone lies; empty when its region is impossible.
 std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Findings &f)
 {
@@ -281,7 +268,8 @@ void check_coarse_mass(const Scene &scene, Findings &f)
 void check_widths(const Scene &scene, const Layout &layout, Findings &f)
 {
   const double h = layout.cell_size, d = scene.zone.spacing;
-  const double largest = h * std::pow(2.0, scene.far_field->levels);
+  const FarField &far = *scene.far_field;
+  const double largest = far.growth > 1 ? h : h * std::pow(2.0, far.levels);
   for (int c = 0; c < layout.dim; ++c) {
     const bool low = layout.coupled_side[2 * c], high = layout.coupled_side[2 * c + 1];
     if (!low && !high)
@@ -403,8 +391,8 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
   const bool spacing = particles && f.sound_and_given({spacing_key});
   if (layout && spacing)
     check_spacing(scene, layout->zone, f);
-  if (mesh && f.sound({cell_key, "/far_field/levels"}))
-    check_cell_number(scene, f);
+  if (mesh)
+    check_mesh(scene, is_coupled(scene), f);
   if (!is_coupled(scene))
     return f.sound({far_key}) ? layout : std::nullopt;
   if (!spacing || !f.sound({cell_key}))

@@ -24,6 +24,9 @@ struct Layout
 /// The scene as it was read, region sides still infinite where they reach through.
 void check_scene(const Scene &scene, Findings &findings);
 
+/// Sizes of the far field's cells.
+void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
+
 /// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
 

@@ -5,6 +5,13 @@
 
 namespace ligament::program
 {
+int fine_cells(const Scene &scene)
+{
+  if (scene.far_field->fine_cells > 0)
+    return scene.far_field->fine_cells;
+  return scene.coupling.overlap_cells + scene.coupling.transition_cells + 2;
+}
+
 namespace
 {
 Point difference(const Point &a, const Point &b)

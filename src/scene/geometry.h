@@ -31,6 +31,10 @@ core::BoxUnion<dim> zone_shape(const Scene &scene)
   return shape;
 }
 
+/// Cells of size h between the inner end of the overlap and the first larger ones: what the scene
+/// asks for, else so many that size steps keep off the transition.
+int fine_cells(const Scene &scene);
+
 /// Corners of the part of a segment or convex plane polygon inside the box, in the first dim
 /// directions; empty when there is none.
 std::vector<Point> clip(const std::vector<Point> &corners, const Box &box, int dim);

@@ -100,6 +100,8 @@ struct FarField
   double cell_size;        // m, h beside the zone
   int levels = 0;          // refinement levels: the largest cells have size h 2^levels
   int cells_per_level = 4; // cells between two steps of the mesh size
+  double growth = 1;       // above 1: from cell to cell, in place of refinement
+  int fine_cells = 0;      // cells of size h, from the inner end of the overlap on; 0: automatic
 };
 
 struct CouplingParameters
@@ -116,10 +118,10 @@ struct CouplingParameters
   coupling::DamperForm damper_form = coupling::DamperForm::symmetrised;
   int multiplier_cells = 1;
   Point ghost_force_correction = {0, 0, 0}; // normal strains
-  std::string solver = "eigen";     // eigen, amesos
-  std::string guard = "stop";       // stop, warn
-  std::string regime = "automatic"; // linear, corotated, nonlinear
-  double coarse_mass = 1;           // factor on the masses of the coarse motion and the far field
+  std::string solver = "eigen";             // eigen, amesos
+  std::string guard = "stop";               // stop, warn
+  std::string regime = "automatic";         // linear, corotated, nonlinear
+  double coarse_mass = 1; // factor on the masses of the coarse motion and the far field
 };
 
 struct Damping

@@ -77,6 +77,8 @@ void declare_far_field(Section &s, FarField &f)
   s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").above(0).required();
   s.add("levels", f.levels, "refinement levels: the largest cells have size h 2^levels").at_least(0).at_most(8);
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
+  s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
+  s.add("fine_cells", f.fine_cells, "cells of size h between the inner end of the overlap and the first larger ones; 0: overlap, transition and two more").at_least(0).at_most(1000);
 }
 
 void declare_coupling(Section &s, CouplingParameters &c)

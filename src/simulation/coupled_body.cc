@@ -235,8 +235,8 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   p.cell_size = scene.far_field->cell_size;
   p.levels = scene.far_field->levels;
   p.cells_per_level = scene.far_field->cells_per_level;
-  // A ring of cells beyond the transition keeps hanging nodes away from it.
-  p.fine_cells = scene.coupling.overlap_cells + scene.coupling.transition_cells + 2;
+  p.growth = scene.far_field->growth;
+  p.fine_cells = fine_cells(scene);
   const double overlap = scene.coupling.overlap_cells * p.cell_size;
   if (scene.zone.extent == DiscreteZone::Extent::box) {
     p.inner = zone_shape<dim>(scene).eroded(overlap).boxes;

@@ -1,6 +1,7 @@
 // The stable step of the coupled body against that of the plain discrete model.
 #include "src/verification/box_zones.h"
 #include "src/verification/cases.h"
+#include "src/verification/grading.h"
 #include "src/verification/linear_motion.h"
 #include "src/verification/unit_bodies.h"
 
@@ -91,6 +92,36 @@ std::vector<Result> random_packings()
   report("critical_step_random/equal_3d", three, results);
   return results;
 }
+std::vector<Result> graded_meshes()
+{
+  std::vector<Result> results;
+  for (const bool grows : {false, true}) {
+    Measured two, three;
+    const Grading grading = grows ? growing_cells : hanging_cells;
+    for (const double h : {2.6, 4.1})
+      for (const int fine_cells : {1, 5}) {
+        Scene band = unit_scene(2, {25, 124, 0}, 0.3);
+        add_far_field(band, {0, 48, 0}, h);
+        grading.apply(band);
+        band.far_field->fine_cells = fine_cells;
+        band.coupling.overlap_cells = 4;
+        band.coupling.transition_cells = 3;
+        measure<2>(band, two);
+      }
+    Scene band = unit_scene(3, {10.6, 10.1, 64}, 0.3);
+    add_far_field(band, {0, 0, 30}, 2.6);
+    grading.apply(band);
+    band.coupling.overlap_cells = 4;
+    band.coupling.transition_cells = 2;
+    measure<3>(band, three);
+    const std::string name =
+        grows ? "critical_step_graded/growing" : "critical_step_graded/hanging";
+    report(name + "_2d", two, results);
+    report(name + "_3d", three, results);
+  }
+  return results;
+}
+
 std::vector<Result> zones_of_boxes()
 {
   std::vector<Result> results;
@@ -110,6 +141,8 @@ std::vector<Case> critical_step_cases()
   return {{"critical_step", "largest frequency of the step operator, coupled and plain discrete",
            false, critical_step},
           {"critical_step_random", "the same of random packings", true, random_packings},
+          {"critical_step_graded", "the same where cells change their size in the overlap", true,
+           graded_meshes},
           {"critical_step_boxes", "the same of zones of several boxes", true, zones_of_boxes}};
 }
 } // namespace ligament::program

@@ -1,6 +1,7 @@
 // Energy of coupled bodies that move as noise: kept when undamped, falling with dampers.
 #include "src/verification/box_zones.h"
 #include "src/verification/cases.h"
+#include "src/verification/grading.h"
 #include "src/verification/noise_run.h"
 #include "src/verification/unit_bodies.h"
 
@@ -23,6 +24,20 @@ Scene band_3d()
   Scene scene = unit_scene(3, {6.3, 6.7, 66}, 0.3);
   add_far_field(scene, {0, 0, 23}, 3.1);
   scene.coupling.transition_cells = 4;
+  return scene;
+}
+
+/// Cells change their size in the overlap.
+template <int dim>
+Scene graded(const Grading &grading)
+{
+  Scene scene = dim == 2 ? band_2d(1) : band_3d();
+  if (dim == 2)
+    scene.specimen.size = {28, 128, 0}, scene.zone.lower[1] = -22, scene.zone.upper[1] = 22;
+  else
+    scene.specimen.size = {11.3, 10.9, 72}, scene.zone.lower[2] = -18, scene.zone.upper[2] = 18;
+  scene.coupling.overlap_cells = 4;
+  grading.apply(scene);
   return scene;
 }
 
@@ -118,6 +133,18 @@ std::vector<Case> drift_cases()
        [] { return undamped<2>("drift_l_shape", l_shape_2d(0.3), 1e-8, 2000, false); }},
       {"drift_two_zones", text + "two zones, strain 1e-8, 2e3 steps", true,
        [] { return undamped<2>("drift_two_zones", two_zones_2d(0.3), 1e-8, 2000, false); }},
+      {"drift_graded", text + "cells double in the overlap, strain 1e-8, 5e3 steps", false,
+       [] { return undamped<2>("drift_graded", graded<2>(hanging_cells), 1e-8, 5000, false); }},
+      {"drift_graded_3d", text + "FCC, cells double in the overlap, strain 1e-8, 2e3 steps", true,
+       [] { return undamped<3>("drift_graded_3d", graded<3>(hanging_cells), 1e-8, 2000, false); }},
+      {"drift_long_graded", text + "cells double in the overlap, strain 1e-6, 1e5 steps", true,
+       [] {
+         return undamped<2>("drift_long_graded", graded<2>(hanging_cells), 1e-6, 100000, false);
+       }},
+      {"drift_long_growing", text + "growing cells, strain 1e-6, 1e5 steps", true,
+       [] {
+         return undamped<2>("drift_long_growing", graded<2>(growing_cells), 1e-6, 100000, false);
+       }},
       {"drift_ratio", text + "step ratio 4, strain 1e-8, 1e4 steps", true,
        [] { return undamped_ratio("drift_ratio", 4, 1e-8, 10000); }},
       {"drift_long", text + "strain 1e-6, 1e5 steps", true,

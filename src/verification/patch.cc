@@ -1,6 +1,7 @@
 // Uniform strain through the overlap: residual of the set-up, and a static solve of the whole body.
 #include "src/verification/box_zones.h"
 #include "src/verification/cases.h"
+#include "src/verification/grading.h"
 #include "src/verification/linear_motion.h"
 #include "src/verification/unit_bodies.h"
 
@@ -54,14 +55,19 @@ std::vector<Result> report(const std::string &name, const Deviation &worst)
           {name + "/strain", worst.strain, 1e-12, 1e-14}};
 }
 
-/// The arrangement of the particles: a lattice turned by an angle (2D), or a random packing.
+/// The arrangement of the particles: a lattice turned by an angle (2D), or a random packing; and of
+/// the cells.
 struct Arrangement
 {
   double angle = 0;
   double random_ratio = 0; // size ratio of a random packing; 0: the lattice
+  Grading grading = {};
 
   void apply(Scene &scene) const
   {
+    grading.apply(scene);
+    if (grading.levels > 0)
+      scene.coupling.overlap_cells = 4;
     scene.zone.orientation[0] = angle;
     if (random_ratio > 0) {
       scene.zone.packing = "random";
@@ -78,8 +84,8 @@ std::vector<Result> band_2d(const std::string &name, double cell_size, const Arr
     for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
       Scene scene = unit_scene(2, {25, 94, 0}, nu);
       scene.plane = plane;
-      packing.apply(scene);
       add_far_field(scene, {0, 34, 0}, cell_size);
+      packing.apply(scene);
       scene.coupling.transition_cells = 2;
       load<2>(scene, {2, 3}, {0, 1, 0}, worst);
     }
@@ -94,8 +100,8 @@ std::vector<Result> ring_2d(const std::string &name, double cell_size, const Arr
     for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
       Scene scene = unit_scene(2, {79, 81, 0}, nu);
       scene.plane = plane;
-      packing.apply(scene);
       add_far_field(scene, {35, 33, 0}, cell_size);
+      packing.apply(scene);
       scene.coupling.transition_cells = 2;
       load<2>(scene, {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
     }
@@ -128,9 +134,9 @@ std::vector<Result> band_3d(const std::string &name, double cell_size, const Arr
 {
   Deviation worst;
   for (const double nu : {0., 0.3}) {
-    Scene scene = unit_scene(3, {9.3, 8.7, 56}, nu);
-    packing.apply(scene);
+    Scene scene = unit_scene(3, {9.3, 8.7, packing.grading.levels > 0 ? 72. : 56.}, nu);
     add_far_field(scene, {0, 0, 25}, cell_size);
+    packing.apply(scene);
     scene.coupling.transition_cells = 2;
     load<3>(scene, {4, 5}, {0, 0, 1, 0, 0, 0}, worst);
   }
@@ -141,9 +147,10 @@ std::vector<Result> ring_3d(const std::string &name, double cell_size, const Arr
 {
   Deviation worst;
   for (const double nu : {0., 0.3}) {
-    Scene scene = unit_scene(3, {45, 44, 46}, nu);
+    const double more = packing.grading.levels > 0 ? 6 : 0; // for a fourth cell in the overlap
+    Scene scene = unit_scene(3, {45 + more, 44 + more, 46 + more}, nu);
+    add_far_field(scene, {23 + more, 22 + more, 24 + more}, cell_size);
     packing.apply(scene);
-    add_far_field(scene, {23, 22, 24}, cell_size);
     scene.coupling.transition_cells = 1;
     load<3>(scene, {0, 1, 2, 3, 4, 5}, {0.8, -0.5, 0.6, 0.3, -0.2, 0.4}, worst);
   }
@@ -155,6 +162,7 @@ std::vector<Case> patch_cases()
 {
   constexpr double turned = 15 * M_PI / 180;
   const Arrangement equal{0, 1}, unequal{0, 3};
+  const Arrangement hanging{0, 0, hanging_cells}, growing{0, 0, growing_cells};
   const std::string band = "overlap that ends at free edges", ring = "closed overlap with corners";
   return {{"patch_band_2d", band + ", hexagonal, h/d 4.1", false,
            [] { return band_2d("patch_band_2d", 4.1, {}); }},
@@ -170,6 +178,14 @@ std::vector<Case> patch_cases()
            [=] { return band_2d("patch_band_2d_ratio_3", 4.1, unequal); }},
           {"patch_ring_2d_random", ring + ", random, h/d 3.07", false,
            [=] { return ring_2d("patch_ring_2d_random", 3.07, equal); }},
+          {"patch_band_2d_hanging", band + " and doubles its cells, hexagonal, h/d 3.07", false,
+           [=] { return band_2d("patch_band_2d_hanging", 3.07, hanging); }},
+          {"patch_band_2d_growing", band + ", growing cells, hexagonal, h/d 3.07", false,
+           [=] { return band_2d("patch_band_2d_growing", 3.07, growing); }},
+          {"patch_ring_2d_hanging", ring + " that doubles its cells, hexagonal, h/d 3.07", false,
+           [=] { return ring_2d("patch_ring_2d_hanging", 3.07, hanging); }},
+          {"patch_ring_2d_growing", ring + ", growing cells, hexagonal, h/d 3.07", false,
+           [=] { return ring_2d("patch_ring_2d_growing", 3.07, growing); }},
           {"patch_l_shape_2d", "zone of two boxes with a re-entrant corner, hexagonal", false,
            [] { return boxes_2d("patch_l_shape_2d", l_shape_2d); }},
           {"patch_two_zones_2d", "two zones whose transitions meet, hexagonal", false,
@@ -186,6 +202,12 @@ std::vector<Case> patch_cases()
            }},
           {"patch_band_3d", band + ", FCC, h/d 3.1", false,
            [] { return band_3d("patch_band_3d", 3.1, {}); }},
+          {"patch_band_3d_hanging", band + " and doubles its cells, FCC, h/d 2.6", true,
+           [=] { return band_3d("patch_band_3d_hanging", 2.6, hanging); }},
+          {"patch_ring_3d_hanging", ring + " that doubles its cells, FCC, h/d 2.6", true,
+           [=] { return ring_3d("patch_ring_3d_hanging", 2.6, hanging); }},
+          {"patch_band_3d_growing", band + ", growing cells, FCC, h/d 2.6", true,
+           [=] { return band_3d("patch_band_3d_growing", 2.6, growing); }},
           {"patch_band_3d_random", band + ", random, h/d 3.1", false,
            [=] { return band_3d("patch_band_3d_random", 3.1, equal); }},
           {"patch_ring_3d_random", ring + ", random, h/d 3.07", true,

@@ -34,8 +34,11 @@ WaveFigures measure_wave(const WaveParameters &p)
   strip_parameters.material.poissons_ratio = 0.3;
   strip_parameters.overlap_cells = p.overlap_cells;
   strip_parameters.fine_layers = p.fine_layers;
-  if (p.fine_layers > 0)
-    strip_parameters.cells_across = 4;
+  strip_parameters.transition_cells = p.transition_cells;
+  strip_parameters.growth = p.growth;
+  // Three cells of twice the size across where the patch fit needs them.
+  if (p.fine_layers > 0 && p.growth == 1)
+    strip_parameters.cells_across = p.fine_layers < p.overlap_cells ? 6 : 4;
   strip_parameters.mesh_shift = p.mesh_shift;
   strip_parameters.split.fine_damper = p.fine_damper;
   strip_parameters.split.gap_filter = p.gap_filter;
@@ -51,8 +54,9 @@ WaveFigures measure_wave(const WaveParameters &p)
   // Until the packet has passed overlap and transition and what comes back has left them; it must
   // not meet the zone's other end: there it would interfere with itself, and its kinetic energy
   // would no longer be half of all.
-  const int cells =
-      std::max(p.fine_layers, p.overlap_cells + strip_parameters.transition_cells + 2);
+  int cells = std::max(p.fine_layers, p.overlap_cells + p.transition_cells + 2);
+  if (p.fine_layers > 0 && p.fine_layers < p.overlap_cells + p.transition_cells)
+    cells += p.transition_cells; // which are larger
   const double way = 2 * reach + 3 * cells * h;
   strip_parameters.zone_length = way;
   strip_parameters.far_length = reach + (20 + 3 * p.fine_layers) * h;
@@ -150,6 +154,46 @@ std::vector<Result> measure_graded()
   return results;
 }
 
+/// Reflected energy of waves of 8 and 16 cells where cells become twice as large nearer to the zone
+/// than behind the transition.
+std::vector<Result> measure_size_steps()
+{
+  struct Place
+  {
+    const char *name;
+    int overlap_cells, fine_layers;
+    double growth;
+    double must_8h, must_16h;
+  };
+  std::vector<Result> results;
+  for (const Place &place : {Place{"step_in_overlap", 4, 2, 1, 3.8e-2, 1.6e-4},
+                             Place{"step_at_its_end", 3, 3, 1, 1.7e-3, 1.6e-4},
+                             Place{"step_in_transition", 3, 4, 1, 3.8e-2, 1e-3},
+                             Place{"growing_in_overlap", 4, 1, 1.2, 1.7e-3, 1.6e-4},
+                             Place{"growing_in_transition", 3, 4, 1.2, 1.7e-3, 1.6e-4},
+                             Place{"growing_behind", 3, 11, 1.2, 3.8e-2, 1e-3}})
+    for (const double wave_length : {8., 16.})
+      for (const auto kind : {WaveKind::p, WaveKind::s}) {
+        WaveParameters p;
+        p.kind = kind;
+        p.wave_length = wave_length;
+        p.overlap_cells = place.overlap_cells;
+        p.fine_layers = place.fine_layers;
+        p.growth = place.growth;
+        const WaveFigures figures = measure_wave<2>(p);
+        const auto name = [&](const char *what) {
+          return fmt::format("waves_2d_size_steps/{}/{}_{}_{:g}h", place.name, what,
+                             kind == WaveKind::p ? "P" : "S", wave_length);
+        };
+        results.push_back({name("reflected"),
+                           figures.reflected,
+                           wave_length == 8 ? place.must_8h : place.must_16h,
+                           {}});
+        results.push_back({name("lost"), figures.lost, 7e-3, {}});
+      }
+  return results;
+}
+
 /// Phase velocity of P waves across the layers of the hexagonal packing against the table of
 /// theory.md (nu 0.3, plane strain; 10, 20 and 40 particles per wave length).
 std::vector<Result> measure_dispersion()
@@ -209,6 +253,8 @@ std::vector<Case> wave_cases()
                    {{16, 5e-6, 0}, {6, 6e-4, 0}}),
       {"waves_2d_graded", "the same where cells double beyond the transition", true,
        measure_graded},
+      {"waves_2d_size_steps", "the same where cells grow in the overlap or its transition", true,
+       measure_size_steps},
       {"waves_2d_shifts", "the same, the worst of four positions of the mesh in the packing", true,
        [] {
          return measure_shifts({{16, 5e-6, 0}, {8, 1e-4, 7e-3}, {6, 6e-4, 0}, {4, 6e-3, 0}});

@@ -11,8 +11,9 @@ struct WaveParameters
   WaveKind kind = WaveKind::p;
   double wave_length; // cells
   double fine_damper = 4, gap_filter = 0;
-  int overlap_cells = 3;
-  int fine_layers = 0;     // of cells before they double, see StripParameters
+  int overlap_cells = 3, transition_cells = 6;
+  int fine_layers = 0; // of cells before they double or grow, see StripParameters
+  double growth = 1;
   double mesh_shift = 0.5; // layers of the packing, see StripParameters
   coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
   // Energy-weighted schemes only:

@@ -5,6 +5,7 @@
 #include "particles/lattice.h"
 
 #include <cmath>
+#include <vector>
 
 namespace ligament::program
 {
@@ -70,10 +71,16 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
 }
 
 template <int dim>
-fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower)
+fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower, int fine,
+                                  double growth)
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
   fem::Mesh<dim> mesh;
+  std::vector<double> border = {lower}, height;
+  for (int i = 0; i < layers; ++i) {
+    height.push_back(i == 0 || i < fine ? size : std::min(height.back() * growth, 2 * size));
+    border.push_back(border.back() + height.back());
+  }
   const int columns = dim == 2 ? across : across * across;
   const auto index = [&](int i) { // of cell or node i: along each axis
     Eigen::Matrix<int, dim, 1> k;
@@ -84,7 +91,7 @@ fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lo
   };
   const auto place = [&](int i) {
     Vector<dim> x = size * index(i).template cast<double>();
-    x[dim - 1] += lower;
+    x[dim - 1] = border[index(i)[dim - 1]];
     return x;
   };
   for (int i = 0; i < columns * (layers + 1); ++i)
@@ -101,6 +108,7 @@ fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lo
     mesh.cells.push_back(nodes);
     mesh.cell_lower.push_back(place(i));
     mesh.cell_size.push_back(Vector<dim>::Constant(size));
+    mesh.cell_size.back()[dim - 1] = height[k[dim - 1]];
     mesh.cell_level.push_back(0);
     if (k[dim - 1] == layers - 1)
       mesh.boundary_faces.push_back({i, 2 * dim - 1, 2 * dim - 1});
@@ -141,10 +149,11 @@ template <int dim>
 fem::Mesh<dim> strip_mesh(const StripParameters &p, int layers, double lower)
 {
   if constexpr (dim == 2)
-    if (p.fine_layers > 0)
+    if (p.fine_layers > 0 && p.growth == 1)
       return make_graded_mesh(p.cells_across, p.fine_layers, (layers - p.fine_layers) / 2,
                               p.cell_size, lower);
-  return make_periodic_mesh<dim>(p.cells_across, layers, p.cell_size, lower);
+  return make_periodic_mesh<dim>(p.cells_across, layers, p.cell_size, lower, p.fine_layers,
+                                 p.growth);
 }
 } // namespace
 

@@ -18,9 +18,11 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
                                               bool closed);
 
 /// Cubes of edge `size` from `lower` on along the last axis, `across` of them and periodic
-/// sideways.
+/// sideways; behind the layer `fine` each is higher by the factor `growth` than the one before, up
+/// to twice the size.
 template <int dim>
-fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower);
+fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower, int fine = 0,
+                                  double growth = 1);
 
 /// The same in 2D with cells of twice the size from the layer `fine` on, `coarse` layers of them;
 /// `across` is even.
@@ -29,7 +31,9 @@ fem::Mesh<2> make_graded_mesh(int across, int fine, int coarse, double size, dou
 struct StripParameters
 {
   dem::DemMaterial material;
-  int fine_layers = 0;  // of cells, before they double (2D); 0: they never do
+  int fine_layers = 0; // of cells, before they double (2D) or grow; 0: they never do
+  double growth =
+      1; // of their heights, each against the one before, up to twice the size; 1: they double
   int cells_across = 3; // the patch fit's blocks of two cells need three
   int cell_size = 4;    // r: whole, so that the period fits the packing sideways
   int overlap_cells = 3;

@@ -42,6 +42,8 @@ struct CoupledBodiesParameters
   int overlap_cells = 3;
   int transition_cells = 6;
   int levels = 0;
+  int fine_cells = 0; // 0: so many that hanging nodes keep off the transition
+  double growth = 1;
   coupling::FineScaleSplitParameters split;
   std::optional<coupling::BridgingDomainParameters> bridging; // in place of the split
   coupling::WeightShape weight = coupling::WeightShape::cubic;
@@ -67,7 +69,8 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   mesh.upper = lattice.upper;
   mesh.cell_size = p.cell_size;
   mesh.levels = p.levels;
-  mesh.fine_cells = p.overlap_cells + p.transition_cells + 2;
+  mesh.fine_cells = p.fine_cells > 0 ? p.fine_cells : p.overlap_cells + p.transition_cells + 2;
+  mesh.growth = p.growth;
   coupling::OverlapParameters<dim> overlap;
   overlap.length = p.overlap_cells * p.cell_size;
   overlap.spacing = 1;

@@ -114,9 +114,14 @@ double power_error(CoupledBodies<dim> &body)
 }
 
 template <int dim>
-void expect_gradient(Regime regime, double stiffening = 0)
+void expect_gradient(Regime regime, double stiffening = 0, bool is_graded = false)
 {
   auto p = small_body<dim>(0.3);
+  if (is_graded) {
+    p.cell_size = 2.6;
+    p.overlap_cells = 4;
+    p.levels = p.fine_cells = 1;
+  }
   if (stiffening > 0)
     p.replace_law = [&](auto law) {
       return std::make_unique<StiffeningLaw<dim>>(std::move(law), stiffening);
@@ -136,6 +141,12 @@ TEST(Regimes, ForcesAreTheGradientOfTheEnergy)
 {
   for (const Regime regime : {Regime::corotated, Regime::nonlinear})
     expect_gradient<2>(regime);
+}
+
+TEST(Regimes, ForcesAreTheGradientOfTheEnergyWithHangingNodes)
+{
+  for (const Regime regime : {Regime::corotated, Regime::nonlinear})
+    expect_gradient<2>(regime, 0, true);
 }
 
 TEST(Regimes, ForcesAreTheGradientOfTheEnergyIn3D)

@@ -1,10 +1,12 @@
 // The finite solver: forces against formulas and a naive sum, loads, released cells.
+#include "core/check.h"
 #include "fem/fem_solver.h"
 #include "tests/unit/fem/meshes.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ligament::fem
@@ -204,6 +206,9 @@ void check_released_cells()
   for (const int c : released)
     for (const int node : mesh.cells[c])
       touched[node] = 1;
+  for (const auto &h : mesh.hanging) // masters move with the hanging corners of released cells
+    for (const auto &[master, weight] : h.masters)
+      touched[master] |= touched[h.node];
   for (int i = 0; i < mesh.n_nodes(); ++i) {
     add<dim>(sum, i, get(rest.force, i));
     const double m = whole.lumped_mass()[i];
@@ -261,8 +266,8 @@ void check_uniaxial_stress()
   double area = body<dim>().thickness;
   for (int k = 1; k < dim; ++k)
     area *= p.upper[k] - p.lower[k];
-  area *=
-      1 - (p.inner[0].upper[dim - 1] - p.inner[0].lower[dim - 1]) / (p.upper[dim - 1] - p.lower[dim - 1]);
+  area *= 1 - (p.inner[0].upper[dim - 1] - p.inner[0].lower[dim - 1]) /
+                  (p.upper[dim - 1] - p.lower[dim - 1]);
   EXPECT_NEAR(solver.reaction(0)[0], -sigma / 2 * area, 1e-12 * sigma * area);
   EXPECT_NEAR(solver.reaction(1)[0], sigma / 2 * area, 1e-12 * sigma * area);
   const double scale = (lambda + 2 * shear) * strain[0] * std::pow(p.cell_size, dim - 1);
@@ -337,6 +342,22 @@ TEST(FemSolver, released_cells_and_the_rest_add_up)
 {
   check_released_cells<2>();
   check_released_cells<3>();
+}
+TEST(FemSolver, cells_that_carry_a_traction_cannot_be_released)
+{
+  using Kind = core::BoundaryLoad<2>::Kind;
+  const Mesh<2> mesh = make_mesh(band<2>());
+  const auto release = [&](const CellFace<2> &face, int loaded) {
+    FemSolver<2> solver(mesh, body<2>(), {load<2>(loaded, Kind::traction, 0, 1e6, 1)});
+    solver.release_cells({face.cell});
+  };
+  for (const int boundary : {2, 3}) {
+    const auto face = std::find_if(mesh.boundary_faces.begin(), mesh.boundary_faces.end(),
+                                   [&](const auto &f) { return f.boundary == boundary; });
+    ASSERT_NE(face, mesh.boundary_faces.end());
+    EXPECT_THROW(release(*face, boundary), core::InputError);
+    EXPECT_NO_THROW(release(*face, 5 - boundary)); // the opposite side
+  }
 }
 TEST(FemSolver, uniaxial_stress)
 {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace ligament::fem
@@ -156,6 +158,81 @@ TEST(Mesh, is_graded_in_3d)
   check_grading(ring<3>());
 }
 
+namespace
+{
+/// Away from the inner box: fine cells of size h, then each larger than the one before by at most
+/// the factor, never beyond the largest. Over its width all cells have the size that fits.
+template <int dim>
+void check_growth(MeshParameters<dim> p)
+{
+  p.growth = 1.25;
+  p.levels = 2;
+  const Mesh<dim> mesh = make_mesh(p);
+  EXPECT_TRUE(mesh.hanging.empty());
+  const double h = p.cell_size, small = 1e-9 * h;
+  std::array<std::map<double, double>, dim> size_at; // by the lower end
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    for (int k = 0; k < dim; ++k)
+      size_at[k].emplace(std::round(mesh.cell_lower[c][k] / small), mesh.cell_size[c][k]);
+  for (int k = 0; k < dim; ++k)
+    for (const bool upper : {false, true}) {
+      const double end = upper ? p.inner[0].upper[k] : p.inner[0].lower[k];
+      if (upper ? end >= p.upper[k] : end <= p.lower[k])
+        continue;
+      std::vector<double> sizes; // outwards
+      for (const auto &[low, size] : size_at[k])
+        if (upper ? low * small > end - h / 2 : low * small < end - h / 2)
+          sizes.push_back(size);
+      if (!upper)
+        std::reverse(sizes.begin(), sizes.end());
+      ASSERT_GT(int(sizes.size()), p.fine_cells);
+      for (int i = 0; i < int(sizes.size()); ++i) {
+        if (i < p.fine_cells)
+          EXPECT_NEAR(sizes[i], h, small);
+        else
+          EXPECT_GT(sizes[i], sizes[i - 1] * (1 - 1e-12));
+        if (i > 0)
+          EXPECT_LT(sizes[i], sizes[i - 1] * (p.growth + 1e-12));
+        EXPECT_LE(sizes[i], 4 * h + small);
+      }
+      EXPECT_GT(sizes.back(), 1.2 * h);
+    }
+}
+} // namespace
+
+TEST(Mesh, grows_away_from_the_inner_box)
+{
+  for (const auto &p : {band<2>(), ring<2>(), incommensurate(ring<2>())})
+    check_growth(p);
+  for (const auto &p : {band<3>(), ring<3>()})
+    check_growth(p);
+  auto p = incommensurate(ring<2>());
+  p.growth = 1.2;
+  check_volume_and_surface(p);
+}
+
+// Between two inner boxes cells grow from both.
+TEST(Mesh, grows_between_inner_boxes)
+{
+  auto p = band<2>();
+  p.growth = 1.2;
+  p.fine_cells = 2;
+  p.upper[1] = 6;
+  p.inner.push_back(p.inner[0]);
+  p.inner[1].lower[1] = p.upper[1] - 1;
+  p.inner[1].upper[1] = p.upper[1];
+  const Mesh<2> mesh = make_mesh(p);
+  std::map<double, double> sizes;
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (mesh.cell_lower[c][1] > p.inner[0].upper[1] - 0.01)
+      sizes.emplace(mesh.cell_lower[c][1], mesh.cell_size[c][1]);
+  auto back = sizes.rbegin();
+  for (const auto &[low, size] : sizes)
+    EXPECT_NEAR(size, (back++)->second, 1e-12);
+  EXPECT_NEAR(sizes.begin()->second, p.cell_size, 1e-12);
+  EXPECT_GT(std::next(sizes.begin(), sizes.size() / 2)->second, 2 * p.cell_size);
+}
+
 TEST(Mesh, knows_all_hanging_nodes)
 {
   check_hanging_nodes_are_complete(ring<2>());
@@ -206,6 +283,9 @@ TEST(Mesh, refuses_what_cannot_be_meshed)
   bad = ring<2>();
   bad.cells_per_level = 0;
   EXPECT_TRUE(contains(message(bad), "cells per level"));
+  bad = ring<2>();
+  bad.growth = 0.9;
+  EXPECT_TRUE(contains(message(bad), "cells grow by 0.9"));
   bad = box<2>({1, 1}, 1e-6);
   EXPECT_TRUE(contains(message(bad), "more than 1e8 cells"));
 }

@@ -177,6 +177,30 @@ TEST(ReadScene, RatioBeyondTheRecommendedIsAWarning)
   EXPECT_EQ(result.warnings[0].key, "/far_field/cell_size");
 }
 
+TEST(ReadScene, SizeStepsInAnOpenFarFieldAreAWarning)
+{
+  const std::string open = R"(/loads=[{"boundary": "top", "absorbing": true}])";
+  const auto warned = [&](std::vector<std::string> overrides) {
+    overrides.push_back(open);
+    const ReadResult result = read_scene(plate, overrides);
+    EXPECT_EQ(all(result), "");
+    return !result.warnings.empty() && result.warnings[0].key == "/far_field/levels";
+  };
+  EXPECT_TRUE(warned({}));
+  EXPECT_TRUE(warned({"/far_field/fine_cells=9"})); // overlap of 3, transition of 6
+  EXPECT_FALSE(warned({"/far_field/fine_cells=8"}));
+  EXPECT_FALSE(warned({"/far_field/growth=1.2"}));
+  EXPECT_FALSE(warned({"/far_field/levels=0"}));
+}
+
+TEST(ReadScene, KeysOfLargerCellsWithoutThemAreAWarning)
+{
+  const ReadResult result = read_scene(
+      plate, {"/far_field/levels=0", "/far_field/growth=1.2", "/far_field/fine_cells=2"});
+  EXPECT_EQ(all(result), "");
+  EXPECT_EQ(result.warnings.size(), 2u);
+}
+
 TEST(ReadScene, FileThatIsNotThere)
 {
   const ReadResult result = read_scene("no_such_scene.json");
