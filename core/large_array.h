@@ -20,6 +20,7 @@ public:
   LargeArray &operator=(LargeArray &&other) noexcept;
 
   double *data() { return data_; }
+  const double *data() const { return data_; }
 
 private:
   void *mapping_ = nullptr;

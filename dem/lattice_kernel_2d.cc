@@ -5,53 +5,13 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
 #include "dem/sine.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// Two components of a vector of particles.
-template <typename V>
-struct Pair
-{
-  V x, y;
-
-  friend HWY_INLINE Pair operator+(const Pair &a, const Pair &b)
-  {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y)};
-  }
-  friend HWY_INLINE Pair operator-(const Pair &a, const Pair &b)
-  {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y)};
-  }
-};
-
-/// s a + b
-template <typename V>
-HWY_INLINE Pair<V> mul_add(V s, const Pair<V> &a, const Pair<V> &b)
-{
-  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y)};
-}
-/// b - s a
-template <typename V>
-HWY_INLINE Pair<V> neg_mul_add(V s, const Pair<V> &a, const Pair<V> &b)
-{
-  return {hn::NegMulAdd(s, a.x, b.x), hn::NegMulAdd(s, a.y, b.y)};
-}
-/// c + a . b
-template <typename V>
-HWY_INLINE V add_dot(const Pair<V> &a, const Pair<V> &b, V c)
-{
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, c));
-}
-/// c + a x b
-template <typename V>
-HWY_INLINE V add_cross(const Pair<V> &a, const Pair<V> &b, V c)
-{
-  return hn::MulAdd(a.x, b.y, hn::NegMulAdd(a.y, b.x, c));
-}
-
 /// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
 /// With h = (R - I) n and v = q S/r, the force on a face is
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,

@@ -5,84 +5,12 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// Three components of a vector of particles.
-template <typename V>
-struct Triple
-{
-  V x, y, z;
-
-  friend HWY_INLINE Triple operator+(const Triple &a, const Triple &b)
-  {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-  }
-  friend HWY_INLINE Triple operator-(const Triple &a, const Triple &b)
-  {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-  }
-  friend HWY_INLINE Triple operator*(V s, const Triple &a)
-  {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-  }
-};
-
-/// s a + b
-template <typename V>
-HWY_INLINE Triple<V> mul_add(V s, const Triple<V> &a, const Triple<V> &b)
-{
-  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
-}
-/// b - s a
-template <typename V>
-HWY_INLINE Triple<V> neg_mul_add(V s, const Triple<V> &a, const Triple<V> &b)
-{
-  return {hn::NegMulAdd(s, a.x, b.x), hn::NegMulAdd(s, a.y, b.y), hn::NegMulAdd(s, a.z, b.z)};
-}
-/// c + a . b
-template <typename V>
-HWY_INLINE V add_dot(const Triple<V> &a, const Triple<V> &b, V c)
-{
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::MulAdd(a.z, b.z, c)));
-}
-/// c + a x b
-template <typename V>
-HWY_INLINE Triple<V> add_cross(const Triple<V> &a, const Triple<V> &b, const Triple<V> &c)
-{
-  return {hn::MulAdd(a.y, b.z, hn::NegMulAdd(a.z, b.y, c.x)),
-          hn::MulAdd(a.z, b.x, hn::NegMulAdd(a.x, b.z, c.y)),
-          hn::MulAdd(a.x, b.y, hn::NegMulAdd(a.y, b.x, c.z))};
-}
-
-/// Quaternion w + v.
-template <typename V>
-struct Quaternion
-{
-  V w;
-  Triple<V> v;
-};
-template <typename V>
-HWY_INLINE V dot(const Quaternion<V> &a, const Quaternion<V> &b)
-{
-  return add_dot(a.v, b.v, hn::Mul(a.w, b.w));
-}
-template <typename V>
-HWY_INLINE Quaternion<V> mul_add(V s, const Quaternion<V> &a, const Quaternion<V> &b)
-{
-  return {hn::MulAdd(s, a.w, b.w), mul_add(s, a.v, b.v)};
-}
-/// b + q n
-template <typename V>
-HWY_INLINE Quaternion<V> add_product(const Quaternion<V> &q, const Triple<V> &n,
-                                     const Quaternion<V> &b)
-{
-  return {hn::NegMulAdd(q.v.x, n.x, hn::NegMulAdd(q.v.y, n.y, hn::NegMulAdd(q.v.z, n.z, b.w))),
-          add_cross(q.v, n, mul_add(q.w, n, b.v))};
-}
-
 /// Directions as sums of three of them, whose turned normals are all that is kept of a rotation.
 template <int n_dir>
 struct Basis;

@@ -29,6 +29,7 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
     : packing_(std::move(packing)), material_(material), fracture_(fracture),
       bonds_(packing_, material), kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
                                           material.shear_modulus(), material.poissons_ratio != 0),
+      slices_(bonds_, material.shear_modulus(), false),
       surface_(packing_, material, std::move(loads)), contacts_(material),
       search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
       lambda_per_volume_(packing_.size())
@@ -37,7 +38,7 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
   for (const auto &wall : surface_.walls())
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
                            packing_.volume[wall.i];
-  find_irregular_particles();
+  lay_out_slices();
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
   for (const auto &face : packing_.faces)
@@ -46,16 +47,13 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
 }
 
 template <int dim>
-void ManyBodyForce<dim>::find_irregular_particles()
+void ManyBodyForce<dim>::lay_out_slices()
 {
-  irregular_particles_.clear();
-  bonds_.for_each_irregular([&](BondId, const Bond<dim> &b) {
-    irregular_particles_.push_back(b.i);
-    irregular_particles_.push_back(b.j);
-  });
-  std::sort(irregular_particles_.begin(), irregular_particles_.end());
-  irregular_particles_.erase(std::unique(irregular_particles_.begin(), irregular_particles_.end()),
-                             irregular_particles_.end());
+  slices_ = BondSlices<dim>(bonds_, material_.shear_modulus(), bonds_.n_directions() == 0);
+  records_ = {};
+  other_particles_ = slices_.particles();
+  const auto loaded = surface_.particles();
+  other_particles_.insert(other_particles_.end(), loaded.begin(), loaded.end());
 }
 
 template <int dim>
@@ -78,7 +76,7 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
                 "energy weights are set once, for every particle of an intact body");
   energy_weights_ = weights;
   bonds_.set_weights(weights);
-  find_irregular_particles();
+  lay_out_slices();
   for (int i = 0; i < packing_.size(); ++i)
     update_volumetric_stiffness(i);
 }
@@ -99,25 +97,13 @@ LatticeArrays<dim> ManyBodyForce<dim>::arrays(const Particles &p, Workspace &wor
 }
 
 template <int dim>
-void ManyBodyForce<dim>::find_turns(const Particles &p, bool all, Workspace &work) const
+void ManyBodyForce<dim>::find_turns(const Particles &p, Workspace &work) const
 {
   if constexpr (dim == 2) {
     work.cosine_minus_1.resize(packing_.size());
     work.sine.resize(packing_.size());
-    if (all) {
-      cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(),
-                              packing_.size());
-      return;
-    }
-    const int n = int(irregular_particles_.size());
-    std::vector<double> angle(n), c(n), s(n);
-    for (int k = 0; k < n; ++k)
-      angle[k] = p.rotation[0][irregular_particles_[k]];
-    cosine_minus_1_and_sine(angle.data(), c.data(), s.data(), n);
-    for (int k = 0; k < n; ++k) {
-      work.cosine_minus_1[irregular_particles_[k]] = c[k];
-      work.sine[irregular_particles_[k]] = s[k];
-    }
+    cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(),
+                            packing_.size());
   }
 }
 
@@ -167,22 +153,21 @@ void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLo
                                              Workspace &work) const
 {
   work.pressure.resize(packing_.size());
-  work.other_pressure.assign(packing_.size(), 0.);
+  work.other_pressure.resize(packing_.size(), 0.);
+  const LatticeArrays<dim> a = arrays(p, work);
+  slices_.load(a, records_);
   if (material_.poissons_ratio == 0)
     return;
-  bonds_.for_each_irregular([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m = motion(b, p, work);
-    const double s_r = b.area / b.distance;
-    work.other_pressure[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
-    work.other_pressure[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
-  });
+  for (const int i : other_particles_)
+    work.other_pressure[i] = 0;
+  slices_.add_pressures(a, work.other_pressure.data(), records_);
   surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) const
 {
-  find_turns(p, true, work);
+  find_turns(p, work);
   find_other_pressure(p, surface_, work);
   if (material_.poissons_ratio != 0)
     kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
@@ -192,32 +177,15 @@ template <int dim>
 void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface, double strength,
                                         Workspace &work) const
 {
-  find_turns(p, false, work);
   find_other_pressure(p, surface, work);
   LatticeArrays<dim> a = arrays(p, work);
   for (int c = 0; c < dim; ++c)
     a.force[c] = p.force[c].data();
   for (int c = 0; c < n_spins<dim>; ++c)
     a.torque[c] = p.torque[c].data();
-  work.exceeded.clear();
   kernel_.forces(a, bonds_.segments(), strength, rows_, work.exceeded_rows);
-  const std::vector<double> &pressure = work.pressure;
-  bonds_.for_each_irregular([&](BondId id, const Bond<dim> &b) {
-    const Turn<dim> turn_i = turn(p, work, b.i), turn_j = turn(p, work, b.j);
-    const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
-    const double s_r = b.area / b.distance;
-    const Vector<dim> f = bond_force(b, m, pressure);
-    const Spin<dim> bend = bending_torque(b, p);
-    add(p.force, b.i, f);
-    add(p.force, b.j, Vector<dim>(-f));
-    add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure[b.i] * m.du) + bend));
-    add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure[b.j] * m.du) - bend));
-    const double limit = strength * b.weight * b.area;
-    if (strength > 0 && f.squaredNorm() >= limit * limit &&
-        f.dot(present_normal(b, turn_i, turn_j)) >= limit)
-      work.exceeded.push_back(id);
-  });
-  surface.add_forces(p, pressure);
+  slices_.forces(a, strength, records_, work.exceeded_particles);
+  surface.add_forces(p, work.pressure);
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dem/bond_network.h"
+#include "dem/bond_slices.h"
 #include "dem/contact_search.h"
 #include "dem/contacts.h"
 #include "dem/fracture_law.h"
@@ -102,15 +103,15 @@ private:
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
     std::vector<double> other_pressure;       // the part that isn't from lattice bonds
-    std::vector<double> cosine_minus_1, sine; // 2D, of the particles that were asked for
+    std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
     std::vector<RowRange> exceeded_rows;
-    std::vector<BondId> exceeded; // irregular
+    std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
   };
 
   LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
   Turn<dim> turn(const Particles &particles, const Workspace &work, int i) const;
-  /// Prepares turn() of all particles, or of those with irregular bonds.
-  void find_turns(const Particles &particles, bool all, Workspace &work) const;
+  /// Prepares turn().
+  void find_turns(const Particles &particles, Workspace &work) const;
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles) const;
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles,
                          const Workspace &work) const;
@@ -121,7 +122,7 @@ private:
   double tension(const Bond<dim> &bond, const Particles &particles,
                  const std::vector<double> &pressure) const;
 
-  /// The pressures from irregular bonds and loaded faces.
+  /// The pressures from irregular bonds and loaded faces, and the slices' records.
   void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
                            Workspace &work) const;
   /// Turns and pressures of all particles.
@@ -137,7 +138,7 @@ private:
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
   /// Elastic energy of one bond and of the volumes of its two particles, in J.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
-  void find_irregular_particles();
+  void lay_out_slices();
   void update_volumetric_stiffness(int i);
   double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
@@ -146,16 +147,18 @@ private:
   FractureLaw fracture_;
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
+  BondSlices<dim> slices_; // the irregular bonds
   SurfaceLoads<dim> surface_;
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   bool searching_ = false;
-  std::vector<int> irregular_particles_;  // those with bonds of the table
+  std::vector<int> other_particles_;      // those whose pressure has parts beside the lattice's
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
   std::vector<double> energy_weights_;    // of the particles; empty: all 1
   Workspace work_;
   mutable RowWindow rows_; // scratch: nothing in it outlives a call
+  mutable core::LargeArray records_;
   std::vector<BrokenBond<dim>> broken_;
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;

@@ -21,13 +21,18 @@ double ManyBodyForce<dim>::strength() const
 template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
 {
-  std::vector<BondId> found = work_.exceeded;
+  std::vector<BondId> found;
+  const auto test = [&](int i, bool lattice) {
+    bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
+      if (lattice == (id.direction >= 0) && b.i == i && tension(b, p, work_.pressure) >= strength())
+        found.push_back(id);
+    });
+  };
   for (const RowRange &range : work_.exceeded_rows)
     for (int i = range.begin; i < range.end; ++i)
-      bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-        if (id.direction >= 0 && b.i == i && tension(b, p, work_.pressure) >= strength())
-          found.push_back(id);
-      });
+      test(i, true);
+  for (const int i : work_.exceeded_particles)
+    test(i, false);
   const auto ids = [&](const BondId &id) {
     const Bond<dim> b = bonds_.bond(id);
     const auto i = p.global_id[b.i], j = p.global_id[b.j];
@@ -65,6 +70,8 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
                                                           std::pair(b.j, -s_r * m.a_j.dot(m.du))};
     bonds_.remove(id);
+    if (id.direction < 0)
+      slices_.remove(id.index);
     for (const auto &[i, share] : shares)
       if (lambda_per_volume_[i] != 0) {
         const double rest = pressure[i] / lambda_per_volume_[i] - share;

@@ -13,6 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
+namespace hn = hwy::HWY_NAMESPACE;
+
 template <typename D>
 HWY_INLINE hn::Vec<D> polynomial(D d, hn::Vec<D> z, std::initializer_list<double> coefficients)
 {

@@ -35,6 +35,17 @@ SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const De
 }
 
 template <int dim>
+std::vector<int> SurfaceLoads<dim>::particles() const
+{
+  std::vector<int> found;
+  for (const auto &wall : walls_)
+    found.push_back(wall.i);
+  for (const auto &face : tractions_)
+    found.push_back(face.i);
+  return found;
+}
+
+template <int dim>
 void SurfaceLoads<dim>::set_time(double t)
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;

@@ -68,6 +68,8 @@ public:
   void reset_work() { work_ = 0; }
 
   const std::vector<WallFace<dim>> &walls() const { return walls_; }
+  /// Particles of all loaded faces, some perhaps twice.
+  std::vector<int> particles() const;
   const std::vector<core::BoundaryLoad<dim>> &loads() const { return loads_; }
   bool empty() const { return walls_.empty() && tractions_.empty(); }
 

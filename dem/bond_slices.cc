@@ -1,0 +1,156 @@
+#include "dem/bond_slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ligament::dem
+{
+namespace
+{
+/// Particles are sorted by their number of bonds within groups of so many, so that slices have few
+/// empty places and neighbours still lie near each other in memory.
+constexpr int sorted_group = 32 * slice_width;
+/// An array of so many numbers is worth large pages.
+constexpr int several_pages = 4096;
+/// The square of a strain that no bond reaches.
+constexpr double never = 1e200;
+
+/// Stiffness of a bond as the table wants it.
+std::array<double, n_stiffness<2>> stiffness_of(const Bond<2> &b, double shear)
+{
+  return {shear, b.bending};
+}
+std::array<double, n_stiffness<3>> stiffness_of(const Bond<3> &b, double shear)
+{
+  return {shear, b.bending, (b.twist - b.bending) / (b.distance * b.distance)};
+}
+} // namespace
+
+template <int dim>
+BondSlices<dim>::BondSlices(const BondNetwork<dim> &bonds, double shear_modulus, bool all_particles)
+    : shear_modulus_(shear_modulus), all_particles_(all_particles)
+{
+  const int n = bonds.n_particles();
+  std::vector<int> n_bonds_of(n, 0);
+  long n_bonds = 0;
+  bonds.for_each_irregular([&](BondId id, const Bond<dim> &b) {
+    ++n_bonds_of[b.i], ++n_bonds_of[b.j];
+    n_bonds = id.index + 1;
+  });
+  std::vector<int> record_of(n, -1);
+  for (int i = 0; i < n; ++i)
+    if (all_particles || n_bonds_of[i] > 0) {
+      record_of[i] = table_.n_records();
+      table_.particle.push_back(i);
+    }
+  lay_out(n_bonds_of);
+
+  std::vector<long> next(table_.n_records());
+  for (std::size_t l = 0; l < table_.lane.size() && long(l) < table_.n_records(); ++l)
+    next[table_.lane[l] / record_size] =
+        long(table_.first_slot[l / slice_width]) * slice_width + long(l % slice_width);
+  places_.resize(n_bonds);
+  bonds.for_each_irregular([&](BondId id, const Bond<dim> &b) {
+    for (const bool is_i : {true, false}) {
+      const int own = record_of[is_i ? b.i : b.j], other = record_of[is_i ? b.j : b.i];
+      places_[id.index][is_i ? 0 : 1] = next[own];
+      set_bond(next[own], b, is_i, other * record_size);
+      next[own] += slice_width;
+    }
+  });
+}
+
+/// Places of all particles; empty slots refer to the particle itself and have no stiffness.
+template <int dim>
+void BondSlices<dim>::lay_out(const std::vector<int> &n_bonds_of)
+{
+  const int n = table_.n_records();
+  const auto count = [&](int record) { return n_bonds_of[table_.particle[record]]; };
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  for (int first = 0; first < n; first += sorted_group)
+    std::stable_sort(order.begin() + first, order.begin() + std::min(first + sorted_group, n),
+                     [&](int a, int b) { return count(a) > count(b); });
+  table_.first_slot = {0};
+  for (int first = 0; first < n; first += slice_width) {
+    int longest = 0;
+    for (int l = first; l < first + slice_width; ++l) {
+      table_.lane.push_back(record_size * (l < n ? order[l] : 0));
+      longest = std::max(longest, l < n ? count(order[l]) : 0);
+    }
+    table_.first_slot.push_back(table_.first_slot.back() + longest);
+    for (int slot = 0; slot < longest; ++slot)
+      table_.neighbour.insert(table_.neighbour.end(), table_.lane.end() - slice_width,
+                              table_.lane.end());
+  }
+  const long places = long(table_.neighbour.size());
+  table_.geometry = core::LargeArray(places * n_geometry<dim>, places > several_pages);
+  table_.stiffness = core::LargeArray(places * n_stiffness<dim>, places > several_pages);
+}
+
+template <int dim>
+void BondSlices<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int neighbour)
+{
+  const Vector<dim> &own = is_i ? b.lever_i : b.lever_j, &other = is_i ? b.lever_j : b.lever_i;
+  const double s_r = b.area / b.distance;
+  const auto stiffness = stiffness_of(b, b.weight * 2 * shear_modulus_ * s_r);
+  const long slot = place / slice_width, lane = place % slice_width;
+  double *const g = table_.geometry.data() + slot * n_geometry<dim> * slice_width + lane;
+  double *const k = table_.stiffness.data() + slot * n_stiffness<dim> * slice_width + lane;
+  for (int c = 0; c < dim; ++c) {
+    g[c * slice_width] = own[c];
+    g[(dim + c) * slice_width] = other[c];
+  }
+  g[2 * dim * slice_width] = s_r;
+  for (std::size_t c = 0; c < stiffness.size(); ++c)
+    k[c * slice_width] = stiffness[c];
+  table_.neighbour[place] = neighbour;
+}
+
+template <int dim>
+void BondSlices<dim>::remove(int index)
+{
+  const Vector<dim> zero = Vector<dim>::Zero();
+  for (const long place : places_[index])
+    set_bond(place, {0, 0, zero, zero, zero, 0, 1, 0, 0}, true, table_.neighbour[place]);
+}
+
+template <int dim>
+void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &records) const
+{
+  if (empty())
+    return;
+  if (!records.data()) {
+    const long n = table_.n_records();
+    records = core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
+  }
+  load_records({table_, arrays, records.data(), never, false, nullptr});
+}
+
+template <int dim>
+void BondSlices<dim>::add_pressures(LatticeArrays<dim> arrays, double *pressure,
+                                    core::LargeArray &records) const
+{
+  if (empty())
+    return;
+  arrays.pressure = pressure;
+  ligament::dem::add_pressures({table_, arrays, records.data(), never, false, nullptr});
+}
+
+template <int dim>
+void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
+                             core::LargeArray &records, std::vector<int> &exceeded) const
+{
+  exceeded.clear();
+  if (empty())
+    return;
+  constexpr double round_off = 1e-9;
+  const double least_strain = strength / (2 * shear_modulus_) * (1 - round_off);
+  add_slice_forces({table_, arrays, records.data(),
+                    strength > 0 ? least_strain * least_strain : never, all_particles_, &exceeded});
+}
+
+template class BondSlices<2>;
+template class BondSlices<3>;
+} // namespace ligament::dem

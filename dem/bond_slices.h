@@ -1,0 +1,98 @@
+// Bonds that no lattice row holds, laid out for vectors of particles: slices of eight particles,
+// the bonds of each one below the other.
+#pragma once
+
+#include "core/large_array.h"
+#include "dem/bond_network.h"
+#include "dem/lattice_kernel.h"
+
+namespace ligament::dem
+{
+/// Particles side by side in a slice; a vector holds a part of them or all.
+inline constexpr int slice_width = 8;
+
+/// Numbers of a particle that its neighbours read, in one line of the cache: 2D displacement,
+/// cos - 1, sin and angle, pressure; 3D displacement, quaternion, pressure.
+inline constexpr int record_size = 8;
+
+/// Geometry of a bond as one of its particles sees it: own lever, the other's (m), S/r (m).
+template <int dim>
+inline constexpr int n_geometry = 2 * dim + 1;
+
+/// Stiffness of a bond: 2G S/r (N/m), k_b (N m), and in 3D (k_t - k_b)/r^2 (N/m), with its weight.
+template <int dim>
+inline constexpr int n_stiffness = dim;
+
+/// All bonds as the kernel reads them. Lanes and slots without a bond have zeros.
+template <int dim>
+struct SliceTable
+{
+  std::vector<int> particle;   // of each record, ascending
+  std::vector<int> lane;       // record of each lane times record_size; n_slices x slice_width
+  std::vector<int> first_slot; // of each slice, and the end
+  std::vector<int> neighbour;  // record times record_size: n_slots x slice_width
+  core::LargeArray geometry;   // n_slots x n_geometry x slice_width
+  core::LargeArray stiffness;  // n_slots x n_stiffness x slice_width
+
+  int n_slices() const { return int(first_slot.size()) - 1; }
+  int n_records() const { return int(particle.size()); }
+};
+
+/// What one sweep over the slices needs; passed through the run-time dispatch.
+template <int dim>
+struct SliceSweep
+{
+  const SliceTable<dim> &table;
+  const LatticeArrays<dim> &arrays; // other_pressure and mask are not read
+  double *records;
+  double limit2 = 0; // (strength / 2G)^2, of the weakest bond
+  bool replace;      // forces and torques are overwritten, not added to
+  std::vector<int> *exceeded;
+};
+
+/// Fills the records, without pressures.
+void load_records(const SliceSweep<2> &sweep);
+void load_records(const SliceSweep<3> &sweep);
+/// Adds lambda theta of the bonds to arrays.pressure.
+void add_pressures(const SliceSweep<2> &sweep);
+void add_pressures(const SliceSweep<3> &sweep);
+/// Forces and torques at arrays.pressure; notes the particles of slices with a bond under more than
+/// the limit.
+void add_slice_forces(const SliceSweep<2> &sweep);
+void add_slice_forces(const SliceSweep<3> &sweep);
+
+/// The table's bonds of a network in slices.
+template <int dim>
+class BondSlices
+{
+public:
+  /// With `all_particles` those without bonds have a place as well, and forces are overwritten.
+  BondSlices(const BondNetwork<dim> &bonds, double shear_modulus, bool all_particles);
+
+  bool empty() const { return table_.n_records() == 0; }
+  const std::vector<int> &particles() const { return table_.particle; }
+
+  /// Bond `index` of the network's table no longer carries.
+  void remove(int index);
+
+  /// Reads the state into `records`, the scratch of all three; first of the three.
+  void load(const LatticeArrays<dim> &arrays, core::LargeArray &records) const;
+
+  /// Adds lambda theta of the bonds to `pressure`, in Pa.
+  void add_pressures(LatticeArrays<dim> arrays, double *pressure, core::LargeArray &records) const;
+
+  /// Adds the forces at arrays.pressure. With a strength above 0 (Pa) replaces `exceeded` by
+  /// particles among which are those of all bonds under at least that tension.
+  void forces(const LatticeArrays<dim> &arrays, double strength, core::LargeArray &records,
+              std::vector<int> &exceeded) const;
+
+private:
+  void lay_out(const std::vector<int> &n_bonds_of);
+  void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
+
+  SliceTable<dim> table_;
+  double shear_modulus_;
+  bool all_particles_;
+  std::vector<std::array<long, 2>> places_; // slot x slice_width + lane of both sides of each bond
+};
+} // namespace ligament::dem

@@ -1,0 +1,175 @@
+// Compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/slice_kernel_2d.cc"
+#include "core/dispatch.h"
+
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway wants it.
+#include "dem/sine.h"
+#include "dem/slice_loop.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+/// theory.md eqs. (D4), (D6), (D8), (D8b) for one bond of each particle in a vector.
+class SliceLaw2d
+{
+  using D = SliceLanes;
+  using V = hn::Vec<D>;
+  using V2 = Pair<V>;
+
+public:
+  static constexpr int n_loaded = 3, n_sums = 3, pressure_place = 5;
+
+  /// A particle's numbers.
+  struct Own
+  {
+    V2 u;
+    V cosine_minus_1, sine, angle, pressure;
+
+    HWY_INLINE Own(D, const Record<D> &r)
+        : u{r.number[0], r.number[1]}, cosine_minus_1(r.number[2]), sine(r.number[3]),
+          angle(r.number[4]), pressure(r.number[5])
+    {
+    }
+    /// (R - I) a
+    HWY_INLINE V2 change(const V2 &a) const
+    {
+      return {hn::MulSub(cosine_minus_1, a.x, hn::Mul(sine, a.y)),
+              hn::MulAdd(cosine_minus_1, a.y, hn::Mul(sine, a.x))};
+    }
+  };
+
+  struct Sums
+  {
+    V2 force;
+    V torque, excess; // excess: largest of |force|^2 - limit^2 on a face
+
+    HWY_INLINE Sums()
+    {
+      torque = excess = hn::Zero(D());
+      force = {torque, torque};
+    }
+    HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE void store(D d, const Own &, double (&to)[n_sums][slice_width], int lane) const
+    {
+      hn::Store(force.x, d, to[0] + lane);
+      hn::Store(force.y, d, to[1] + lane);
+      hn::Store(torque, d, to[2] + lane);
+    }
+  };
+
+  static int place(int number) { return number == 2 ? 4 : number; }
+  static const double *source(const LatticeArrays<2> &a, int number)
+  {
+    return number < 2 ? a.displacement[number] : a.rotation[0];
+  }
+  static HWY_INLINE void prepare(D d, double (&number)[record_size][slice_width], int lane)
+  {
+    V c, s;
+    cosine_minus_1_and_sine(d, hn::Load(d, number[4] + lane), c, s);
+    hn::Store(c, d, number[2] + lane);
+    hn::Store(s, d, number[3] + lane);
+  }
+
+  template <typename Bonds>
+  static HWY_INLINE void add_dilatation(D d, const Own &own, const Bonds &bond,
+                                        const Record<D> &other, V &sum)
+  {
+    const Motion m(d, own, bond, other);
+    sum = hn::MulAdd(bond.geometry(d, 4), add_dot(m.a_i, m.du, hn::Zero(d)), sum);
+  }
+
+  template <typename Bonds>
+  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+                                    V limit2, Sums &sums)
+  {
+    const Motion m(d, own, bond, other);
+    const V zero = hn::Zero(d);
+    const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
+    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
+    const V2 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    sums.force = sums.force + f;
+    sums.torque = add_cross(m.a_i, neg_mul_add(sp_i, m.du, f), sums.torque);
+    sums.torque = hn::MulAdd(bond.stiffness(d, 1), hn::Sub(m.other.angle, own.angle), sums.torque);
+    const V2 distance = m.lever_i - m.lever_j;
+    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), add_dot(distance, distance, zero));
+    sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, add_dot(f, f, zero)));
+  }
+
+  /// Largest of tension |tension| - limit^2 along the present normal, times a square.
+  template <typename Bonds>
+  static HWY_INLINE void largest_excess(D d, const Own &own, const Bonds &bond,
+                                        const Record<D> &other, V limit2, V &largest)
+  {
+    const Motion m(d, own, bond, other);
+    const V zero = hn::Zero(d);
+    const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
+    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
+    const V2 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    const V2 n = m.lever_i - m.lever_j;
+    const V2 mean = (n + n) + (own.change(n) + m.other.change(n));
+    const V tension = add_dot(f, mean, zero);
+    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), add_dot(n, n, zero));
+    const V limit = hn::Mul(hn::Mul(limit2, shear_r2), add_dot(mean, mean, zero));
+    largest = hn::Max(largest, hn::MulSub(tension, hn::Abs(tension), limit));
+  }
+
+private:
+  struct Motion
+  {
+    Own other;
+    V2 lever_i, lever_j, a_i, a_j, du;
+
+    template <typename Bonds>
+    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Record<D> &r)
+        : other(d, r), lever_i{bond.geometry(d, 0), bond.geometry(d, 1)}, lever_j{
+                                                                              bond.geometry(d, 2),
+                                                                              bond.geometry(d, 3)}
+    {
+      const V2 change_i = own.change(lever_i), change_j = other.change(lever_j);
+      a_i = lever_i + change_i;
+      a_j = lever_j + change_j;
+      du = (other.u - own.u) + (change_j - change_i);
+    }
+  };
+};
+
+using Slices2d = Slices<SliceLaw2d, 2>;
+
+void load_records_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).load();
+}
+void add_pressures_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).pressures();
+}
+void add_slice_forces_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).forces();
+}
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ligament::dem
+{
+HWY_EXPORT(load_records_2d);
+HWY_EXPORT(add_pressures_2d);
+HWY_EXPORT(add_slice_forces_2d);
+
+void load_records(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(load_records_2d)(sweep);
+}
+void add_pressures(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_pressures_2d)(sweep);
+}
+void add_slice_forces(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_slice_forces_2d)(sweep);
+}
+} // namespace ligament::dem
+#endif

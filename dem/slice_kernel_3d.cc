@@ -1,0 +1,207 @@
+// Compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/slice_kernel_3d.cc"
+#include "core/dispatch.h"
+
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway wants it.
+#include "dem/slice_loop.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+/// theory.md eqs. (D4), (D6), (D8), (D8b) for one bond of each particle in a vector. Couples are
+/// summed in the particle's own axes and turned once.
+class SliceLaw3d
+{
+  using D = SliceLanes;
+  using V = hn::Vec<D>;
+  using V3 = Triple<V>;
+
+public:
+  static constexpr int n_loaded = 7, n_sums = 6, pressure_place = 7;
+
+  /// A particle's numbers and what is made of them once for all its bonds.
+  struct Own
+  {
+    V3 u;
+    Quaternion<V> q;
+    V3 x, y, z; // columns of R - I
+    V pressure;
+
+    HWY_INLINE Own(D, const Record<D> &r)
+        : u{r.number[0], r.number[1], r.number[2]}, q{r.number[3],
+                                                      {r.number[4], r.number[5], r.number[6]}},
+          pressure(r.number[7])
+    {
+      const auto &v = q.v;
+      const V3 two = v + v;
+      const V xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
+      const V xy = hn::Mul(two.x, v.y), xz = hn::Mul(two.x, v.z), yz = hn::Mul(two.y, v.z);
+      const V wx = hn::Mul(two.x, q.w), wy = hn::Mul(two.y, q.w), wz = hn::Mul(two.z, q.w);
+      x = {hn::Neg(hn::Add(yy, zz)), hn::Add(xy, wz), hn::Sub(xz, wy)};
+      y = {hn::Sub(xy, wz), hn::Neg(hn::Add(xx, zz)), hn::Add(yz, wx)};
+      z = {hn::Add(xz, wy), hn::Sub(yz, wx), hn::Neg(hn::Add(xx, yy))};
+    }
+    /// (R - I) a
+    HWY_INLINE V3 change(const V3 &a) const { return mul_add(a.x, x, mul_add(a.y, y, a.z * z)); }
+  };
+
+  struct Sums
+  {
+    V3 force, torque, couple;
+    V excess; // largest of |force|^2 - limit^2 on a face
+
+    HWY_INLINE Sums()
+    {
+      const V zero = hn::Zero(D());
+      force = torque = couple = {zero, zero, zero};
+      excess = zero;
+    }
+    HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE void store(D d, const Own &own, double (&to)[n_sums][slice_width], int lane) const
+    {
+      const V3 body = couple + couple;
+      const V3 all = torque + (body + own.change(body));
+      hn::Store(force.x, d, to[0] + lane);
+      hn::Store(force.y, d, to[1] + lane);
+      hn::Store(force.z, d, to[2] + lane);
+      hn::Store(all.x, d, to[3] + lane);
+      hn::Store(all.y, d, to[4] + lane);
+      hn::Store(all.z, d, to[5] + lane);
+    }
+  };
+
+  static int place(int number) { return number; }
+  static const double *source(const LatticeArrays<3> &a, int number)
+  {
+    return number < 3 ? a.displacement[number] : a.rotation[number - 3];
+  }
+  static HWY_INLINE void prepare(D, double (&)[record_size][slice_width], int) {}
+
+  template <typename Bonds>
+  static HWY_INLINE void add_dilatation(D d, const Own &own, const Bonds &bond,
+                                        const Record<D> &other, V &sum)
+  {
+    const Motion m(d, own, bond, other);
+    sum = hn::MulAdd(bond.geometry(d, 6), dot(m.a_i, m.du), sum);
+  }
+
+  template <typename Bonds>
+  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+                                    V limit2, Sums &sums)
+  {
+    const Motion m(d, own, bond, other);
+    const V s_r = bond.geometry(d, 6), shear = bond.stiffness(d, 0);
+    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, other.number[7]);
+    const V3 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    sums.force = sums.force + f;
+    sums.torque = add_cross(m.a_i, neg_mul_add(sp_i, m.du, f), sums.torque);
+    const V3 distance = m.lever_i - m.lever_j;
+    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), dot(distance, distance));
+    sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, dot(f, f)));
+
+    // The rotation of j as i sees it; 2 [w k v + v x k v], k the stiffness of (D4).
+    const V w = dot(own.q, m.q);
+    const V3 v = add_cross(m.q.v, own.q.v, own.q.w * m.q.v - m.q.w * own.q.v);
+    const V c = hn::Mul(bond.stiffness(d, 2), dot(distance, v));
+    sums.couple = mul_add(hn::Mul(bond.stiffness(d, 1), w), v, sums.couple);
+    sums.couple = mul_add(hn::Mul(c, w), distance, sums.couple);
+    sums.couple = add_cross(c * v, distance, sums.couple);
+  }
+
+  /// Largest of tension |tension| - limit^2 along the present normal, times a square.
+  template <typename Bonds>
+  static HWY_INLINE void largest_excess(D d, const Own &own, const Bonds &bond,
+                                        const Record<D> &other, V limit2, V &largest)
+  {
+    const Motion m(d, own, bond, other);
+    const V s_r = bond.geometry(d, 6), shear = bond.stiffness(d, 0);
+    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, other.number[7]);
+    const V3 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    const V3 n = m.lever_i - m.lever_j;
+    const V3 mean = (n + n) + (own.change(n) + m.change(n));
+    const V tension = dot(f, mean), shear_r2 = hn::Mul(hn::Mul(shear, shear), dot(n, n));
+    const V limit = hn::Mul(hn::Mul(limit2, shear_r2), dot(mean, mean));
+    largest = hn::Max(largest, hn::MulSub(tension, hn::Abs(tension), limit));
+  }
+
+private:
+  static HWY_INLINE V dot(const V3 &a, const V3 &b)
+  {
+    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+  }
+  static HWY_INLINE V dot(const Quaternion<V> &a, const Quaternion<V> &b)
+  {
+    return add_dot(a.v, b.v, hn::Mul(a.w, b.w));
+  }
+  static HWY_INLINE V3 cross(const V3 &a, const V3 &b)
+  {
+    return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+            hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+  }
+  struct Motion
+  {
+    Quaternion<V> q; // of j
+    V3 lever_i, lever_j, a_i, a_j, du;
+
+    template <typename Bonds>
+    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Record<D> &r)
+        : q{r.number[3], {r.number[4], r.number[5], r.number[6]}}, lever_i{bond.geometry(d, 0),
+                                                                           bond.geometry(d, 1),
+                                                                           bond.geometry(d, 2)},
+          lever_j{bond.geometry(d, 3), bond.geometry(d, 4), bond.geometry(d, 5)}
+    {
+      const V3 change_i = own.change(lever_i), change_j = change(lever_j);
+      const V3 u{r.number[0], r.number[1], r.number[2]};
+      a_i = lever_i + change_i;
+      a_j = lever_j + change_j;
+      du = (u - own.u) + (change_j - change_i);
+    }
+    /// (R_j - I) a
+    HWY_INLINE V3 change(const V3 &a) const
+    {
+      const V3 half = cross(q.v, a), t = half + half;
+      return add_cross(q.v, t, q.w * t);
+    }
+  };
+};
+
+using Slices3d = Slices<SliceLaw3d, 3>;
+
+void load_records_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).load();
+}
+void add_pressures_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).pressures();
+}
+void add_slice_forces_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).forces();
+}
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ligament::dem
+{
+HWY_EXPORT(load_records_3d);
+HWY_EXPORT(add_pressures_3d);
+HWY_EXPORT(add_slice_forces_3d);
+
+void load_records(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(load_records_3d)(sweep);
+}
+void add_pressures(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_pressures_3d)(sweep);
+}
+void add_slice_forces(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_slice_forces_3d)(sweep);
+}
+} // namespace ligament::dem
+#endif

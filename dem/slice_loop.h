@@ -1,0 +1,253 @@
+// The loops over slices that both dimensions share, compiled once for every instruction set; the
+// law of a bond comes in as a policy.
+#if defined(LIGAMENT_DEM_SLICE_LOOP_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIGAMENT_DEM_SLICE_LOOP_H
+#undef LIGAMENT_DEM_SLICE_LOOP_H
+#else
+#define LIGAMENT_DEM_SLICE_LOOP_H
+#endif
+
+#include "dem/bond_slices.h"
+#include "dem/lane_vectors.h"
+
+#include <hwy/cache_control.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+using SliceLanes = hn::CappedTag<double, slice_width>;
+
+/// The numbers of a record, each for all lanes.
+template <typename D>
+struct Record
+{
+  hn::Vec<D> number[record_size];
+};
+
+/// Transposes rows of eight numbers in registers, twice as fast as gathering numbers one by one;
+/// row(n) is where the numbers of lane n start.
+template <typename D, typename Row>
+HWY_INLINE Record<D> transpose(D d, Row &&row)
+{
+  Record<D> r;
+#if HWY_TARGET == HWY_SCALAR
+  for (int c = 0; c < record_size; ++c)
+    r.number[c] = hn::LoadU(d, row(0) + c);
+#else
+  constexpr int n = int(hn::MaxLanes(D()));
+  if constexpr (n == 8) {
+    const hn::Half<D> half;
+    for (int c = 0; c < record_size; c += 4) {
+      const auto two_rows = [&](int k) HWY_ATTR {
+        return hn::Combine(d, hn::LoadU(half, row(k + 4) + c), hn::LoadU(half, row(k) + c));
+      };
+      const auto v0 = two_rows(0), v1 = two_rows(1), v2 = two_rows(2), v3 = two_rows(3);
+      const auto even_a = hn::InterleaveLower(d, v0, v1), odd_a = hn::InterleaveUpper(d, v0, v1);
+      const auto even_b = hn::InterleaveLower(d, v2, v3), odd_b = hn::InterleaveUpper(d, v2, v3);
+      r.number[c] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(even_b), even_a);
+      r.number[c + 1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd_b), odd_a);
+      r.number[c + 2] = hn::OddEvenBlocks(even_b, hn::SwapAdjacentBlocks(even_a));
+      r.number[c + 3] = hn::OddEvenBlocks(odd_b, hn::SwapAdjacentBlocks(odd_a));
+    }
+  } else
+    for (int c = 0; c < record_size; c += 2) {
+      const auto every_other = [&](int k) HWY_ATTR {
+        if constexpr (n == 4) {
+          const hn::Half<D> half;
+          return hn::Combine(d, hn::LoadU(half, row(k + 2) + c), hn::LoadU(half, row(k) + c));
+        } else
+          return hn::LoadU(d, row(k) + c);
+      };
+      const auto a = every_other(0), b = every_other(1);
+      r.number[c] = hn::InterleaveLower(d, a, b);
+      r.number[c + 1] = hn::InterleaveUpper(d, a, b);
+    }
+#endif
+  return r;
+}
+
+/// The bonds of a vector of particles, one below the other.
+template <int dim, bool with_stiffness>
+class BondColumn
+{
+public:
+  HWY_INLINE BondColumn(const SliceTable<dim> &table, int slice, int lane)
+  {
+    const long slot = table.first_slot[slice];
+    geometry_ = table.geometry.data() + slot * geometry_stride + lane;
+    stiffness_ = table.stiffness.data() + slot * stiffness_stride + lane;
+    neighbour_ = table.neighbour.data() + slot * slice_width + lane;
+    end_ = neighbour_ + (table.first_slot[slice + 1] - slot) * slice_width;
+  }
+  HWY_INLINE bool has_more() const { return neighbour_ != end_; }
+  HWY_INLINE void next()
+  {
+    prefetch<n_geometry<dim>>(geometry_);
+    if (with_stiffness)
+      prefetch<n_stiffness<dim>>(stiffness_);
+    hwy::Prefetch(neighbour_ + ahead * slice_width);
+    geometry_ += geometry_stride;
+    stiffness_ += stiffness_stride;
+    neighbour_ += slice_width;
+  }
+  const int *neighbour() const { return neighbour_; }
+  template <typename D>
+  HWY_INLINE hn::Vec<D> geometry(D d, int k) const
+  {
+    return hn::Load(d, geometry_ + k * slice_width);
+  }
+  template <typename D>
+  HWY_INLINE hn::Vec<D> stiffness(D d, int k) const
+  {
+    return hn::Load(d, stiffness_ + k * slice_width);
+  }
+
+private:
+  static constexpr long geometry_stride = n_geometry<dim> * slice_width,
+                        stiffness_stride = n_stiffness<dim> * slice_width;
+  static constexpr int ahead = 8; // slots: about the time that memory takes to answer
+
+  template <int n>
+  static HWY_INLINE void prefetch(const double *now)
+  {
+    for (int k = 0; k < n; ++k)
+      hwy::Prefetch(now + (ahead * n + k) * slice_width);
+  }
+
+  const double *geometry_, *stiffness_;
+  const int *neighbour_, *end_;
+};
+
+/// Sweeps of the `Law`: what a bond adds to the sums of the particles in a vector.
+template <typename Law, int dim>
+class Slices
+{
+public:
+  HWY_INLINE explicit Slices(const SliceSweep<dim> &sweep) : sweep_(sweep), table_(sweep.table) {}
+
+  HWY_INLINE void load() const
+  {
+    const SliceLanes d;
+    constexpr int n = n_lanes;
+    HWY_ALIGN double number[record_size][slice_width] = {};
+    const int n_records = table_.n_records();
+    for (int first = 0; first < n_records; first += slice_width) {
+      const int size = std::min(slice_width, n_records - first);
+      const int *const particle = table_.particle.data() + first;
+      for (int f = 0; f < Law::n_loaded; ++f)
+        for (int l = 0; l < size; ++l)
+          number[Law::place(f)][l] = Law::source(sweep_.arrays, f)[particle[l]];
+      for (int l = 0; l < slice_width; l += n)
+        Law::prepare(d, number, l);
+      double *const records = sweep_.records + long(first) * record_size;
+      for (int c = 0; c < record_size; c += n) {
+        const auto of_record = [&](int l0) HWY_ATTR {
+          return transpose(d, [&](int k) { return number[c + k] + l0; });
+        };
+        const auto numbers = of_record(0);
+        for (int l = 0; l < slice_width; ++l)
+          hn::StoreU(numbers.number[l], d, records + l * record_size + c);
+      }
+    }
+  }
+
+  HWY_INLINE void pressures() const
+  {
+    const SliceLanes d;
+    HWY_ALIGN double theta[slice_width];
+    for (int s = 0; s < table_.n_slices(); ++s) {
+      for (int lane = 0; lane < slice_width; lane += n_lanes) {
+        const typename Law::Own own(d, own_record(s, lane));
+        auto sum = hn::Zero(d);
+        for (BondColumn<dim, false> b(table_, s, lane); b.has_more(); b.next())
+          Law::add_dilatation(d, own, b, record(b.neighbour()), sum);
+        hn::Store(sum, d, theta + lane);
+      }
+      for_each_lane(s, [&](int l, int i) {
+        sweep_.arrays.pressure[i] += sweep_.arrays.lambda_per_volume[i] * theta[l];
+      });
+    }
+  }
+
+  HWY_INLINE void forces() const
+  {
+    const SliceLanes d;
+    take_pressures();
+    HWY_ALIGN double sums[Law::n_sums][slice_width];
+    const auto limit2 = hn::Set(d, sweep_.limit2);
+    for (int s = 0; s < table_.n_slices(); ++s) {
+      bool exceeded = false;
+      for (int lane = 0; lane < slice_width; lane += n_lanes) {
+        const typename Law::Own own(d, own_record(s, lane));
+        typename Law::Sums sum;
+        for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
+          Law::add_forces(d, own, b, record(b.neighbour()), limit2, sum);
+        sum.store(d, own, sums, lane);
+        if (HWY_UNLIKELY(sum.exceeds(d)))
+          exceeded = exceeded || exceeds(s, lane);
+      }
+      finish_forces(s, sums);
+      if (HWY_UNLIKELY(exceeded))
+        for_each_lane(s, [&](int, int i) { sweep_.exceeded->push_back(i); });
+    }
+  }
+
+private:
+  static constexpr int n_lanes = int(hn::MaxLanes(SliceLanes()));
+
+  HWY_INLINE Record<SliceLanes> record(const int *places) const
+  {
+    return transpose(SliceLanes(), [&](int n) { return sweep_.records + places[n]; });
+  }
+  HWY_INLINE Record<SliceLanes> own_record(int s, int lane) const
+  {
+    return record(table_.lane.data() + s * slice_width + lane);
+  }
+
+  HWY_INLINE void take_pressures() const
+  {
+    for (int r = 0; r < table_.n_records(); ++r)
+      sweep_.records[long(r) * record_size + Law::pressure_place] =
+          sweep_.arrays.pressure[table_.particle[r]];
+  }
+
+  /// visit(lane, particle) for the lanes of the slice that hold one.
+  template <typename Visit>
+  HWY_INLINE void for_each_lane(int s, Visit &&visit) const
+  {
+    const int size = std::min(slice_width, table_.n_records() - s * slice_width);
+    for (int l = 0; l < size; ++l)
+      visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
+  }
+
+  /// Whether a bond of the vector is under more tension than the limit.
+  HWY_NOINLINE bool exceeds(int s, int lane) const
+  {
+    const SliceLanes d;
+    const typename Law::Own own(d, own_record(s, lane));
+    const auto limit2 = hn::Set(d, sweep_.limit2);
+    auto largest = hn::Zero(d);
+    for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
+      Law::largest_excess(d, own, b, record(b.neighbour()), limit2, largest);
+    return !hn::AllFalse(d, hn::Gt(largest, hn::Zero(d)));
+  }
+
+  HWY_INLINE void finish_forces(int s, const double (&sums)[Law::n_sums][slice_width]) const
+  {
+    const auto &a = sweep_.arrays;
+    const auto array = [&](int c) { return c < dim ? a.force[c] : a.torque[c - dim]; };
+    for (int c = 0; c < Law::n_sums; ++c) {
+      double *const to = array(c);
+      if (sweep_.replace)
+        for_each_lane(s, [&](int l, int i) { to[i] = sums[c][l]; });
+      else
+        for_each_lane(s, [&](int l, int i) { to[i] += sums[c][l]; });
+    }
+  }
+
+  const SliceSweep<dim> &sweep_;
+  const SliceTable<dim> &table_;
+};
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
