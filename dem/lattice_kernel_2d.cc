@@ -35,6 +35,8 @@ public:
   template <typename D>
   HWY_INLINE void turn(D d, long i) const
   {
+    prefetch(a_.displacement, i);
+    prefetch(a_.rotation, i);
     double *const at = w_ + i;
     for (int c = 0; c < 2; ++c)
       hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
@@ -52,6 +54,9 @@ public:
   template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
+    prefetch(std::array{a_.lambda_per_volume, a_.other_pressure,
+                        static_cast<const double *>(a_.pressure)},
+             i);
     const BondMask<D> mask(d, a_.mask, i);
     auto theta = hn::Zero(d), moment = hn::Zero(d);
     double *const at = w_ + i;
@@ -84,6 +89,8 @@ public:
   HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
   {
     using V = hn::Vec<D>;
+    prefetch(a_.force, i);
+    prefetch(a_.torque, i);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     Pair<V> force{zero, zero};

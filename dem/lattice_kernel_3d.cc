@@ -51,6 +51,8 @@ public:
   template <typename D>
   HWY_INLINE void turn(D d, long i) const
   {
+    prefetch(a_.displacement, i);
+    prefetch(a_.rotation, i);
     double *const at = w_ + i;
     for (int c = 0; c < 3; ++c)
       hn::StoreU(hn::LoadU(d, a_.displacement[c] + i), d, at + (u_ + c) * stride);
@@ -78,6 +80,9 @@ public:
   template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
+    prefetch(std::array{a_.lambda_per_volume, a_.other_pressure,
+                        static_cast<const double *>(a_.pressure)},
+             i);
     const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
     auto theta = zero;
@@ -115,6 +120,8 @@ public:
   HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
   {
     using V = hn::Vec<D>;
+    prefetch(a_.force, i);
+    prefetch(a_.torque, i);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     Triple<V> force{zero, zero, zero}, torque{zero, zero, zero};

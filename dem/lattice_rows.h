@@ -9,6 +9,7 @@
 
 #include "dem/lattice_kernel.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -42,6 +43,16 @@ struct BondMask
     return hn::IfThenElseZero(hn::RebindMask(D(), carries), v);
   }
 };
+
+/// Asks for what several arrays hold some vectors after particle i: there are more of them than the
+/// processor follows by itself.
+template <typename Arrays>
+HWY_INLINE void prefetch(const Arrays &arrays, long i)
+{
+  constexpr long ahead = 64;
+  for (const double *const array : arrays)
+    hwy::Prefetch(array + i + ahead);
+}
 
 /// Calls visit(d, i) for whole vectors that cover [begin, end) and nothing outside [first, end):
 /// the last one overlaps what came before, results are the same bits again. A row shorter than a
