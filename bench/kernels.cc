@@ -5,12 +5,18 @@
 #include "dem/many_body_force.h"
 #include "particles/lattice_packing.h"
 #include "particles/particle_solver.h"
+#include "particles/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
 
 #include <fmt/format.h>
 #include <hwy/highway.h>
 
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <fstream>
 
 namespace
 {
@@ -24,9 +30,10 @@ void print(const std::string &name, double value, const std::string &unit, doubl
              name, value, unit, reference, value / reference);
 }
 
-/// Floating-point operations per particle and step, counted in the source; a multiply-add is two.
+/// Floating-point operations per particle and step of lattices, counted in the source; a
+/// multiply-add is two.
 template <int dim>
-double flops_of_step(int n_directions)
+double lattice_flops(int n_directions)
 {
   const bool fcc = dim == 3 && n_directions == 6;
   const double dilatation = dim == 2 ? 46 : 48, forces = dim == 2 ? 60 : 168;
@@ -35,15 +42,50 @@ double flops_of_step(int n_directions)
   return n_directions * (dilatation + forces) + combined_directions + turn_and_sums + integration;
 }
 
+/// The same of random packings with so many neighbours.
+template <int dim>
+double random_flops(double n_neighbours)
+{
+  const double dilatation = dim == 2 ? 28 : 64, forces = dim == 2 ? 62 : 176;
+  const double turn_and_sums = dim == 2 ? 50 : 60, integration = dim == 2 ? 15 : 90;
+  return n_neighbours * (dilatation + forces) + turn_and_sums + integration;
+}
+
 /// Bytes per particle and step between memory and cache when each verb of the step passes over its
 /// arrays once; a number that is written and not read counts twice.
 template <int dim>
-double bytes_of_step()
+double lattice_bytes()
 {
   constexpr int rotations = particles::Particles<dim>::n_rotations, dofs = n_particle_dofs<dim>;
   const double forces = dim + rotations + 0.5 + 2 + 2 * (2 + dofs);
   const double kick = 2 * dofs + dofs + 2, drift = dofs + 2 * (dim + rotations);
   return sizeof(double) * (forces + kick + drift);
+}
+
+/// With the constants of all bonds of a particle in both sweeps, and the records.
+template <int dim>
+double random_bytes(double n_neighbours)
+{
+  const double bond = sizeof(double) * (2 * dem::n_geometry<dim> + dem::n_stiffness<dim>)+2 * 4;
+  return lattice_bytes<dim>() + n_neighbours * bond + 4 * sizeof(double) * dem::record_size;
+}
+
+/// Bytes of memory that this process holds now.
+double resident_bytes()
+{
+  malloc_trim(0);
+  std::ifstream file("/proc/self/statm");
+  double size = 0, resident = 0;
+  file >> size >> resident;
+  return resident * double(sysconf(_SC_PAGESIZE));
+}
+
+/// The most that it held so far.
+double peak_bytes()
+{
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024. * double(usage.ru_maxrss);
 }
 
 template <int dim>
@@ -55,6 +97,18 @@ particles::Packing<dim> make_block(particles::LatticeKind kind, double spacing)
   lattice.lower.setConstant(-0.5);
   lattice.upper.setConstant(0.5);
   return particles::make_lattice_packing<dim>(lattice);
+}
+
+/// Relaxed a little: whole relaxation takes long and changes nothing here.
+template <int dim>
+particles::Packing<dim> make_random(double spacing)
+{
+  particles::RandomParameters<dim> random;
+  random.spacing = spacing;
+  random.relaxation_sweeps = 2;
+  random.lower.setConstant(-0.5);
+  random.upper.setConstant(0.5);
+  return particles::make_random_packing<dim>(random).packing;
 }
 
 /// A smooth motion with spins; far below the strength, so that nothing breaks.
@@ -101,42 +155,48 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
 }
 
 template <int dim>
-void measure(const std::string &name, particles::LatticeKind kind, double spacing, bool all_targets)
+void measure(const std::string &name, const particles::Packing<dim> &packing, bool all_targets)
 {
-  const auto packing = make_block<dim>(kind, spacing);
   const int n = packing.size(), n_directions = int(packing.directions.size());
+  const double n_neighbours = 2. * double(packing.faces.size()) / n;
+  const double flops =
+      n_directions > 0 ? lattice_flops<dim>(n_directions) : random_flops<dim>(n_neighbours);
+  const double bytes = n_directions > 0 ? lattice_bytes<dim>() : random_bytes<dim>(n_neighbours);
   dem::DemMaterial material;
   material.poissons_ratio = 0.25;
   const auto rate = [&](const std::function<void()> &step) { return 1e-6 * n * bench::rate(step); };
   const std::pair<std::int64_t, const char *> targets[] = {
-      {HWY_AVX3, "AVX-512"}, {HWY_AVX2, "AVX2"}, {HWY_EMU128, "SSE2"}};
+      {HWY_AVX3, "AVX-512"}, {HWY_AVX2, "AVX2"}, {HWY_EMU128 | HWY_SCALAR, "SSE2"}};
   for (const auto &[target, target_name] : targets) {
     hwy::SetSupportedTargetsForTest(0);
     if (!(hwy::SupportedTargets() & target))
       continue;
     hwy::SetSupportedTargetsForTest(target);
     const Roofline roof = bench::measure_roofline();
-    const double flops = flops_of_step<dim>(n_directions), bytes = bytes_of_step<dim>();
     const double most = 1e-6 / std::max(flops / roof.flops, bytes / roof.bytes);
     const std::string label = fmt::format("{}, {} particles, {}", name, n, target_name);
     const std::string unit = "1e6 particle-steps/s";
 
+    const double before = resident_bytes();
     dem::FractureLaw fracture{dem::FractureLaw::Criterion::maximum_tension, 1e3};
     particles::ParticleSolver<dim> solver(
         move(packing), std::make_unique<dem::ManyBodyForce<dim>>(
                            packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture));
-    const double dt = 1e-4 * spacing; // a thousandth of the stable one: the motion stays as it is
+    const double dt = 1e-4 * packing.spacing; // a thousandth of the stable one: the motion stays
     const double step = rate([&] {
       solver.drift(dt);
       solver.compute_forces(0);
       solver.kick(dt);
     });
     print(label + ", whole step with fracture check; reference: roofline", step, unit, most);
+    print(label + ", bytes of memory per particle; reference: 250 of elastic lattices",
+          (resident_bytes() - before) / n, "B", 250);
     print(label + ", arithmetic; reference: multiply-add loop", 1e-3 * step * flops, "GFLOP/s",
           1e-9 * roof.flops);
     print(label + ", traffic; reference: triad", 1e-3 * step * bytes, "GB/s", 1e-9 * roof.bytes);
-    print(label + ", rows of the lattice alone; reference: arithmetic roofline",
-          rate_of_rows<dim>(packing, material), unit, 1e-6 * roof.flops / flops);
+    if (n_directions > 0)
+      print(label + ", rows of the lattice alone; reference: arithmetic roofline",
+            rate_of_rows<dim>(packing, material), unit, 1e-6 * roof.flops / flops);
     if (!all_targets)
       break;
     const double forces = rate([&] { solver.compute_forces(0); });
@@ -150,15 +210,61 @@ void measure(const std::string &name, particles::LatticeKind kind, double spacin
   }
   hwy::SetSupportedTargetsForTest(0);
 }
+
+/// One body of 1e7 particles: memory and the seconds of a step.
+template <int dim>
+void measure_largest(const std::string &name, particles::LatticeKind kind, double spacing)
+{
+  auto packing = make_block<dim>(kind, spacing);
+  const int n = packing.size();
+  const double packed = peak_bytes();
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  auto state = move(packing);
+  particles::ParticleSolver<dim> solver(
+      std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(
+                            std::move(packing), material, std::vector<core::BoundaryLoad<dim>>()));
+  const double set_up = peak_bytes();
+  const int steps = 5;
+  const auto step = [&] {
+    solver.drift(1e-4 * spacing);
+    solver.compute_forces(0);
+    solver.kick(1e-4 * spacing);
+  };
+  step();
+  const double start = bench::seconds_now();
+  for (int s = 0; s < steps; ++s)
+    step();
+  const std::string label = fmt::format("{}, {} particles", name, n);
+  print(label + ", seconds per step", (bench::seconds_now() - start) / steps, "s", 1);
+  print(label + ", peak memory of packing; reference: 24 GiB", packed, "B", 24. * (1 << 30));
+  print(label + ", peak memory of set-up; reference: 24 GiB", set_up, "B", 24. * (1 << 30));
+  print(label + ", memory while it runs; reference: 24 GiB", resident_bytes(), "B",
+        24. * (1 << 30));
+}
 } // namespace
 
-int main()
+/// Without arguments the bodies of 33 000 particles and lattices of 880 000; "random": random
+/// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles.
+int main(int argc, char **argv)
 {
   using particles::LatticeKind;
-  measure<3>("fcc", LatticeKind::fcc, 1 / 28.5, true);
-  measure<3>("simple cubic", LatticeKind::simple_cubic, 1 / 32., true);
-  measure<2>("hexagonal", LatticeKind::hexagonal, 1 / 169., true);
-  measure<2>("square", LatticeKind::square, 1 / 182., true);
-  measure<3>("fcc", LatticeKind::fcc, 1 / 85.5, false);
-  measure<2>("hexagonal", LatticeKind::hexagonal, 1 / 875., false);
+  const std::string what = argc > 1 ? argv[1] : "";
+  if (what == "2d")
+    measure_largest<2>("hexagonal", LatticeKind::hexagonal, 1 / 2943.);
+  else if (what == "3d")
+    measure_largest<3>("fcc", LatticeKind::fcc, 1 / 192.);
+  else if (what == "random") {
+    measure<2>("random 2D", make_random<2>(1 / 875.), false);
+    measure<3>("random 3D", make_random<3>(1 / 85.5), false);
+  } else {
+    measure<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 28.5), true);
+    measure<3>("simple cubic", make_block<3>(LatticeKind::simple_cubic, 1 / 32.), true);
+    measure<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 169.), true);
+    measure<2>("square", make_block<2>(LatticeKind::square, 1 / 182.), true);
+    measure<3>("random 3D", make_random<3>(1 / 28.5), true);
+    measure<2>("random 2D", make_random<2>(1 / 169.), true);
+    measure<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 85.5), false);
+    measure<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 875.), false);
+  }
 }

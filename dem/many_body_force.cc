@@ -1,6 +1,7 @@
 #include "dem/many_body_force.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace ligament::dem
 {
@@ -44,6 +45,11 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
   for (const auto &face : packing_.faces)
     if (face.cracked)
       contacts_.add(BondNetwork<dim>::make_bond(face, material_, packing_.thickness), true);
+  // The bonds hold what is needed of these: most of the memory of a packing.
+  const auto drop = [](auto &array) { std::decay_t<decltype(array)>().swap(array); };
+  drop(packing_.faces);
+  drop(packing_.global_id);
+  drop(packing_.diameter);
 }
 
 template <int dim>

@@ -10,7 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// theory.md eqs. (D4), (D6), (D8), (D8b) for one bond of each particle in a vector. Couples are
+/// theory.md eqs. (D6), (D8), (D8b), (D8d) for one bond of each particle in a vector. Couples are
 /// summed in the particle's own axes and turned once.
 class SliceLaw3d
 {
@@ -101,7 +101,7 @@ public:
     const V shear_r2 = hn::Mul(hn::Mul(shear, shear), dot(distance, distance));
     sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, dot(f, f)));
 
-    // The rotation of j as i sees it; 2 [w k v + v x k v], k the stiffness of (D4).
+    // The rotation of j as i sees it, and half the couple of (D8d).
     const V w = dot(own.q, m.q);
     const V3 v = add_cross(m.q.v, own.q.v, own.q.w * m.q.v - m.q.w * own.q.v);
     const V c = hn::Mul(bond.stiffness(d, 2), dot(distance, v));
