@@ -32,7 +32,26 @@ Stiffness<dim> symmetric_part(const Stiffness<dim> &m)
   return (m + m.transpose()) / 2;
 }
 
-constexpr double coarse_shift = 1e-8; // of the diagonal
+// The second level is the whole system in 2D, up to so many unknowns: its factors are small, and
+// overlaps of a thousand cells have modes that are too slow for anything less. In 3D the factors
+// would be nearly dense, and in overlaps that are too large it is one of multilinear hats.
+template <int dim>
+constexpr int most_unknowns_exact = dim == 2 ? 200000 : 0;
+constexpr int most_unknowns_of_hats = 20000;
+
+// Added to the diagonal, of it. Much smaller, and the modes that do nothing to any block, in which
+// the right side is round-off, grow until the conjugate gradients lose the others; much larger, and
+// the slow modes are left to the conjugate gradients.
+template <int dim>
+constexpr double coarse_shift = dim == 2 ? 1e-9 : 1e-6;
+
+void add_entries(int row, int column, const Eigen::Ref<const Eigen::MatrixXd> &values,
+                 std::vector<Eigen::Triplet<double>> &entries)
+{
+  for (int j = 0; j < values.cols(); ++j)
+    for (int i = 0; i < values.rows(); ++i)
+      entries.emplace_back(row + i, column + j, values(i, j));
+}
 
 double dot(const Eigen::Ref<const Eigen::MatrixXd> &a, const Eigen::Ref<const Eigen::MatrixXd> &b)
 {
@@ -65,12 +84,25 @@ void PatchEquations<dim>::restrict_to_states(Field &field) const
         (projectors_[node] * field.template middleCols<dim>(dim * node)).eval();
 }
 
-// Multilinear hats on a grid four times coarser than the cells, coarser still where they would be
-// too many: they hold the slow modes, those that are nearly affine over many blocks.
 template <int dim>
 void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
 {
-  constexpr int most_unknowns = 2500;
+  const int n = overlap.n_nodes();
+  hats_.assign(n, {});
+  n_hats_ = 0;
+  for (int node = 0; node < n; ++node)
+    if (diagonal_[node] > 0)
+      hats_[node].emplace_back(n_hats_++, 1.);
+  if (n_hats_ * dim * ns > most_unknowns_exact<dim>)
+    make_hats(overlap);
+  factorize_coarse_space();
+}
+
+// Hats on a grid four times coarser than the cells, coarser still where they would be too many:
+// they hold the slow modes, those that are nearly affine over many blocks.
+template <int dim>
+void PatchEquations<dim>::make_hats(const Overlap<dim> &overlap)
+{
   const int n = overlap.n_nodes();
   Vector<dim> low = overlap.mesh.nodes[overlap.near_nodes[0]];
   for (const int node : overlap.near_nodes)
@@ -97,24 +129,31 @@ void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
       }
     }
     n_hats_ = int(numbers.size());
-    if (n_hats_ * dim * ns <= most_unknowns)
-      break;
+    if (n_hats_ * dim * ns <= most_unknowns_of_hats)
+      return;
   }
+}
 
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_hats_ * dim * ns, n_hats_ * dim * ns);
+template <int dim>
+void PatchEquations<dim>::factorize_coarse_space()
+{
+  const int n = int(hats_.size());
+  std::vector<Eigen::Triplet<double>> entries;
   for (int node = 0; node < n; ++node)
     for (const auto &[i, value_i] : hats_[node])
       for (const auto &[j, value_j] : hats_[node])
         for (int c = 0; c < dim; ++c)
-          matrix.template block<ns, ns>((i * dim + c) * ns, (j * dim + c) * ns) +=
-              diagonal_[node] * value_i * value_j * projectors_[node];
+          add_entries((i * dim + c) * ns, (j * dim + c) * ns,
+                      diagonal_[node] * value_i * value_j * projectors_[node], entries);
   for (const auto &block : blocks_)
-    add_coarse_share(block, matrix);
+    add_coarse_share(block, entries);
+  Eigen::SparseMatrix<double> matrix(n_hats_ * dim * ns, n_hats_ * dim * ns);
+  matrix.setFromTriplets(entries.begin(), entries.end());
   // Rigid motions and some affine ones do nothing to any block: only they feel the shift.
-  coarse_scale_ = matrix.diagonal().cwiseMax(1e-12 * matrix.diagonal().maxCoeff()).cwiseSqrt();
-  coarse_scale_ = coarse_scale_.cwiseInverse();
-  matrix = coarse_scale_.asDiagonal() * matrix * coarse_scale_.asDiagonal();
-  matrix.diagonal().array() += coarse_shift;
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  coarse_scale_ = diagonal.cwiseMax(1e-12 * diagonal.maxCoeff()).cwiseSqrt().cwiseInverse();
+  matrix = (coarse_scale_.asDiagonal() * matrix * coarse_scale_.asDiagonal()).eval();
+  matrix.diagonal().array() += coarse_shift<dim>;
   coarse_.compute(matrix);
   core::require(coarse_.info() == Eigen::Success,
                 "the patch fit's coarse equations are not positive definite");
@@ -122,7 +161,7 @@ void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
 
 template <int dim>
 void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
-                                           Eigen::MatrixXd &matrix) const
+                                           std::vector<Eigen::Triplet<double>> &entries) const
 {
   std::vector<int> used;
   for (const int node : block.nodes)
@@ -152,8 +191,8 @@ void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
                                 scale * scale * parts.transpose() * parts;
   for (std::size_t i = 0; i < used.size(); ++i)
     for (std::size_t j = 0; j < used.size(); ++j)
-      matrix.template block<dim * ns, dim * ns>(used[i] * dim * ns, used[j] * dim * ns) +=
-          share.template block<dim * ns, dim * ns>(i * dim * ns, j * dim * ns);
+      add_entries(used[i] * dim * ns, used[j] * dim * ns,
+                  share.template block<dim * ns, dim * ns>(i * dim * ns, j * dim * ns), entries);
 }
 
 // G^T y added to the unknowns.
@@ -212,9 +251,9 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::precondition(const Fiel
       for (int c = 0; c < dim; ++c)
         coarse.template segment<ns>((j * dim + c) * ns) += value * r.col(dim * node + c);
   // The second solve takes the shifted modes out again: what they hold is round-off.
-  coarse = coarse_.solve(coarse.cwiseProduct(coarse_scale_));
-  coarse -= coarse_shift * coarse_.solve(coarse);
-  coarse = coarse.cwiseProduct(coarse_scale_);
+  const Eigen::VectorXd once = coarse_.solve(coarse.cwiseProduct(coarse_scale_).eval());
+  const Eigen::VectorXd twice = coarse_.solve(once);
+  coarse = (once - coarse_shift<dim> * twice).cwiseProduct(coarse_scale_);
   Field z = Field::Zero(ns, r.cols());
   for (std::size_t node = 0; node < hats_.size(); ++node) {
     if (diagonal_[node] == 0)
@@ -262,9 +301,11 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::conjugate_gradients(con
 template <int dim>
 typename PatchEquations<dim>::Field PatchEquations<dim>::solve(const Field &right)
 {
-  // The normal equations lose digits that refinement on x itself brings back.
+  // The normal equations lose digits that refinement on x itself brings back, up to what the sums
+  // of the right side have lost themselves.
   Field rest = right;
-  for (;;) {
+  const double goal = 1e-13 * right.norm();
+  while (rest.norm() > goal) {
     const std::vector<PatchBlock<dim>> before = blocks_;
     add_transposed(conjugate_gradients(rest, 1e-6));
     const Field next = right - forces();
@@ -274,6 +315,7 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::solve(const Field &righ
     }
     rest = next;
   }
+  return rest;
 }
 
 template class PatchEquations<2>;

@@ -4,7 +4,7 @@
 
 #include "coupling/overlap.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 
 #include <memory>
 
@@ -69,7 +69,10 @@ private:
   static constexpr int ns = n_strains<dim>;
 
   void make_coarse_space(const Overlap<dim> &overlap);
-  void add_coarse_share(const PatchBlock<dim> &block, Eigen::MatrixXd &matrix) const;
+  void make_hats(const Overlap<dim> &overlap);
+  void factorize_coarse_space();
+  void add_coarse_share(const PatchBlock<dim> &block,
+                        std::vector<Eigen::Triplet<double>> &entries) const;
   void add_transposed(const Field &y);
   Field forces() const;
   Field apply(const Field &y) const;
@@ -79,10 +82,11 @@ private:
   std::vector<PatchBlock<dim>> &blocks_;
   std::vector<Stiffness<dim>> projectors_; // per near node, on its states
   Eigen::VectorXd diagonal_;               // per near node: sum of (V_b/h_b)^2
-  // Coarse level: hats over the overlap, per node the numbers and values of those that reach it.
+  // Second level: every node for itself, or hats over the overlap; per node the numbers and values
+  // of those that reach it.
   std::vector<std::vector<std::pair<int, double>>> hats_;
   int n_hats_ = 0;
-  Eigen::LLT<Eigen::MatrixXd> coarse_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_;
   Eigen::VectorXd coarse_scale_;
 };
 } // namespace ligament::coupling
