@@ -1,0 +1,140 @@
+// What the fine-scale split costs per particle of the overlap, transition included, beside a
+// particle of the lattice kernel in the same run; and the solvers of its systems beside each other.
+// One JSON line each: {name, value, unit, reference, ratio}.
+#include "bench/chebyshev.h"
+#include "bench/roofline.h"
+#include "tests/support/coupled_bodies.h"
+
+#include <Eigen/SparseCholesky>
+#include <fmt/format.h>
+
+namespace
+{
+using namespace ligament;
+
+void print(const std::string &name, double value, const std::string &unit, double reference)
+{
+  fmt::print("{{\"name\": \"{}\", \"value\": {:.4g}, \"unit\": \"{}\", \"reference\": {:.4g}, "
+             "\"ratio\": {:.3f}}}\n",
+             name, value, unit, reference, value / reference);
+}
+
+double nanoseconds(const std::function<void()> &call)
+{
+  return 1e9 / bench::rate(call);
+}
+
+template <int dim>
+double step_time(particles::ParticleSolver<dim> &zone)
+{
+  return nanoseconds([&] {
+    zone.compute_forces(0);
+    zone.kick(1e-4); // a thousandth of the stable step: the motion stays as it is
+    zone.drift(1e-4);
+  });
+}
+
+/// Nanoseconds per particle of a whole step of a block of the lattice, cubic, about as in
+/// bench/kernels.cc.
+template <int dim>
+double particle_time(const dem::DemMaterial &material)
+{
+  particles::LatticeParameters<dim> lattice;
+  lattice.kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  lattice.spacing = 1;
+  lattice.upper.setConstant(dim == 2 ? 85 : 14);
+  lattice.lower = -lattice.upper;
+  auto packing = particles::make_lattice_packing<dim>(lattice);
+  particles::Particles<dim> state;
+  particles::fill_particles(packing, material.density, state);
+  const int n = state.size();
+  particles::ParticleSolver<dim> solver(
+      std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(
+                            std::move(packing), material, std::vector<core::BoundaryLoad<dim>>()));
+  return step_time(solver) / n;
+}
+
+/// Seconds are per right-hand side of all components; the matrix is M_c.
+template <int dim>
+void compare_solvers(const std::string &name, const Eigen::SparseMatrix<double> &mass)
+{
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, dim, Eigen::RowMajor>;
+  const Rows right = Rows::Random(mass.rows(), dim);
+  const std::string unit = "ns per node";
+  const auto time_of = [&](const std::function<void(Rows &)> &solve) {
+    Rows x;
+    return nanoseconds([&] {
+             x = right;
+             solve(x);
+           }) /
+           double(mass.rows());
+  };
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(mass);
+  const double plain = time_of([&](Rows &x) { x = cholesky.solve(x); });
+  for (const std::string library : {"eigen", "amesos"}) {
+    const auto solver = coupling::make_linear_solver(library);
+    solver->factorise(mass);
+    print(fmt::format("{}, M_c of {} nodes, solver {}; reference: SimplicialLLT of Eigen", name,
+                      mass.rows(), library),
+          time_of([&](Rows &x) { solver->solve(x.data(), dim); }), unit, plain);
+  }
+  for (const double tolerance : {1e-3, 1e-12}) {
+    const bench::Chebyshev<dim> polynomial(mass, tolerance);
+    print(fmt::format("{}, M_c, Chebyshev polynomial of degree {}, error below {:.0e}; reference: "
+                      "SimplicialLLT of Eigen",
+                      name, polynomial.degree(), tolerance),
+          time_of([&](Rows &x) { polynomial.solve(x); }), unit, plain);
+  }
+}
+
+/// A band across the whole specimen, overlaps at both of its ends.
+template <int dim>
+void measure(const std::string &name, const Vector<dim> &size, double zone, double ratio,
+             double reference)
+{
+  tests::CoupledBodiesParameters<dim> p;
+  p.size = size;
+  p.zone_size.setConstant(2 * size.maxCoeff());
+  p.zone_size[dim - 1] = zone;
+  p.cell_size = ratio;
+  p.material.poissons_ratio = 0.25;
+  for (const int step_ratio : {1, 4}) {
+    p.split.step_ratio = step_ratio;
+    auto body = tests::make_coupled_bodies<dim>(p);
+    coupling::StepTime time;
+    time.dt = body.dt;
+    const double coupled = nanoseconds([&] {
+                             for (int k = 0; k < step_ratio; ++k)
+                               tests::advance(body, time);
+                           }) /
+                           step_ratio;
+    const double particles = step_time(*body.zone);
+    const double far = nanoseconds([&] {
+                         body.far->compute_forces(0);
+                         body.far->kick(1e-4, 0);
+                         body.far->drift(1e-4);
+                       }) /
+                       step_ratio;
+    const auto report = body.split->report();
+    print(fmt::format("{}, r = {}, m = {}: {} overlap particles of {}, {} near nodes; reference: "
+                      "particle of a lattice block",
+                      name, ratio, step_ratio, report.overlap_particles, body.zone->state.n_owned,
+                      report.near_nodes),
+          (coupled - particles - far) / report.overlap_particles, "ns per overlap particle",
+          reference);
+    if (step_ratio == 1)
+      compare_solvers<dim>(fmt::format("{}, r = {}", name, ratio), body.split->near_mass());
+  }
+}
+} // namespace
+
+int main()
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  const double hexagonal = particle_time<2>(material), fcc = particle_time<3>(material);
+  measure<2>("hexagonal", {200, 160}, 60, 4.1, hexagonal);
+  measure<2>("hexagonal", {400, 320}, 120, 8.2, hexagonal);
+  measure<3>("fcc", {30, 30, 110}, 40, 4.1, fcc);
+  measure<3>("fcc", {30, 30, 200}, 60, 8.2, fcc);
+}
