@@ -23,11 +23,11 @@ auto pointers(Field &field)
 template <int dim>
 FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                             const std::function<double(double)> &damping, const std::string &solver)
-    : carrier_(overlap, particles, solver), carried_(overlap.n_nodes(), dim)
+    : carrier_(overlap, particles, solver), carried_(overlap.n_nodes(), dim),
+      lost_(overlap.n_nodes(), dim)
 {
   make_lanes(overlap, particles, damping);
   motion_.resize(dim * lanes_.slots.size());
-  old_motion_ = motion_;
   for (const auto &m : overlap.members)
     if (m.pad) {
       Pad pad = {m.particle, m.nodes, m.gradient, {}};
@@ -63,22 +63,23 @@ void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
     batch.begin = int(lanes_.slots.size());
     for (std::size_t k = 0; k < (*begin)->size(); ++k) {
       Slot slot{};
+      int n_members = 0;
       for (int l = 0; l < octet_size; ++l) {
         const bool idle = l >= batch.n_cells || k >= begin[l]->size();
         const Member &m = idle ? *(*begin)->at(k) : *begin[l]->at(k);
         slot.particle[l] = m.particle;
         if (idle)
           continue;
-        slot.n_members = l + 1;
+        n_members = l + 1;
         for (int a = 0; a < nc; ++a)
           slot.value[a].value[l] = m.value[a];
         if (m.pad)
           continue;
         slot.mass.value[l] = particles.mass[m.particle];
-        slot.inverse_mass.value[l] = particles.inverse_mass[m.particle];
-        slot.damping.value[l] = damping(m.position);
+        slot.damping[l] = float(damping(m.position));
       }
       lanes_.slots.push_back(slot);
+      lanes_.n_members.push_back(n_members);
     }
     batch.end = int(lanes_.slots.size());
     lanes_.batches.push_back(batch);
@@ -97,48 +98,42 @@ void FineMotion<dim>::add_pad_torques(const particles::Particles<dim> &particles
 }
 
 template <int dim>
-void FineMotion<dim>::write_pad_spins(const Nodal<dim> &coarse,
-                                      particles::Particles<dim> &particles) const
+void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
+                                 Nodal<dim> &force) const
 {
+  std::vector<Octet> motion(motion_.size());
+  Nodal<dim> other = Nodal<dim>::Zero(carried_.rows(), dim);
+  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), force.data(),
+                             other.data(), other.data()});
+  add_pad_torques(particles, force);
+}
+
+// The damper takes 1/2 sum damping m w_old (w_old + w), w = w' - Phi x: the part of x is a sum over
+// nodes.
+template <int dim>
+void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, double dt,
+                                 Nodal<dim> &force)
+{
+  carried_.setZero();
+  lost_.setZero();
+  const double sum = kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(),
+                                                force.data(), carried_.data(), lost_.data()});
+  add_pad_torques(particles, force);
+  carrier_.solve(carried_);
+  damper_energy_ += (sum - lost_.cwiseProduct(carried_).sum()) / 2;
+}
+
+template <int dim>
+void FineMotion<dim>::finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles)
+{
+  split_members<dim>(
+      lanes_, {carried_.data(), coarse.data(), motion_.data(), pointers(particles.velocity)});
   for (const auto &pad : pads_) {
     Spin<dim> spin = Spin<dim>::Zero();
     for (int a = 0; a < nc; ++a)
       spin += pad.spin[a] * coarse.row(pad.nodes[a]).transpose();
     set(particles.spin, pad.particle, spin);
   }
-}
-
-template <int dim>
-void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
-                                 Nodal<dim> &force) const
-{
-  std::vector<Octet> motion(motion_.size());
-  Nodal<dim> momentum(carried_.rows(), dim);
-  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion_.data(), motion.data(),
-                             force.data(), momentum.data()});
-  add_pad_torques(particles, force);
-}
-
-template <int dim>
-void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, double dt,
-                                 Nodal<dim> &force)
-{
-  std::swap(motion_, old_motion_);
-  carried_.setZero();
-  kick_members<dim>(lanes_, {pointers(particles.force), dt, old_motion_.data(), motion_.data(),
-                             force.data(), carried_.data()});
-  add_pad_torques(particles, force);
-  carrier_.solve(carried_);
-}
-
-template <int dim>
-double FineMotion<dim>::finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles)
-{
-  const double twice =
-      split_members<dim>(lanes_, {carried_.data(), coarse.data(), old_motion_.data(),
-                                  motion_.data(), pointers(particles.velocity)});
-  write_pad_spins(coarse, particles);
-  return twice / 2; // (E3); Q is orthogonal in M, so the loss is a sum over members
 }
 
 template <int dim>
@@ -149,7 +144,7 @@ void FineMotion<dim>::take_velocities(const Nodal<dim> &coarse,
   for (const auto &batch : lanes_.batches)
     for (int k = batch.begin; k < batch.end; ++k) {
       const Slot &slot = lanes_.slots[k];
-      for (int l = 0; l < slot.n_members; ++l)
+      for (int l = 0; l < lanes_.n_members[k]; ++l)
         for (int c = 0; c < dim; ++c) {
           const bool free = slot.mass.value[l] > 0;
           const double w = free ? particles.velocity[c][slot.particle[l]] : 0;
@@ -185,7 +180,7 @@ double FineMotion<dim>::kinetic_energy(const particles::Particles<dim> &particle
   for (std::size_t k = 0; k < lanes_.slots.size(); ++k) {
     const Slot &slot = lanes_.slots[k];
     for (int c = 0; c < dim; ++c)
-      for (int l = 0; l < slot.n_members; ++l) {
+      for (int l = 0; l < lanes_.n_members[k]; ++l) {
         const double w = motion_[k * dim + c].value[l];
         sum += w * (slot.mass.value[l] * w + dt * particles.force[c][slot.particle[l]]);
       }

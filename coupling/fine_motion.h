@@ -25,9 +25,8 @@ public:
 
   /// w <- w - damping w + dt f/m, what the mesh carries not yet taken out; adds forces as above.
   void begin_kick(const particles::Particles<dim> &particles, double dt, Nodal<dim> &force);
-  /// Once V is known: w <- Q w and v = Phi V + w; pads also turn with the mesh. Returns the energy
-  /// in J that the damper took, theory.md eq. (E3).
-  double finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
+  /// Once V is known: w <- Q w and v = Phi V + w; pads also turn with the mesh.
+  void finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
 
   /// w = Q v of the particles' velocities, then as write_velocities.
   void take_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
@@ -35,6 +34,9 @@ public:
   void write_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
 
   void scale(double factor);
+
+  /// What the damper has taken so far, in J, theory.md eq. (E3).
+  double damper_energy() const { return damper_energy_; }
 
   /// 1/2 w M w + 1/2 dt w f, in J.
   double kinetic_energy(const particles::Particles<dim> &particles, double dt) const;
@@ -57,12 +59,13 @@ private:
   void make_lanes(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                   const std::function<double(double)> &damping);
   void add_pad_torques(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
-  void write_pad_spins(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const;
 
   MemberLanes<dim> lanes_;
   CarriedMotion<dim> carrier_;
-  std::vector<Octet> motion_, old_motion_; // w, dim per slot, m/s
-  Nodal<dim> carried_;                     // Phi^T M w', then x: what the mesh carries of w'
+  std::vector<Octet> motion_; // w, dim per slot, m/s
+  Nodal<dim> carried_;        // Phi^T M w', then x: what the mesh carries of w'
+  Nodal<dim> lost_;           // Phi^T M (damping w)
+  double damper_energy_ = 0;
   std::vector<Pad> pads_;
 };
 } // namespace ligament::coupling

@@ -241,7 +241,7 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
   compute_mesh_force(bodies, step, force_);
   fine_.begin_kick(bodies.zone->state, step.dt, force_);
   kick_coarse(step);
-  fine_damper_energy_ += fine_.finish_kick(velocity_, bodies.zone->state);
+  fine_.finish_kick(velocity_, bodies.zone->state);
   write_far_velocities(*bodies.far);
 }
 
@@ -326,7 +326,7 @@ template <int dim>
 CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepTime &step) const
 {
   CoupledEnergy e;
-  e.fine_damper = fine_damper_energy_;
+  e.fine_damper = fine_.damper_energy();
   e.gap_filter = gap_filter_energy_;
   e.potential_discrete = bodies.zone->potential_energy();
   e.potential_far = bodies.far->potential_energy();

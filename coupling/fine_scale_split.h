@@ -115,6 +115,6 @@ private:
   Nodal<dim> force_;                   // on the near nodes at the last kick, N
   Nodal<dim> change_;                  // of V
   Nodal<dim> middle_, lost_;           // V half-way through it, and what the filter takes there
-  double fine_damper_energy_ = 0, gap_filter_energy_ = 0;
+  double gap_filter_energy_ = 0;
 };
 } // namespace ligament::coupling

@@ -19,11 +19,10 @@ struct MemberLanes
 
   struct alignas(64) Slot
   {
-    Octet value[nc];          // shape functions, 0 in idle lanes
-    Octet mass, inverse_mass; // kg, 1/kg; 0 for pads and in idle lanes
-    Octet damping;            // 1 - exp(-c_f dt)
-    int particle[octet_size]; // idle lanes repeat another one's
-    int n_members;            // idle lanes come last
+    Octet value[nc];           // shape functions, 0 in idle lanes
+    Octet mass;                // kg; 0 for pads and in idle lanes
+    float damping[octet_size]; // 1 - exp(-c_f dt)
+    int particle[octet_size];  // idle lanes come last and repeat another one's
   };
   struct Batch
   {
@@ -33,19 +32,21 @@ struct MemberLanes
   };
 
   std::vector<Slot> slots;
+  std::vector<int> n_members; // of each slot
   std::vector<Batch> batches;
 };
 
-/// First pass: w' = (1 - damping) w + dt f/m of the free members, forces and momenta to the nodes.
+/// First pass: w' = (1 - damping) w + dt f/m of the free members; forces, momenta and what the
+/// damper takes of the momentum to the nodes.
 template <int dim>
 struct FineKick
 {
   std::array<const double *, dim> force; // of the particles, N
   double dt;                             // s
-  const Octet *old_motion;               // w, m/s: dim per slot
-  Octet *motion;                         // w'
+  Octet *motion;                         // w in, w' out, m/s: dim per slot
   double *nodal_force;                   // += Phi^T f, dim per near node
   double *nodal_momentum;                // += Phi^T M w'
+  double *nodal_loss;                    // += Phi^T M damping w
 };
 
 /// Second pass: w = w' - Phi x of the free members; v = Phi V + w of all.
@@ -54,15 +55,14 @@ struct FineSplit
 {
   const double *carried;              // x, m/s: dim per near node
   const double *coarse;               // V, m/s
-  const Octet *old_motion;            // w before the step
   Octet *motion;                      // w' in, w out
   std::array<double *, dim> velocity; // of the particles, m/s
 };
 
+/// Returns sum damping m w (w + w') over the members, in J.
 template <int dim>
-void kick_members(const MemberLanes<dim> &members, const FineKick<dim> &kick);
+double kick_members(const MemberLanes<dim> &members, const FineKick<dim> &kick);
 
-/// Returns sum damping m w_old (w_old + w) over the members, in J: twice what the damper took.
 template <int dim>
-double split_members(const MemberLanes<dim> &members, const FineSplit<dim> &split);
+void split_members(const MemberLanes<dim> &members, const FineSplit<dim> &split);
 } // namespace ligament::coupling
