@@ -97,10 +97,6 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   exceeded.clear();
   if (constants_.n_directions == 0) {
     dilatation(arrays, segments, window);
-    for (double *const f : arrays.force)
-      std::fill_n(f, n_particles_, 0.);
-    for (double *const t : arrays.torque)
-      std::fill_n(t, n_particles_, 0.);
     return;
   }
   RowSweep<dim> s = sweep(arrays, segments, window);

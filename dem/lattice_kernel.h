@@ -108,9 +108,9 @@ public:
   void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
                   RowWindow &window) const;
 
-  /// The same, and force and torque of the lattice bonds; overwrites. With a strength above 0 (Pa),
-  /// replaces `exceeded` by the ranges of particles that have a forward bond under at least that
-  /// tension; ranges don't overlap.
+  /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
+  /// there is no lattice. With a strength above 0 (Pa), replaces `exceeded` by the ranges of
+  /// particles that have a forward bond under at least that tension; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
               double strength, RowWindow &window, std::vector<RowRange> &exceeded) const;
 
