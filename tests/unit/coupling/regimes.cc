@@ -17,7 +17,7 @@ template <int dim>
 using Matrix = Eigen::Matrix<double, dim, dim>;
 
 template <int dim>
-CoupledBodiesParameters<dim> small_body(double nu)
+CoupledBodiesParameters<dim> small_body(double nu, bool has_hanging_nodes = false)
 {
   CoupledBodiesParameters<dim> p;
   p.material.poissons_ratio = nu;
@@ -32,6 +32,11 @@ CoupledBodiesParameters<dim> small_body(double nu)
     p.zone_size = {100, 100, 25};
     p.cell_size = 3.1;
     p.overlap_cells = 2;
+  }
+  if (has_hanging_nodes) {
+    p.cell_size = 2.6;
+    p.overlap_cells = 4;
+    p.levels = p.fine_cells = 1;
   }
   return p;
 }
@@ -114,14 +119,9 @@ double power_error(CoupledBodies<dim> &body)
 }
 
 template <int dim>
-void expect_gradient(Regime regime, double stiffening = 0, bool is_graded = false)
+void expect_gradient(Regime regime, double stiffening = 0, bool has_hanging_nodes = false)
 {
-  auto p = small_body<dim>(0.3);
-  if (is_graded) {
-    p.cell_size = 2.6;
-    p.overlap_cells = 4;
-    p.levels = p.fine_cells = 1;
-  }
+  auto p = small_body<dim>(0.3, has_hanging_nodes);
   if (stiffening > 0)
     p.replace_law = [&](auto law) {
       return std::make_unique<StiffeningLaw<dim>>(std::move(law), stiffening);
@@ -221,9 +221,10 @@ double largest_near_force(CoupledBodies<dim> &body)
 
 /// Residual of a turned and strained body over C11 h^(dim-1), and its energy over C11 V.
 template <int dim>
-std::pair<double, double> turned(Regime regime, const Matrix<dim> &strain)
+std::pair<double, double> turned(Regime regime, const Matrix<dim> &strain,
+                                 bool has_hanging_nodes = false)
 {
-  auto body = make_coupled_bodies(small_body<dim>(0.3));
+  auto body = make_coupled_bodies(small_body<dim>(0.3, has_hanging_nodes));
   auto bodies = body.bodies();
   body.split->set_regime(regime, bodies);
   const double c11 = body.zone->force->elastic_constants().stiffness(0, 0);
@@ -241,6 +242,7 @@ TEST(Regimes, RotationLeavesNoForceAndNoEnergy)
   };
   for (const Regime regime : {Regime::corotated, Regime::nonlinear}) {
     expect_nothing(turned<2>(regime, Matrix<2>::Zero()));
+    expect_nothing(turned<2>(regime, Matrix<2>::Zero(), true));
     expect_nothing(turned<3>(regime, Matrix<3>::Zero()));
   }
 }
@@ -254,7 +256,9 @@ TEST(Regimes, UniformStrainOfATurnedBodyLeavesForcesOfSecondOrder)
   e << 0.8, 0.3, 0.3, -0.5;
   for (const Regime regime : {Regime::corotated, Regime::nonlinear})
     for (const double size : {1e-5, 0.05})
-      EXPECT_LT(turned<2>(regime, size * e).first, 1e-2 * size * size) << name_of(regime);
+      for (const bool has_hanging_nodes : {false, true})
+        EXPECT_LT(turned<2>(regime, size * e, has_hanging_nodes).first, 1e-2 * size * size)
+            << name_of(regime);
 }
 } // namespace
 } // namespace ligament
