@@ -107,21 +107,26 @@ struct Frame
   double left, top, width, height;
 };
 
-/// Path of a curve: what falls into the same half pixel column is drawn as its extremes.
+/// Path of a curve: what falls into the same half pixel column is drawn as its extremes, and no
+/// way twice, or dashes would fill each other's gaps.
 std::string path(const Series &series, const Scale &x, const Scale &y, const Frame &frame)
 {
   std::string text;
   bool connected = false;
-  double column = -1, low = 0, high = 0, last_y = 0;
+  double column = -1, low = 0, high = 0, first_y = 0, last_y = 0, y_now = 0;
   const auto put = [&](double px, double py) {
     text += fmt::format("{}{:.1f} {:.1f}", connected ? "L" : "M", px, py);
     connected = true;
+    y_now = py;
   };
   const auto finish_column = [&] {
-    if (column >= 0 && high > low) {
-      put(column, low);
-      put(column, high);
-      put(column, last_y);
+    if (column >= 0) {
+      if (std::min(first_y, last_y) > low)
+        put(column, low);
+      if (std::max(first_y, last_y) < high)
+        put(column, high);
+      if (last_y != y_now)
+        put(column, last_y);
     }
     column = -1;
   };
@@ -140,7 +145,7 @@ std::string path(const Series &series, const Scale &x, const Scale &y, const Fra
       finish_column();
       put(px, py);
       column = px;
-      low = high = py;
+      low = high = first_y = py;
     }
     last_y = py;
   }

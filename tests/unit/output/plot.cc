@@ -104,6 +104,19 @@ TEST(Plot, LongCurvesKeepTheirExtremes)
   EXPECT_GT(zero - top, 0.3 * plot.height);
 }
 
+// A line up, two points, is drawn once: a second pass would fill the gaps between its dashes.
+TEST(Plot, UprightLinesAreDrawnOnce)
+{
+  Plot plot;
+  plot.series = {{"limit", {1, 1}, {0, 5}, true}, {"", {0, 2}, {0, 5}}};
+  const auto points = path_points(curve_of(svg(plot)));
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0][0], points[1][0]);
+  EXPECT_GT(points[0][1], points[1][1]);
+  plot.series[0] = {"spike", {1, 1, 1}, {0, 5, 0}};
+  EXPECT_EQ(path_points(curve_of(svg(plot))).size(), 3u);
+}
+
 TEST(Plot, EmptyConstantAndLogarithmicCurves)
 {
   Plot plot;
