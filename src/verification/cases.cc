@@ -1,6 +1,7 @@
 #include "src/verification/cases.h"
 
 #include "core/check.h"
+#include "src/verification/waves_twin.h"
 
 namespace ligament::program
 {
@@ -18,6 +19,7 @@ std::vector<Case> all_cases()
   add(coarse_mass_cases());
   add(drift_cases());
   add(wave_cases());
+  add(waves_twin_cases());
   add(scheme_cases());
   add(wave_bench_cases());
   add(absorbing_cases());

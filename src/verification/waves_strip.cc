@@ -158,20 +158,33 @@ fem::Mesh<dim> strip_mesh(const StripParameters &p, int layers, double lower)
 } // namespace
 
 template <int dim>
-Strip<dim> make_strip(const StripParameters &p)
+LatticeBar<dim> lattice_bar(const StripParameters &p)
 {
-  const auto kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
-  const int across = p.cells_across * p.cell_size;
-  const double overlap_length = p.overlap_cells * p.cell_size;
   // Height of a layer, and of a cell above its centre.
   const double layer = dim == 2 ? std::sqrt(3.) / 2 : std::sqrt(0.5);
   const double cell_top = dim == 2 ? 1 / std::sqrt(3.) : std::sqrt(0.5);
-  const int layers = int(std::ceil((p.zone_length + overlap_length) / layer));
-  const double edge = (layers - 1 + p.mesh_shift) * layer + cell_top;
+  LatticeBar<dim> bar;
+  bar.layers = int(std::ceil((p.zone_length + double(p.overlap_cells * p.cell_size)) / layer));
+  bar.edge = (bar.layers - 1 + p.mesh_shift) * layer + cell_top;
+  return bar;
+}
 
+template <int dim>
+Strip<dim> make_strip(const StripParameters &p)
+{
+  const auto bar = lattice_bar<dim>(p);
+  return make_strip<dim>(
+      p, make_periodic_packing<dim>(bar.kind, p.cells_across * p.cell_size, bar.layers, false),
+      bar.edge);
+}
+
+template <int dim>
+Strip<dim> make_strip(const StripParameters &p, particles::Packing<dim> packing, double edge,
+                      double dt_limit)
+{
+  const double overlap_length = p.overlap_cells * p.cell_size;
   Strip<dim> strip;
   strip.mesh_begin = edge - overlap_length;
-  auto packing = make_periodic_packing<dim>(kind, across, layers, false);
   particles::Particles<dim> state;
   particles::fill_particles(packing, p.material.density, state);
   strip.zone = std::make_unique<particles::ParticleSolver<dim>>(
@@ -196,7 +209,7 @@ Strip<dim> make_strip(const StripParameters &p)
   overlap.spacing = 1;
   overlap.transition_cells = p.transition_cells;
   for (int c = 0; c < dim - 1; ++c)
-    overlap.period[c] = across;
+    overlap.period[c] = p.cells_across * p.cell_size;
   strip.timers = std::make_unique<core::Timers>();
   auto bodies = strip.bodies();
   if (coupling::is_energy_weighted(p.scheme)) {
@@ -207,7 +220,7 @@ Strip<dim> make_strip(const StripParameters &p)
         std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, bridging, *strip.timers);
   }
   strip.dt_stable = strip.zone->force->stable_step(strip.zone->state);
-  strip.dt = p.step_fraction * strip.dt_stable;
+  strip.dt = p.step_fraction * std::min(strip.dt_stable, dt_limit);
   if (!strip.coupler)
     strip.coupler = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split,
                                                                     strip.dt, *strip.timers);
@@ -216,6 +229,10 @@ Strip<dim> make_strip(const StripParameters &p)
 
 template particles::Packing<2> make_periodic_packing(particles::LatticeKind, int, int, bool);
 template particles::Packing<3> make_periodic_packing(particles::LatticeKind, int, int, bool);
+template LatticeBar<2> lattice_bar<2>(const StripParameters &);
+template LatticeBar<3> lattice_bar<3>(const StripParameters &);
 template Strip<2> make_strip<2>(const StripParameters &);
 template Strip<3> make_strip<3>(const StripParameters &);
+template Strip<2> make_strip<2>(const StripParameters &, particles::Packing<2>, double, double);
+template Strip<3> make_strip<3>(const StripParameters &, particles::Packing<3>, double, double);
 } // namespace ligament::program

@@ -7,6 +7,8 @@
 #include "dem/material.h"
 #include "particles/lattice_packing.h"
 
+#include <limits>
+
 namespace ligament::program
 {
 /// Particles of spacing 1 in `layers` layers of `across` (2D) or across x across (3D) particles;
@@ -58,13 +60,37 @@ struct Strip
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<core::Timers> timers;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
-  double dt = 0;        // step_fraction of the stable one
+  double dt = 0;        // step_fraction of the stable one or of dt_limit
   double dt_stable = 0; // of the discrete side, energy weights included
   double mesh_begin = 0;
 
   coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
 };
 
+/// J, without what dampers took.
+inline double mechanical_energy(const coupling::CoupledEnergy &e)
+{
+  return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
+}
+
 template <int dim>
 Strip<dim> make_strip(const StripParameters &parameters);
+
+/// The packing of that bar.
+template <int dim>
+struct LatticeBar
+{
+  particles::LatticeKind kind =
+      dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  int layers;
+  double edge;
+};
+template <int dim>
+LatticeBar<dim> lattice_bar(const StripParameters &parameters);
+
+/// The same of any packing of spacing 1, periodic sideways, whose edge lies at `edge` on the last
+/// axis; its stable step is at most `dt_limit`.
+template <int dim>
+Strip<dim> make_strip(const StripParameters &parameters, particles::Packing<dim> packing,
+                      double edge, double dt_limit = std::numeric_limits<double>::infinity());
 } // namespace ligament::program
