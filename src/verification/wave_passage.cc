@@ -255,12 +255,13 @@ PassageFigures measure_passage(const PassageParameters &p)
   const double whole = (p.outwards ? meter.particles(strip) : meter.mesh(strip)).sum();
   coupling::StepTime time;
   time.dt = strip.dt;
+  strip.coupler->compute_forces(bodies, time);
+  const double before = mechanical_energy(strip.coupler->energy(bodies, time));
   run(strip, std::lround(duration / strip.dt), time);
   const auto below = meter.particles(strip) / whole, above = meter.mesh(strip) / whole;
   figures.reflected = p.outwards ? below : above;
   figures.transmitted = p.outwards ? above : below;
-  const auto e = strip.coupler->energy(bodies, time);
-  figures.lost = (e.fine_damper + e.gap_filter) / whole;
+  figures.lost = 1 - mechanical_energy(strip.coupler->energy(bodies, time)) / before;
   return figures;
 }
 

@@ -22,7 +22,7 @@ struct PassageFigures
 {
   double angle = 0; // degrees, of the middle of the packet
   WaveEnergy reflected, transmitted;
-  double lost = 0; // taken by dampers
+  double lost = 0; // by dampers, and by schemes that don't keep energy
 
   /// What the sums above miss: waves that are still in the overlap, and errors of the method.
   double missing() const { return 1 - reflected.sum() - transmitted.sum() - lost; }
