@@ -10,11 +10,13 @@ template <int dim>
 struct Bond
 {
   int i, j;
-  Vector<dim> normal;           // unit, i -> j, reference
-  Vector<dim> lever_i, lever_j; // m, centre to face point, reference
-  double area, distance;        // S in m^2, r0 in m
-  double bending, twist;        // k_b, k_t in N m, weight included
-  double weight = 1;            // share of the pair's energy that counts
+  Vector<dim> normal;              // unit, i -> j, reference
+  Vector<dim> lever_i, lever_j;    // m, centre to face point, reference
+  double area, distance;           // S in m^2, r0 in m
+  double bending, twist;           // k_b, k_t in N m, weight included
+  double weight = 1;               // share of the pair's energy that counts
+  double shear_i = 0, shear_j = 0; // G of both sides, Pa
+  bool joins_materials = false;    // of different elastic constants
 };
 
 /// Relative motion of a bonded face.

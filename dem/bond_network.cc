@@ -23,13 +23,29 @@ int lattice_direction(const particles::Face<dim> &face, const particles::Packing
   }
   return -1;
 }
+
+/// 1 for particles of other materials than the first one and for their neighbours in it.
+template <int dim>
+std::vector<char> particles_off_lattice(const particles::Packing<dim> &packing,
+                                        const Materials &materials)
+{
+  std::vector<char> off(packing.size(), 0);
+  for (int i = 0; i < packing.size(); ++i)
+    off[i] = materials.number(i) != 0;
+  for (const auto &face : packing.faces)
+    if (!face.cracked && materials.differ(face.i, face.j))
+      off[face.i] = off[face.j] = 1;
+  return off;
+}
 } // namespace
 
 template <int dim>
-Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const DemMaterial &material,
+Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const Materials &materials,
                                       double thickness)
 {
   const double r = face.q_i + face.q_j;
+  const DemMaterial &i = materials.of(face.i), &j = materials.of(face.j);
+  const double share = face.q_i / r;
   return {face.i,
           face.j,
           face.normal,
@@ -37,14 +53,20 @@ Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const De
           face.lever_j,
           face.area,
           r,
-          material.bending_stiffness<dim>(face.area, r, thickness),
-          material.twisting_stiffness(face.area, r)};
+          in_series(i.bending_stiffness<dim>(face.area, r, thickness),
+                    j.bending_stiffness<dim>(face.area, r, thickness), share),
+          in_series(i.twisting_stiffness(face.area, r), j.twisting_stiffness(face.area, r), share),
+          1,
+          i.shear_modulus(),
+          j.shear_modulus(),
+          materials.differ(face.i, face.j)};
 }
 
 template <int dim>
-BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemMaterial &material)
-    : mask_(packing.size(), 0)
+BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Materials &materials)
+    : lattice_shear_modulus_(materials.base().shear_modulus()), mask_(packing.size(), 0)
 {
+  const DemMaterial &material = materials.base();
   const int n = packing.size(), n_dir = int(packing.directions.size());
   core::require(n_dir <= max_directions, "the packing has more lattice directions than supported");
   for (const auto &d : packing.directions)
@@ -55,13 +77,17 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const DemM
   std::vector<std::array<int, 2 * max_directions>> offset(n);
   for (auto &o : offset)
     o.fill(0);
+  const std::vector<char> off_lattice = particles_off_lattice(packing, materials);
   for (const auto &face : packing.faces) {
     if (face.cracked)
       continue;
     ++n_bonds_;
-    const int k = lattice_direction(face, packing);
+    const int k =
+        off_lattice[face.i] || off_lattice[face.j] ? -1 : lattice_direction(face, packing);
     if (k < 0) {
-      irregular_.push_back(make_bond(face, material, packing.thickness));
+      if (materials.differ(face.i, face.j))
+        between_materials_.push_back(int(irregular_.size()));
+      irregular_.push_back(make_bond(face, materials, packing.thickness));
       continue;
     }
     const bool along = face.normal.dot(directions_[k].normal) > 0;
@@ -154,7 +180,18 @@ Bond<dim> BondNetwork<dim>::lattice_bond(int i, int j, int direction) const
 {
   const auto &d = directions_[direction];
   const Vector<dim> lever = d.distance / 2 * d.normal;
-  return {i, j, d.normal, lever, -lever, d.area, d.distance, d.bending, d.twist};
+  return {i,
+          j,
+          d.normal,
+          lever,
+          -lever,
+          d.area,
+          d.distance,
+          d.bending,
+          d.twist,
+          1,
+          lattice_shear_modulus_,
+          lattice_shear_modulus_};
 }
 
 template <int dim>

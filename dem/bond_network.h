@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dem/bond.h"
-#include "dem/material.h"
+#include "dem/materials.h"
 #include "particles/packing.h"
 
 #include <cstdint>
@@ -43,8 +43,9 @@ template <int dim>
 class BondNetwork
 {
 public:
-  /// Bonds of all faces that aren't cracked.
-  BondNetwork(const particles::Packing<dim> &packing, const DemMaterial &material);
+  /// Bonds of all faces that aren't cracked. Those of other materials than the first one, and all
+  /// bonds of particles that have a bond to another material, are in the table.
+  BondNetwork(const particles::Packing<dim> &packing, const Materials &materials);
 
   int n_particles() const { return int(mask_.size()); }
   int n_directions() const { return int(directions_.size()); }
@@ -62,9 +63,13 @@ public:
   template <typename Visit>
   void for_each_bond(Visit &&visit) const;
 
-  /// Only those of the table.
+  /// Only those of the table, without those between materials.
   template <typename Visit>
   void for_each_irregular(Visit &&visit) const;
+
+  /// Only those between materials.
+  template <typename Visit>
+  void for_each_interface(Visit &&visit) const;
 
   /// The same for the bonds of one particle.
   template <typename Visit>
@@ -77,7 +82,7 @@ public:
   /// the lattice for the table: those that keep theirs cost what they did.
   void set_weights(const std::vector<double> &weights);
 
-  static Bond<dim> make_bond(const particles::Face<dim> &face, const DemMaterial &material,
+  static Bond<dim> make_bond(const particles::Face<dim> &face, const Materials &materials,
                              double thickness);
 
 private:
@@ -86,11 +91,13 @@ private:
   Bond<dim> lattice_bond(int i, int j, int direction) const;
 
   std::vector<DirectionData<dim>> directions_;
+  double lattice_shear_modulus_; // Pa
   std::vector<std::uint32_t> mask_;
   std::vector<RowSegment> segments_;
   std::vector<int> segment_of_;
   std::vector<Bond<dim>> irregular_;
   std::vector<char> intact_;
+  std::vector<int> between_materials_;              // entries of the table
   std::vector<int> first_irregular_, irregular_of_; // rows of table entries per particle
   long n_bonds_ = 0;
 };
@@ -106,6 +113,7 @@ void BondNetwork<dim>::for_each_bond(Visit &&visit) const
         if (mask_[i] >> k & 1)
           visit(BondId{i, k}, lattice_bond(i, i + s.forward[k], k));
   for_each_irregular(visit);
+  for_each_interface(visit);
 }
 
 template <int dim>
@@ -113,8 +121,17 @@ template <typename Visit>
 void BondNetwork<dim>::for_each_irregular(Visit &&visit) const
 {
   for (std::size_t b = 0; b < irregular_.size(); ++b)
-    if (intact_[b])
+    if (intact_[b] && !irregular_[b].joins_materials)
       visit(BondId{int(b), -1}, irregular_[b]);
+}
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_interface(Visit &&visit) const
+{
+  for (const int b : between_materials_)
+    if (intact_[b])
+      visit(BondId{b, -1}, irregular_[b]);
 }
 
 template <int dim>

@@ -42,6 +42,9 @@ void Contacts<dim>::add(const Bond<dim> &face, bool from_face)
   c.face = face;
   c.from_face = from_face;
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
+  c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
+                              materials_.of(face.j).shear_modulus(), c.share_i);
+  c.friction = materials_.friction(face.i, face.j);
   contacts_.push_back(c);
 }
 
@@ -50,8 +53,7 @@ typename Contacts<dim>::State Contacts<dim>::state(const Contact<dim> &c, const 
 {
   const Vector<dim> x = centre_distance<dim>(p, c.face.i, c.face.j);
   const double r = x.norm();
-  return {x / r, r, c.face.distance - r,
-          2 * material_.shear_modulus() * c.face.area / c.face.distance};
+  return {x / r, r, c.face.distance - r, 2 * c.shear_modulus * c.face.area / c.face.distance};
 }
 
 template <int dim>
@@ -74,7 +76,7 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
   }
   const Vector<dim> carried = c.slip;
   c.slip += increment;
-  const double trial = c.slip.norm(), limit = material_.friction * std::max(s.overlap, 0.);
+  const double trial = c.slip.norm(), limit = c.friction * std::max(s.overlap, 0.);
   if (trial > limit) {
     const Vector<dim> slid = c.slip * (1 - limit / trial);
     c.slip -= slid;
@@ -96,7 +98,7 @@ void Contacts<dim>::add_forces(Particles &p)
 {
   for (auto &c : contacts_) {
     const State s = state(c, p);
-    if (material_.friction > 0) {
+    if (c.friction > 0) {
       if (s.overlap > 0 || c.slip.squaredNorm() > 0)
         update_slip(c, s, p);
       else
@@ -107,7 +109,7 @@ void Contacts<dim>::add_forces(Particles &p)
     const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal); // on i
     ligament::add(p.force, c.face.i, f);
     ligament::add(p.force, c.face.j, Vector<dim>(-f));
-    if (material_.friction > 0) {
+    if (c.friction > 0) {
       const Spin<dim> torque = s.distance * cross(s.normal, f);
       ligament::add(p.torque, c.face.i, Spin<dim>(c.share_i * torque));
       ligament::add(p.torque, c.face.j, Spin<dim>((1 - c.share_i) * torque));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dem/bond.h"
-#include "dem/material.h"
+#include "dem/materials.h"
 
 namespace ligament::dem
 {
@@ -10,9 +10,11 @@ namespace ligament::dem
 template <int dim>
 struct Contact
 {
-  Bond<dim> face; // reference geometry of the face, if it had one
-  bool from_face; // was a face of the packing; false: found by the search
-  double share_i; // q_i / r0: the contact point lies at share_i r from i
+  Bond<dim> face;       // reference geometry of the face, if it had one
+  bool from_face;       // was a face of the packing; false: found by the search
+  double share_i;       // q_i / r0: the contact point lies at share_i r from i
+  double shear_modulus; // Pa, of both sides in series
+  double friction;      // Coulomb's coefficient
   // Friction: the elastic slip of j against i, and where both were when it was last updated.
   Vector<dim> slip = Vector<dim>::Zero(); // m
   Vector<dim> last_distance = Vector<dim>::Zero();
@@ -27,7 +29,7 @@ class Contacts
 public:
   using Particles = particles::Particles<dim>;
 
-  explicit Contacts(const DemMaterial &material) : material_(material) {}
+  explicit Contacts(const Materials &materials) : materials_(materials) {}
 
   void add(const Bond<dim> &face, bool from_face);
 
@@ -63,7 +65,7 @@ private:
   State state(const Contact<dim> &contact, const Particles &particles) const;
   void update_slip(Contact<dim> &contact, const State &state, const Particles &particles);
 
-  DemMaterial material_;
+  Materials materials_;
   std::vector<Contact<dim>> contacts_;
   double frictional_work_ = 0;
 };

@@ -24,18 +24,19 @@ double mean_face_area(const particles::Packing<dim> &packing)
 } // namespace
 
 template <int dim>
-ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMaterial &material,
+ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
-    : packing_(std::move(packing)), material_(material), fracture_(fracture),
-      bonds_(packing_, material), kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
-                                          material.shear_modulus(), material.poissons_ratio != 0),
-      slices_(bonds_, material.shear_modulus(), false),
-      surface_(packing_, material, std::move(loads)), contacts_(material),
+    : packing_(std::move(packing)), materials_(materials), fracture_(fracture),
+      bonds_(packing_, materials),
+      kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
+              materials.base().shear_modulus(), !materials.has_no_dilatation()),
+      slices_(bonds_, materials.base().shear_modulus(), false), interfaces_(bonds_),
+      surface_(packing_, materials, std::move(loads)), contacts_(materials),
       search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
       lambda_per_volume_(packing_.size())
 {
-  material_.check();
+  materials_.base().check();
   for (const auto &wall : surface_.walls())
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
                            packing_.volume[wall.i];
@@ -44,22 +45,25 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const DemMate
     update_volumetric_stiffness(i);
   for (const auto &face : packing_.faces)
     if (face.cracked)
-      contacts_.add(BondNetwork<dim>::make_bond(face, material_, packing_.thickness), true);
+      contacts_.add(BondNetwork<dim>::make_bond(face, materials_, packing_.thickness), true);
   // The bonds hold what is needed of these: most of the memory of a packing.
   const auto drop = [](auto &array) { std::decay_t<decltype(array)>().swap(array); };
   drop(packing_.faces);
   drop(packing_.global_id);
   drop(packing_.diameter);
+  drop(packing_.material);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::lay_out_slices()
 {
-  slices_ = BondSlices<dim>(bonds_, material_.shear_modulus(), bonds_.n_directions() == 0);
+  slices_ = BondSlices<dim>(bonds_, materials_.base().shear_modulus(), bonds_.n_directions() == 0);
   records_ = {};
   other_particles_ = slices_.particles();
   const auto loaded = surface_.particles();
   other_particles_.insert(other_particles_.end(), loaded.begin(), loaded.end());
+  const auto &joined = interfaces_.members();
+  other_particles_.insert(other_particles_.end(), joined.begin(), joined.end());
 }
 
 template <int dim>
@@ -71,7 +75,7 @@ void ManyBodyForce<dim>::update_volumetric_stiffness(int i)
     phi += b.area * q / packing_.volume[i];
   });
   lambda_per_volume_[i] =
-      energy_weight(i) * material_.volumetric_stiffness<dim>(phi) / packing_.volume[i];
+      energy_weight(i) * materials_.of(i).volumetric_stiffness<dim>(phi) / packing_.volume[i];
 }
 
 template <int dim>
@@ -80,6 +84,10 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
   core::require(energy_weights_.empty() && int(weights.size()) == packing_.size() &&
                     broken_.empty(),
                 "energy weights are set once, for every particle of an intact body");
+  bonds_.for_each_interface([&](BondId, const Bond<dim> &b) {
+    core::require(weights[b.i] == 1 && weights[b.j] == 1,
+                  "the overlap sees a bond between two materials");
+  });
   energy_weights_ = weights;
   bonds_.set_weights(weights);
   lay_out_slices();
@@ -141,9 +149,10 @@ template <int dim>
 Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<dim> &m,
                                            const std::vector<double> &pressure) const
 {
+  if (b.joins_materials)
+    return b.area * Interfaces<dim>::traction(b, m, pressure);
   return b.area / b.distance *
-         (2 * b.weight * material_.shear_modulus() * m.du + pressure[b.i] * m.a_i -
-          pressure[b.j] * m.a_j);
+         (2 * b.weight * b.shear_i * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
 }
 
 template <int dim>
@@ -162,12 +171,14 @@ void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLo
   work.other_pressure.resize(packing_.size(), 0.);
   const LatticeArrays<dim> a = arrays(p, work);
   slices_.load(a, records_);
-  if (material_.poissons_ratio == 0)
+  if (materials_.has_no_dilatation())
     return;
   for (const int i : other_particles_)
     work.other_pressure[i] = 0;
   slices_.add_pressures(a, work.other_pressure.data(), records_);
   surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
+  if (!interfaces_.empty())
+    interfaces_.add_own_part(p, lambda_per_volume_, work.other_pressure);
 }
 
 template <int dim>
@@ -175,7 +186,7 @@ void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) cons
 {
   find_turns(p, work);
   find_other_pressure(p, surface_, work);
-  if (material_.poissons_ratio != 0)
+  if (!materials_.has_no_dilatation())
     kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
 }
 
@@ -190,7 +201,8 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
   for (int c = 0; c < n_spins<dim>; ++c)
     a.torque[c] = p.torque[c].data();
   kernel_.forces(a, bonds_.segments(), strength, rows_, work.exceeded_rows);
-  slices_.forces(a, strength, records_, work.exceeded_particles);
+  slices_.forces(a, strength > 0 ? screening_strength() : 0, records_, work.exceeded_particles);
+  interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
 }
 
@@ -221,10 +233,10 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   find_pressure(p, work);
   double sum = surface_.energy(p) + contacts_.energy(p);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m = motion(b, p, work);
-    sum += b.weight * material_.shear_modulus() * b.area / b.distance * m.du.squaredNorm() +
-           bending_energy(b, p);
+    if (!b.joins_materials)
+      sum += bond_energy(b, p);
   });
+  sum += interfaces_.energy(p, work.pressure);
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)
       sum += 0.5 * work.pressure[i] * work.pressure[i] / lambda_per_volume_[i];
@@ -234,7 +246,7 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 template <int dim>
 particles::ElasticConstants<dim> ManyBodyForce<dim>::elastic_constants() const
 {
-  return material_.elastic_constants<dim>();
+  return materials_.base().elastic_constants<dim>();
 }
 
 template class ManyBodyForce<2>;

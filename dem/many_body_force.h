@@ -7,6 +7,7 @@
 #include "dem/contact_search.h"
 #include "dem/contacts.h"
 #include "dem/fracture_law.h"
+#include "dem/interfaces.h"
 #include "dem/lattice_kernel.h"
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
@@ -35,7 +36,7 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// Loads act on the outer faces of their boundary. Faces that a crack cuts touch from the start.
-  ManyBodyForce(particles::Packing<dim> packing, const DemMaterial &material,
+  ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
                 std::vector<core::BoundaryLoad<dim>> loads, const FractureLaw &fracture = {});
 
   /// Also breaks the bonds that exceed the strength and books work and energies; in such a step the
@@ -52,6 +53,7 @@ public:
 
   particles::ElasticConstants<dim> elastic_constants() const override;
 
+  /// Without the bonds between materials and the volumes that they enter.
   void
   add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
 
@@ -95,7 +97,7 @@ public:
   /// Bonds break at this tension on the face from now on, in Pa.
   void set_strength(double strength);
   const FractureLaw &fracture() const { return fracture_; }
-  const DemMaterial &material() const { return material_; }
+  const Materials &materials() const { return materials_; }
 
 private:
   /// What one evaluation leaves behind.
@@ -132,22 +134,37 @@ private:
   void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
                       Workspace &work) const;
 
+  /// Of lattice bonds in Pa; 0: nothing breaks.
   double strength() const;
+  /// In terms of the first material's bonds: no bond of the table breaks at less strain.
+  double screening_strength() const;
+  /// Of a bond in Pa, which has one.
+  double strength_of(const Bond<dim> &bond) const;
   /// The bonds that exceed the strength, in the order of global ids.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
-  /// Elastic energy of one bond and of the volumes of its two particles, in J.
+  /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
+  /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
+  double bond_energy(const Bond<dim> &bond, const Particles &particles) const;
+  bool is_at_interface(const Bond<dim> &bond) const
+  {
+    return interfaces_.is_member(bond.i) || interfaces_.is_member(bond.j);
+  }
+  /// The bond no longer carries; pressures follow. Returns the energy after in J, as local_energy
+  /// counts it.
+  double remove_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
   void lay_out_slices();
   void update_volumetric_stiffness(int i);
   double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
   particles::Packing<dim> packing_;
-  DemMaterial material_;
+  Materials materials_;
   FractureLaw fracture_;
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
-  BondSlices<dim> slices_; // the irregular bonds
+  BondSlices<dim> slices_; // the irregular bonds, but those between materials
+  Interfaces<dim> interfaces_;
   SurfaceLoads<dim> surface_;
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;

@@ -19,12 +19,31 @@ double ManyBodyForce<dim>::strength() const
 }
 
 template <int dim>
+double ManyBodyForce<dim>::strength_of(const Bond<dim> &b) const
+{
+  const auto &of = fracture_.strengths;
+  return of.empty() ? fracture_.strength
+                    : std::min(of[materials_.number(b.i)], of[materials_.number(b.j)]);
+}
+
+template <int dim>
+double ManyBodyForce<dim>::screening_strength() const
+{
+  double least = fracture_.strength;
+  for (std::size_t m = 0; m < fracture_.strengths.size(); ++m)
+    least = std::min(least, fracture_.strengths[m] * materials_.base().shear_modulus() /
+                                materials_.all()[m].shear_modulus());
+  return least;
+}
+
+template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
 {
   std::vector<BondId> found;
   const auto test = [&](int i, bool lattice) {
     bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-      if (lattice == (id.direction >= 0) && b.i == i && tension(b, p, work_.pressure) >= strength())
+      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i &&
+          tension(b, p, work_.pressure) >= strength_of(b))
         found.push_back(id);
     });
   };
@@ -33,6 +52,11 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
       test(i, true);
   for (const int i : work_.exceeded_particles)
     test(i, false);
+  if (strength() > 0)
+    bonds_.for_each_interface([&](BondId id, const Bond<dim> &b) {
+      if (tension(b, p, work_.pressure) >= strength_of(b))
+        found.push_back(id);
+    });
   const auto ids = [&](const BondId &id) {
     const Bond<dim> b = bonds_.bond(id);
     const auto i = p.global_id[b.i], j = p.global_id[b.j];
@@ -44,15 +68,51 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
 }
 
 template <int dim>
+double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
+{
+  return b.weight * b.shear_i * b.area / b.distance * motion(b, p).du.squaredNorm() +
+         bending_energy(b, p);
+}
+
+template <int dim>
 double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) const
 {
-  double sum =
-      b.weight * material_.shear_modulus() * b.area / b.distance * motion(b, p).du.squaredNorm() +
-      bending_energy(b, p);
+  double sum = b.joins_materials ? 0 : bond_energy(b, p);
   for (const int i : {b.i, b.j})
-    if (lambda_per_volume_[i] != 0)
+    if (lambda_per_volume_[i] != 0 && !interfaces_.is_member(i))
       sum += 0.5 * work_.pressure[i] * work_.pressure[i] / lambda_per_volume_[i];
+  if (is_at_interface(b))
+    sum += interfaces_.energy(p, work_.pressure) +
+           interfaces_.volume_energy(lambda_per_volume_, work_.pressure);
   return sum;
+}
+
+// The volumes lose the share of this face; the other faces keep theirs.
+template <int dim>
+double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
+{
+  std::vector<double> &pressure = work_.pressure;
+  const bool at_interface = is_at_interface(b);
+  if (at_interface)
+    interfaces_.take_own_part(p, lambda_per_volume_, pressure);
+  const auto m = motion(b, p);
+  const double s_r = b.joins_materials ? 0 : b.area / b.distance;
+  const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
+                                                        std::pair(b.j, -s_r * m.a_j.dot(m.du))};
+  bonds_.remove(id);
+  if (b.joins_materials)
+    interfaces_.remove(id.index);
+  else if (id.direction < 0)
+    slices_.remove(id.index);
+  for (const auto &[i, share] : shares)
+    if (lambda_per_volume_[i] != 0) {
+      const double rest = pressure[i] / lambda_per_volume_[i] - share;
+      update_volumetric_stiffness(i);
+      pressure[i] = lambda_per_volume_[i] * rest;
+    }
+  if (at_interface)
+    interfaces_.add_own_part(p, lambda_per_volume_, pressure);
+  return local_energy(b, p) - (b.joins_materials ? 0 : bond_energy(b, p));
 }
 
 template <int dim>
@@ -60,25 +120,10 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
 {
   const auto force_before = p.force;
   const auto torque_before = p.torque;
-  std::vector<double> &pressure = work_.pressure;
   for (const BondId &id : bonds) {
     const Bond<dim> b = bonds_.bond(id);
-    const auto m = motion(b, p);
     double released = local_energy(b, p);
-    // The volumes lose the share of this face; the other faces keep theirs.
-    const double s_r = b.area / b.distance;
-    const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
-                                                          std::pair(b.j, -s_r * m.a_j.dot(m.du))};
-    bonds_.remove(id);
-    if (id.direction < 0)
-      slices_.remove(id.index);
-    for (const auto &[i, share] : shares)
-      if (lambda_per_volume_[i] != 0) {
-        const double rest = pressure[i] / lambda_per_volume_[i] - share;
-        update_volumetric_stiffness(i);
-        pressure[i] = lambda_per_volume_[i] * rest;
-        released -= 0.5 * lambda_per_volume_[i] * rest * rest;
-      }
+    released -= remove_bond(id, b, p);
     contacts_.add(b, true);
     released -= contacts_.compression_energy(contacts_.all().back(), p);
     search_.add_surface_particle(b.i);
@@ -110,6 +155,12 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
 template void ManyBodyForce<2>::set_strength(double);
 template void ManyBodyForce<3>::set_strength(double);
 template double ManyBodyForce<2>::strength() const;
+template double ManyBodyForce<2>::screening_strength() const;
+template double ManyBodyForce<3>::screening_strength() const;
+template double ManyBodyForce<2>::strength_of(const Bond<2> &) const;
+template double ManyBodyForce<3>::strength_of(const Bond<3> &) const;
+template double ManyBodyForce<2>::bond_energy(const Bond<2> &, const Particles &) const;
+template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const Particles &) const;
 template double ManyBodyForce<3>::strength() const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;

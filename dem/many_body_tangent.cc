@@ -58,13 +58,14 @@ void ManyBodyForce<dim>::add_tangent(
 {
   using Term = particles::QuadraticTerm<dim>;
   constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
-  const double two_g = 2 * material_.shear_modulus();
   const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
     return get(packing_.centre, i) + lever;
   };
 
   Term term;
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+    if (b.joins_materials)
+      return;
     term.kind = Term::Kind::bond;
     term.location = place(b.i, b.lever_i);
     term.members = {b.i, b.j};
@@ -74,7 +75,7 @@ void ManyBodyForce<dim>::add_tangent(
     term.rows.template block<spins, spins>(dim, dim) = -bending_rows(b);
     term.rows.template block<spins, spins>(dim, dofs + dim) = bending_rows(b);
     term.stiffness.resize(dim + spins);
-    term.stiffness.head(dim).setConstant(b.weight * two_g * b.area / b.distance);
+    term.stiffness.head(dim).setConstant(2 * b.weight * b.shear_i * b.area / b.distance);
     term.stiffness.tail(spins) = bending_stiffness(b);
     add(term);
   });
@@ -84,16 +85,18 @@ void ManyBodyForce<dim>::add_tangent(
     term.location = place(wall.i, wall.lever);
     term.members = {wall.i};
     term.rows = wall.prescribed.asDiagonal() * block<dim>(wall.lever, -1);
-    term.stiffness.setConstant(dim, two_g * wall.area / wall.q);
+    term.stiffness.setConstant(dim, 2 * wall.shear_modulus * wall.area / wall.q);
     add(term);
   }
 
-  if (material_.poissons_ratio == 0)
+  if (materials_.has_no_dilatation())
     return;
   std::vector<std::vector<int>> walls_of(packing_.size());
   for (std::size_t w = 0; w < surface_.walls().size(); ++w)
     walls_of[surface_.walls()[w].i].push_back(int(w));
   for (int i = 0; i < packing_.size(); ++i) {
+    if (interfaces_.is_member(i))
+      continue;
     term.kind = Term::Kind::volumetric;
     term.location = place(i, Vector<dim>::Zero());
     term.members = {i};
@@ -147,7 +150,7 @@ ManyBodyForce<dim>::part(const std::vector<int> &members,
   for (std::size_t k = 0; k < members.size(); ++k)
     index[members[k]] = int(k);
   std::vector<double> volume_share(members.size(), 0.), lambda_per_volume(members.size(), 0.);
-  if (material_.poissons_ratio != 0)
+  if (!materials_.has_no_dilatation())
     for (std::size_t k = 0; k < members.size(); ++k) {
       const int i = members[k];
       std::vector<int> of = {i};
@@ -168,8 +171,7 @@ ManyBodyForce<dim>::part(const std::vector<int> &members,
       bonds.push_back({renumbered, s});
   });
   return std::make_unique<PartialManyBody<dim>>(std::move(bonds), std::move(volume_share),
-                                                std::move(lambda_per_volume),
-                                                material_.shear_modulus());
+                                                std::move(lambda_per_volume));
 }
 
 template <int dim>

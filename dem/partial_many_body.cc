@@ -7,9 +7,9 @@ namespace ligament::dem
 template <int dim>
 PartialManyBody<dim>::PartialManyBody(std::vector<SharedBond> bonds,
                                       std::vector<double> share_of_volume,
-                                      std::vector<double> lambda_per_volume, double shear_modulus)
+                                      std::vector<double> lambda_per_volume)
     : bonds_(std::move(bonds)), share_(std::move(share_of_volume)),
-      lambda_per_volume_(std::move(lambda_per_volume)), shear_modulus_(shear_modulus)
+      lambda_per_volume_(std::move(lambda_per_volume))
 {
 }
 
@@ -45,13 +45,13 @@ double PartialManyBody<dim>::compute(particles::Particles<dim> &p)
     const BondMotion<dim> m = motion(b);
     const double s_r = b.area / b.distance;
     const Vector<dim> f =
-        s_r * (2 * shear_modulus_ * share * m.du + pressure_[b.i] * m.a_i - pressure_[b.j] * m.a_j);
+        s_r * (2 * b.shear_i * share * m.du + pressure_[b.i] * m.a_i - pressure_[b.j] * m.a_j);
     const Spin<dim> bend = share * bending_torque(b, p);
     add(p.force, b.i, f);
     add(p.force, b.j, Vector<dim>(-f));
     add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure_[b.i] * m.du) + bend));
     add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure_[b.j] * m.du) - bend));
-    energy += share * (shear_modulus_ * s_r * m.du.squaredNorm() + bending_energy(b, p));
+    energy += share * (b.shear_i * s_r * m.du.squaredNorm() + bending_energy(b, p));
   }
   return energy;
 }

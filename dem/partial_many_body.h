@@ -12,7 +12,8 @@ template <int dim>
 class PartialManyBody : public particles::PartialForce<dim>
 {
 public:
-  /// A bond between particles of the part. Volumes with a share need all their bonds.
+  /// A bond between particles of the part, of one material. Volumes with a share need all their
+  /// bonds.
   struct SharedBond
   {
     Bond<dim> bond;
@@ -21,14 +22,13 @@ public:
 
   /// `share_of_volume` and `lambda_per_volume` (lambda_i / V_i, Pa/m^3) by particle of the part.
   PartialManyBody(std::vector<SharedBond> bonds, std::vector<double> share_of_volume,
-                  std::vector<double> lambda_per_volume, double shear_modulus);
+                  std::vector<double> lambda_per_volume);
 
   double compute(particles::Particles<dim> &particles) override;
 
 private:
   std::vector<SharedBond> bonds_;
   std::vector<double> share_, lambda_per_volume_;
-  double shear_modulus_;
   std::vector<double> pressure_; // lambda_i theta_i, Pa
   std::vector<Turn<dim>> turns_;
 };

@@ -5,15 +5,16 @@
 namespace ligament::dem
 {
 template <int dim>
-SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const DemMaterial &material,
+SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const Materials &materials,
                                 std::vector<core::BoundaryLoad<dim>> loads)
-    : shear_modulus_(material.shear_modulus()), loads_(std::move(loads)),
-      displacement_(loads_.size(), Vector<dim>::Zero()), traction_(displacement_),
-      reaction_(displacement_)
+    : loads_(std::move(loads)), displacement_(loads_.size(), Vector<dim>::Zero()),
+      traction_(displacement_), reaction_(displacement_)
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;
   for (const auto &face : packing.boundary_faces) {
-    WallFace<dim> wall{face.i, face.normal, face.lever, face.area, face.q, Vector<dim>::Zero(), {}};
+    const double shear_modulus = materials.of(face.i).shear_modulus();
+    WallFace<dim> wall{face.i, face.normal,         face.lever, face.area,
+                       face.q, Vector<dim>::Zero(), {},         shear_modulus};
     wall.load.fill(-1);
     for (std::size_t l = 0; l < loads_.size(); ++l)
       if (loads_[l].boundary == face.boundary && loads_[l].kind != Kind::traction)
@@ -30,7 +31,7 @@ SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const De
     for (std::size_t l = 0; l < loads_.size(); ++l)
       if (loads_[l].boundary == face.boundary && loads_[l].kind == Kind::traction)
         tractions_.push_back({face.i, face.lever, face.area, int(l),
-                              Vector<dim>(Vector<dim>::Ones() - wall.prescribed)});
+                              Vector<dim>(Vector<dim>::Ones() - wall.prescribed), shear_modulus});
   }
 }
 
@@ -93,7 +94,7 @@ void SurfaceLoads<dim>::add_dilatation(const particles::Particles<dim> &particle
   for (const auto &face : tractions_) {
     const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
     pressure[face.i] +=
-        stiffness_per_volume[face.i] * face.area * a.dot(traction(face)) / (2 * shear_modulus_);
+        stiffness_per_volume[face.i] * face.area * a.dot(traction(face)) / (2 * face.shear_modulus);
   }
 }
 
@@ -106,7 +107,7 @@ void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
   for (const auto &wall : walls_) {
     const Vector<dim> a = wall.lever + Turn<dim>::of(particles, wall.i).change(wall.lever);
     const Vector<dim> f =
-        wall.area * (2 * shear_modulus_ / wall.q * relative(wall, particles) +
+        wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
                      pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
     add(particles.force, wall.i, f);
     add(particles.torque, wall.i, cross(a, f));
@@ -120,7 +121,7 @@ void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
     add(particles.force, face.i, f);
     // The second part: theta depends on the lever that turns with the particle.
     add(particles.torque, face.i,
-        Spin<dim>((1 - pressure[face.i] / (2 * shear_modulus_)) * cross(a, f)));
+        Spin<dim>((1 - pressure[face.i] / (2 * face.shear_modulus)) * cross(a, f)));
     reaction_[face.load] += f;
   }
 }
@@ -130,7 +131,7 @@ double SurfaceLoads<dim>::energy(const particles::Particles<dim> &particles) con
 {
   double sum = 0;
   for (const auto &wall : walls_)
-    sum += shear_modulus_ * wall.area / wall.q * relative(wall, particles).squaredNorm();
+    sum += wall.shear_modulus * wall.area / wall.q * relative(wall, particles).squaredNorm();
   return sum;
 }
 
@@ -144,7 +145,7 @@ void SurfaceLoads<dim>::add_moments(const particles::Particles<dim> &particles,
   };
   for (const auto &wall : walls_) {
     const Vector<dim> f =
-        wall.area * (2 * shear_modulus_ / wall.q * relative(wall, particles) +
+        wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
                      pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
     add(moments, wall.i, symmetric_product<dim>(lever(wall), f));
   }
@@ -162,7 +163,7 @@ void SurfaceLoads<dim>::book_work(const particles::Particles<dim> &particles,
   for (const auto &face : tractions_) {
     const Vector<dim> change = Turn<dim>::of(particles, face.i).change(face.lever);
     place.push_back(get(particles.displacement, face.i) + change);
-    gradient.push_back(pressure[face.i] * face.area / (2 * shear_modulus_) *
+    gradient.push_back(pressure[face.i] * face.area / (2 * face.shear_modulus) *
                        face.acting.cwiseProduct(face.lever + change));
   }
   if (booked_) {

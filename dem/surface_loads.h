@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/load.h"
-#include "dem/material.h"
+#include "dem/materials.h"
 #include "dem/turn.h"
 #include "particles/packing.h"
 
@@ -20,6 +20,7 @@ struct WallFace
   double area, q;
   Vector<dim> prescribed;    // 1 where the component is prescribed, 0 where it is free
   std::array<int, dim> load; // number of the load that prescribes the component, or -1
+  double shear_modulus;      // Pa, of the particle
 };
 
 /// Outer face under a given traction (theory.md, loaded outer faces).
@@ -30,14 +31,15 @@ struct TractionFace
   Vector<dim> lever;
   double area;
   int load;
-  Vector<dim> acting; // 1 where the traction acts, 0 where a wall holds the component
+  Vector<dim> acting;   // 1 where the traction acts, 0 where a wall holds the component
+  double shear_modulus; // Pa, of the particle
 };
 
 template <int dim>
 class SurfaceLoads
 {
 public:
-  SurfaceLoads(const particles::Packing<dim> &packing, const DemMaterial &material,
+  SurfaceLoads(const particles::Packing<dim> &packing, const Materials &materials,
                std::vector<core::BoundaryLoad<dim>> loads);
 
   /// Displacements and tractions at time t (s).
@@ -77,7 +79,6 @@ private:
   Vector<dim> relative(const WallFace<dim> &wall, const particles::Particles<dim> &p) const;
   Vector<dim> traction(const TractionFace<dim> &face) const;
 
-  double shear_modulus_;
   std::vector<core::BoundaryLoad<dim>> loads_;
   std::vector<WallFace<dim>> walls_;
   std::vector<TractionFace<dim>> tractions_;

@@ -5,9 +5,11 @@
 namespace ligament::particles
 {
 template <int dim>
-void fill_particles(const Packing<dim> &packing, double density, Particles<dim> &particles)
+void fill_particles(const Packing<dim> &packing, const std::vector<double> &densities,
+                    Particles<dim> &particles)
 {
-  core::require(density > 0, "the density of a packing must be positive");
+  for (const double density : densities)
+    core::require(density > 0, "the density of a packing must be positive");
   const int n = packing.size();
   particles.resize(n);
   particles.reference = packing.centre;
@@ -15,6 +17,7 @@ void fill_particles(const Packing<dim> &packing, double density, Particles<dim> 
   particles.global_id = packing.global_id;
   const double gyration = packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
   for (int i = 0; i < n; ++i) {
+    const double density = densities[packing.material.empty() ? 0 : packing.material[i]];
     particles.mass[i] = density * packing.volume[i];
     particles.inverse_mass[i] = 1 / particles.mass[i];
     particles.inertia[i] = gyration * particles.mass[i];
@@ -22,6 +25,6 @@ void fill_particles(const Packing<dim> &packing, double density, Particles<dim> 
   }
 }
 
-template void fill_particles(const Packing<2> &, double, Particles<2> &);
-template void fill_particles(const Packing<3> &, double, Particles<3> &);
+template void fill_particles(const Packing<2> &, const std::vector<double> &, Particles<2> &);
+template void fill_particles(const Packing<3> &, const std::vector<double> &, Particles<3> &);
 } // namespace ligament::particles

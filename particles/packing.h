@@ -52,6 +52,7 @@ struct Packing
   std::vector<double> volume; // m^3, of the cell clipped by the specimen
   /// m, distance at which particles of this size touch; empty: d for all.
   std::vector<double> diameter;
+  std::vector<int> material; // number of each particle's material; empty: all 0
   std::vector<Face<dim>> faces;
   std::vector<BoundaryFace<dim>> boundary_faces;
   std::vector<LatticeDirection<dim>> directions; // empty for random packings
@@ -65,8 +66,14 @@ struct Packing
 };
 
 /// Particles at rest with the cells of the packing: mass = density V, inertia m d^2/8 (2D, disc) or
-/// m d^2/10 (3D, sphere) with the particle's own mass. Density in kg/m^3. Throws core::InputError
-/// unless it is positive.
+/// m d^2/10 (3D, sphere) with the particle's own mass. Density in kg/m^3, or one for each material.
+/// Throws core::InputError unless it is positive.
 template <int dim>
-void fill_particles(const Packing<dim> &packing, double density, Particles<dim> &particles);
+void fill_particles(const Packing<dim> &packing, const std::vector<double> &densities,
+                    Particles<dim> &particles);
+template <int dim>
+void fill_particles(const Packing<dim> &packing, double density, Particles<dim> &particles)
+{
+  fill_particles(packing, std::vector<double>{density}, particles);
+}
 } // namespace ligament::particles

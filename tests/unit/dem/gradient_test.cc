@@ -36,6 +36,18 @@ std::vector<core::BoundaryLoad<dim>> some_loads()
   return {pull, hold, press};
 }
 
+/// Moduli from 0.3 to 2 and three Poisson's ratios, one of them 0, in turns.
+Materials grains(const DemMaterial &material, int n)
+{
+  std::vector<DemMaterial> all(3, material);
+  all[1].youngs_modulus = 0.3, all[1].poissons_ratio = 0;
+  all[2].youngs_modulus = 2, all[2].poissons_ratio = 0.45;
+  std::vector<int> of_particle(n);
+  for (int i = 0; i < n; ++i)
+    of_particle[i] = (i / 2) % 3;
+  return {all, of_particle};
+}
+
 /// Radii from 1 to 3, hardly relaxed.
 template <int dim>
 Packing<dim> small_random_packing()
@@ -57,15 +69,19 @@ TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)
   {
     const Packing<dim> &packing;
     PlaneMode plane;
+    bool grains; // of three materials, in every particle another one
   };
-  for (const Setting &setting : {Setting{ragged, PlaneMode::strain},
-                                 {ragged, PlaneMode::stress},
-                                 {random, PlaneMode::stress}})
+  for (const Setting &setting : {Setting{ragged, PlaneMode::strain, false},
+                                 {ragged, PlaneMode::stress, false},
+                                 {random, PlaneMode::stress, false},
+                                 {ragged, PlaneMode::strain, true},
+                                 {random, PlaneMode::stress, true}})
   {
     const auto &packing = setting.packing;
     DemMaterial material;
     material.poissons_ratio = 0.3, material.plane = setting.plane;
-    ManyBodyForce<dim> force(packing, material, some_loads<dim>());
+    ManyBodyForce<dim> force(packing, setting.grains ? grains(material, packing.size()) : material,
+                             some_loads<dim>());
     auto p = at_rest(packing, material);
     // The walls don't turn with the body: a moderate turn keeps them in play.
     disturb<dim>(p, packing.spacing, 0.1, some_turn<dim>(0.4), 3);

@@ -1,0 +1,227 @@
+#include "dem/interfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::dem
+{
+namespace
+{
+/// Both sides of a bond at one moment.
+template <int dim>
+struct Sides
+{
+  double c_i, c_j;            // q / 2G, m/Pa
+  Vector<dim> unit_i, unit_j; // levers over q; dilatation grows with d along them
+  BondMotion<dim> motion;
+
+  Sides(const Bond<dim> &b, const BondMotion<dim> &m) : motion(m)
+  {
+    const double q_i = b.lever_i.dot(b.normal), q_j = -b.lever_j.dot(b.normal);
+    c_i = q_i / (2 * b.shear_i);
+    c_j = q_j / (2 * b.shear_j);
+    unit_i = m.a_i / q_i;
+    unit_j = -m.a_j / q_j;
+  }
+  Sides(const Bond<dim> &b, const particles::Particles<dim> &p)
+      : Sides(b, BondMotion<dim>(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j),
+                                 get(p.displacement, b.i), get(p.displacement, b.j)))
+  {
+  }
+
+  Vector<dim> traction(double p_i, double p_j) const
+  {
+    return (motion.du + c_i * p_i * unit_i + c_j * p_j * unit_j) / (c_i + c_j);
+  }
+  Vector<dim> d_i(const Vector<dim> &t, double p_i) const { return c_i * (t - p_i * unit_i); }
+  Vector<dim> d_j(const Vector<dim> &t, double p_j) const { return c_j * (t - p_j * unit_j); }
+};
+
+/// The bonds' part of the system for the pressures: [ii ij; ij jj] between two members.
+struct Coupling
+{
+  int i, j;
+  double ii, ij, jj; // m^3/Pa
+};
+
+double dot(const std::vector<double> &a, const std::vector<double> &b)
+{
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    sum += a[k] * b[k];
+  return sum;
+}
+
+/// Solves (diagonal + couplings) x = b by conjugate gradients, as far as round-off allows.
+std::vector<double> solve(const std::vector<double> &diagonal,
+                          const std::vector<Coupling> &couplings, const std::vector<double> &b)
+{
+  const std::size_t n = b.size();
+  std::vector<double> inverse = diagonal, x(n), r(n), z(n), s(n), product(n);
+  for (const Coupling &c : couplings)
+    inverse[c.i] += c.ii, inverse[c.j] += c.jj;
+  for (double &v : inverse)
+    v = v > 0 ? 1 / v : 0; // no volumetric stiffness: no pressure
+  const auto multiply = [&](const std::vector<double> &v) {
+    for (std::size_t k = 0; k < n; ++k)
+      product[k] = diagonal[k] * v[k];
+    for (const Coupling &c : couplings) {
+      product[c.i] += c.ii * v[c.i] + c.ij * v[c.j];
+      product[c.j] += c.ij * v[c.i] + c.jj * v[c.j];
+    }
+  };
+  const auto precondition = [&] {
+    for (std::size_t k = 0; k < n; ++k)
+      z[k] = inverse[k] * r[k];
+  };
+  for (std::size_t k = 0; k < n; ++k)
+    x[k] = inverse[k] * b[k];
+  multiply(x);
+  for (std::size_t k = 0; k < n; ++k)
+    r[k] = inverse[k] > 0 ? b[k] - product[k] : 0;
+  precondition();
+  s = z;
+  constexpr double round_off = 1e-32; // squared, of the first solution
+  double rz = dot(r, z);
+  const double enough = round_off * std::max(rz, dot(b, x));
+  for (std::size_t k = 0; k < 4 * n + 20 && rz > enough; ++k) {
+    multiply(s);
+    double curvature = 0;
+    for (std::size_t a = 0; a < n; ++a)
+      curvature += inverse[a] > 0 ? s[a] * product[a] : 0;
+    const double step = rz / curvature;
+    for (std::size_t a = 0; a < n; ++a) {
+      x[a] += step * s[a];
+      r[a] -= inverse[a] > 0 ? step * product[a] : 0;
+    }
+    precondition();
+    const double before = rz;
+    rz = dot(r, z);
+    for (std::size_t a = 0; a < n; ++a)
+      s[a] = z[a] + rz / before * s[a];
+  }
+  return x;
+}
+} // namespace
+
+template <int dim>
+Interfaces<dim>::Interfaces(const BondNetwork<dim> &bonds)
+{
+  bonds.for_each_interface([&](BondId id, const Bond<dim> &b) {
+    bonds_.push_back({b, id.index});
+    members_.push_back(b.i);
+    members_.push_back(b.j);
+  });
+  if (bonds_.empty())
+    return;
+  std::sort(members_.begin(), members_.end());
+  members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
+  member_.assign(bonds.n_particles(), -1);
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    member_[members_[k]] = int(k);
+}
+
+template <int dim>
+void Interfaces<dim>::remove(int index)
+{
+  bonds_.erase(std::find_if(bonds_.begin(), bonds_.end(),
+                            [&](const IndexedBond &b) { return b.index == index; }));
+}
+
+template <int dim>
+void Interfaces<dim>::add_own_part(const Particles &p, const std::vector<double> &lambda_per_volume,
+                                   std::vector<double> &pressure) const
+{
+  const std::size_t n = members_.size();
+  std::vector<double> diagonal(n, 0.), b(n, 0.);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double stiffness = lambda_per_volume[members_[k]];
+    diagonal[k] = stiffness > 0 ? 1 / stiffness : 0;
+    b[k] = diagonal[k] * pressure[members_[k]];
+  }
+  std::vector<Coupling> couplings;
+  for (const auto &[bond, index] : bonds_) {
+    const Sides<dim> s(bond, p);
+    const int i = member_[bond.i], j = member_[bond.j];
+    const double c = s.c_i + s.c_j, k = bond.area * s.c_i * s.c_j / c;
+    const bool has_i = diagonal[i] > 0, has_j = diagonal[j] > 0;
+    couplings.push_back({i, j, has_i ? k * s.unit_i.squaredNorm() : 0.,
+                         has_i && has_j ? -k * s.unit_i.dot(s.unit_j) : 0.,
+                         has_j ? k * s.unit_j.squaredNorm() : 0.});
+    b[i] += has_i ? bond.area * s.c_i / c * s.unit_i.dot(s.motion.du) : 0;
+    b[j] += has_j ? bond.area * s.c_j / c * s.unit_j.dot(s.motion.du) : 0;
+  }
+  const std::vector<double> solution = solve(diagonal, couplings, b);
+  for (std::size_t k = 0; k < n; ++k)
+    pressure[members_[k]] = solution[k];
+}
+
+template <int dim>
+void Interfaces<dim>::take_own_part(const Particles &p,
+                                    const std::vector<double> &lambda_per_volume,
+                                    std::vector<double> &pressure) const
+{
+  std::vector<double> part(members_.size(), 0.);
+  for (const auto &[bond, index] : bonds_) {
+    const Sides<dim> s(bond, p);
+    const double p_i = pressure[bond.i], p_j = pressure[bond.j];
+    const Vector<dim> t = s.traction(p_i, p_j);
+    part[member_[bond.i]] += lambda_per_volume[bond.i] * bond.area * s.unit_i.dot(s.d_i(t, p_i));
+    part[member_[bond.j]] += lambda_per_volume[bond.j] * bond.area * s.unit_j.dot(s.d_j(t, p_j));
+  }
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    pressure[members_[k]] -= part[k];
+}
+
+template <int dim>
+Vector<dim> Interfaces<dim>::traction(const Bond<dim> &bond, const BondMotion<dim> &motion,
+                                      const std::vector<double> &pressure)
+{
+  return Sides<dim>(bond, motion).traction(pressure[bond.i], pressure[bond.j]);
+}
+
+template <int dim>
+void Interfaces<dim>::add_forces(Particles &p, const std::vector<double> &pressure) const
+{
+  for (const auto &[b, index] : bonds_) {
+    const Sides<dim> s(b, p);
+    const double p_i = pressure[b.i], p_j = pressure[b.j];
+    const Vector<dim> t = s.traction(p_i, p_j), f = b.area * t;
+    const Spin<dim> bend = bending_torque(b, p);
+    add(p.force, b.i, f);
+    add(p.force, b.j, Vector<dim>(-f));
+    // The second parts: theta depends on the levers that turn with the particles.
+    add(p.torque, b.i,
+        Spin<dim>(cross(s.motion.a_i, f) - b.area * p_i * cross(s.unit_i, s.d_i(t, p_i)) + bend));
+    add(p.torque, b.j,
+        Spin<dim>(-cross(s.motion.a_j, f) - b.area * p_j * cross(s.unit_j, s.d_j(t, p_j)) - bend));
+  }
+}
+
+template <int dim>
+double Interfaces<dim>::energy(const Particles &p, const std::vector<double> &pressure) const
+{
+  double sum = 0;
+  for (const auto &[b, index] : bonds_) {
+    const Sides<dim> s(b, p);
+    const Vector<dim> t = s.traction(pressure[b.i], pressure[b.j]);
+    sum += 0.5 * b.area * s.d_i(t, pressure[b.i]).squaredNorm() / s.c_i +
+           0.5 * b.area * s.d_j(t, pressure[b.j]).squaredNorm() / s.c_j + bending_energy(b, p);
+  }
+  return sum;
+}
+
+template <int dim>
+double Interfaces<dim>::volume_energy(const std::vector<double> &lambda_per_volume,
+                                      const std::vector<double> &pressure) const
+{
+  double sum = 0;
+  for (const int i : members_)
+    if (lambda_per_volume[i] != 0)
+      sum += 0.5 * pressure[i] * pressure[i] / lambda_per_volume[i];
+  return sum;
+}
+
+template class Interfaces<2>;
+template class Interfaces<3>;
+} // namespace ligament::dem

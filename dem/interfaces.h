@@ -1,0 +1,62 @@
+// Bonds between particles of different materials: both sides of the face carry the same traction.
+#pragma once
+
+#include "dem/bond_network.h"
+
+namespace ligament::dem
+{
+/// Every such bond splits Du = d_i + d_j so that both sides have the traction
+///   t = 2G_i d_i / q_i + p_i a_i / q_i = 2G_j d_j / q_j - p_j a_j / q_j,   p = lambda theta,
+/// and theta_i gets S a_i . d_i / (q_i V_i) (theory.md eqs. (D18), (D19)). This joins the pressures
+/// of the particles at interfaces: they solve one sparse, symmetric positive definite system, to
+/// round-off, by conjugate gradients. All other bonds of these particles must be in the table.
+template <int dim>
+class Interfaces
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  explicit Interfaces(const BondNetwork<dim> &bonds);
+
+  bool empty() const { return bonds_.empty(); }
+  /// Particles that have or had a bond to another material.
+  const std::vector<int> &members() const { return members_; }
+  /// Whether a particle has or had a bond to another material.
+  bool is_member(int i) const { return !member_.empty() && member_[i] >= 0; }
+
+  /// Bond `index` of the network's table no longer carries.
+  void remove(int index);
+
+  /// `pressure` of members: from lambda theta of their other bonds and loads to that of all.
+  /// lambda_per_volume: lambda_i / V_i.
+  void add_own_part(const Particles &particles, const std::vector<double> &lambda_per_volume,
+                    std::vector<double> &pressure) const;
+  /// The way back.
+  void take_own_part(const Particles &particles, const std::vector<double> &lambda_per_volume,
+                     std::vector<double> &pressure) const;
+
+  /// Forces and torques, bending included.
+  void add_forces(Particles &particles, const std::vector<double> &pressure) const;
+
+  /// Of the bonds, in J, bending included; volumes are the caller's.
+  double energy(const Particles &particles, const std::vector<double> &pressure) const;
+
+  /// Of the volumes of the members, in J.
+  double volume_energy(const std::vector<double> &lambda_per_volume,
+                       const std::vector<double> &pressure) const;
+
+  /// Traction of one such bond in Pa.
+  static Vector<dim> traction(const Bond<dim> &bond, const BondMotion<dim> &motion,
+                              const std::vector<double> &pressure);
+
+private:
+  struct IndexedBond
+  {
+    Bond<dim> bond;
+    int index; // in the network's table
+  };
+  std::vector<IndexedBond> bonds_;
+  std::vector<int> members_; // particles
+  std::vector<int> member_;  // by particle: place among the members or -1; empty: there are none
+};
+} // namespace ligament::dem
