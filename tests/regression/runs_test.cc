@@ -97,6 +97,24 @@ TEST(Runs, PureBodiesGoThroughTheSameLoop)
   }
 }
 
+// Both ends move sideways, the plate turns by a third of a degree. A linear coarse model would feel
+// the strain phi^2/2; at 0.1 degrees it becomes corotated, and log and record say so.
+TEST(Runs, ATurningPlateChangesItsRegimeByItself)
+{
+  const std::string turns = R"(/loads=[{"boundary": "top", "velocity": [3e-4, null], "ramp": 600},
+                                       {"boundary": "bottom", "velocity": [-3e-4, null], "ramp": 600}])";
+  const RunRecord record = run("turning", {turns, "/time/duration=1500"});
+  EXPECT_EQ(record.status, "done");
+  ASSERT_EQ(record.regime.substr(0, 23), "linear, corotated from ") << record.regime;
+  // The ends have moved by 60 tan(0.1 degrees) when v (t - 300) has, give or take how far the plate
+  // lags behind its ends and 50 steps between two looks.
+  const double expected = 300 + 60 * std::tan(0.1 * M_PI / 180) / 3e-4;
+  EXPECT_NEAR(std::stod(record.regime.substr(23)), expected, 0.25 * expected);
+  EXPECT_NE(content("turning/run.json").find(record.regime), std::string::npos);
+  EXPECT_NE(content("turning/run.log").find("corotated"), std::string::npos);
+  EXPECT_LT(*record.energy_residual, 1e-3);
+}
+
 TEST(Runs, GuardStopsWhenTheOverlapIsHalfAsTenseAsItsStrength)
 {
   // Without crack the tension is the same everywhere.
