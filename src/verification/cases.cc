@@ -26,6 +26,7 @@ std::vector<Case> all_cases()
   add(kirsch_cases());
   add(beam_cases());
   add(stability_cases());
+  add(contrast_cases());
   return cases;
 }
 

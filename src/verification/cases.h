@@ -50,6 +50,7 @@ std::vector<Case> absorbing_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
 std::vector<Case> stability_cases();
+std::vector<Case> contrast_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

@@ -98,24 +98,25 @@ std::vector<Result> undamped_ratio(const std::string &name, int step_ratio, doub
 }
 
 /// Largest rise of the energy between two samples, over the energy at the start; and what is left.
-std::vector<Result> damped()
+template <int dim>
+std::vector<Result> damped(const std::string &name, Scene scene)
 {
-  Scene scene = band_2d(1);
   scene.time.step_fraction = 0.95;
   scene.coupling.fine_damper = 8;
   scene.coupling.gap_filter = 4;
-  UnitBody<2> unit(scene);
-  const auto series = run_noise(unit.body, 1e-9, 4000, 1, 0).leap_frog;
+  UnitBody<dim> unit(scene);
+  const auto series = run_noise(unit.body, 1e-9, dim == 2 ? 4000 : 1000, 1, 0).leap_frog;
   double rise = -1;
   for (std::size_t k = 1; k < series.size(); ++k)
     keep_worst(rise, (series[k] - series[k - 1]) / series[0]);
-  return {{"decay/rise", rise, 1e-12, 0}, {"decay/left", series.back() / series[0], 1, {}}};
+  return {{name + "/rise", rise, 1e-12, 0}, {name + "/left", series.back() / series[0], 1, {}}};
 }
 } // namespace
 
 std::vector<Case> drift_cases()
 {
   const std::string text = "undamped noise at 0.9 of the critical step, ";
+  const std::string decay = "damped noise at 0.95 of the critical step, every step, ";
   return {
       {"drift", text + "strain 1e-8, 5e3 steps", false,
        [] { return undamped<2>("drift", band_2d(1), 1e-8, 5000, false); }},
@@ -153,6 +154,15 @@ std::vector<Case> drift_cases()
        [] { return undamped<3>("drift_long_3d", band_3d(), 1e-6, 100000, true); }},
       {"drift_long_ratio", text + "step ratio 4, strain 1e-6, 1e5 steps", true,
        [] { return undamped_ratio("drift_long_ratio", 4, 1e-6, 100000); }},
-      {"decay", "damped noise at 0.95 of the critical step, every step", false, damped}};
+      {"drift_long_random_3d", text + "random, strain 1e-6, 1e5 steps", true,
+       [] {
+         return undamped<3>("drift_long_random_3d", made_random(band_3d()), 1e-6, 100000, true);
+       }},
+      {"decay", decay + "hexagonal", false, [] { return damped<2>("decay", band_2d(1)); }},
+      {"decay_random", decay + "random", true,
+       [] { return damped<2>("decay_random", made_random(band_2d(1))); }},
+      {"decay_3d", decay + "FCC", true, [] { return damped<3>("decay_3d", band_3d()); }},
+      {"decay_random_3d", decay + "random in 3D", true,
+       [] { return damped<3>("decay_random_3d", made_random(band_3d())); }}};
 }
 } // namespace ligament::program
