@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -121,7 +122,7 @@ void write_packing_file(const std::string &path, const Seeds<dim> &seeds)
   for (int i = 0; i < seeds.size(); ++i) {
     for (int a = 0; a < 3; ++a)
       text += fmt::format("{},", a < dim ? seeds.centre[i][std::min(a, dim - 1)] : 0.);
-    text += fmt::format("{},0\n", seeds.radius[i]);
+    text += fmt::format("{},{}\n", seeds.radius[i], seeds.material.empty() ? 0 : seeds.material[i]);
   }
   core::write_file(path, text);
 }
@@ -143,9 +144,12 @@ Seeds<dim> read_packing_file(const std::string &path)
     table.require(radius > 0, "the radius must be positive");
     if (dim == 2 && table.has("z"))
       table.require(table.number("z") == 0, "z must be 0 in a 2D scene");
-    if (table.has("material"))
-      table.require(table.number("material") == 0,
-                    "the material must be 0: a scene has one material");
+    if (table.has("material")) {
+      const double number = table.number("material");
+      table.require(number >= 0 && number < 1e6 && number == std::floor(number),
+                    "the material must be 0 or the number of an inclusion");
+      seeds.material.push_back(int(number));
+    }
     seeds.add(x, radius, seeds.size());
   }
   table.require(seeds.size() > 0, "the file holds no particles");

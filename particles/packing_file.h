@@ -8,7 +8,7 @@
 namespace ligament::particles
 {
 /// Writes columns x, y, z, r, material and a row with their units (m; material: 1), then one row
-/// per seed with all digits. z is 0 in 2D, material 0. Throws core::EnvironmentError when the file
+/// per seed with all digits. z is 0 in 2D. Throws core::EnvironmentError when the file
 /// cannot be written.
 template <int dim>
 void write_packing_file(const std::string &path, const Seeds<dim> &seeds);

@@ -15,6 +15,7 @@ struct Seeds
   std::vector<Vector<dim>> centre; // m
   std::vector<double> radius;      // m
   std::vector<std::int64_t> id;    // not negative; names that no two seeds share
+  std::vector<int> material;       // number of each seed's material; empty: all 0
 
   int size() const { return int(centre.size()); }
   void add(const Vector<dim> &x, double r, std::int64_t name)

@@ -11,48 +11,6 @@ namespace
 {
 constexpr const char *axis_names = "xyz";
 
-/// Cuts belong to the discrete zone: the mesh of the far field, overlap included, is whole.
-void check_in_zone(const Box &cut, const std::string &name, const std::string &key,
-                   const Layout &layout, Findings &f)
-{
-  if (!layout.coupled)
-    return;
-  const double keep_off = layout.overlap + 2 * layout.cell_size;
-  if (!layout.boxes.boxes.empty()) {
-    Vector<3> lower = Vector<3>::Zero(), upper = Vector<3>::Zero();
-    for (int c = 0; c < layout.dim; ++c) {
-      lower[c] = cut.lower[c] - keep_off;
-      upper[c] = cut.upper[c] + keep_off;
-    }
-    if (!layout.boxes.covers(lower, upper, 1e-9 * keep_off))
-      f.error(key, fmt::format("{} is too near the edge of the discrete zone, or outside", name),
-              fmt::format("it must stay {:.4g} m inside the union of /discrete_zone/boxes: the "
-                          "overlap and two cells",
-                          keep_off),
-              "widen the boxes or move the cut");
-    return;
-  }
-  for (int side = 0; side < 2 * layout.dim; ++side) {
-    if (!layout.coupled_side[side])
-      continue;
-    const int c = side / 2;
-    const double distance =
-        side % 2 ? layout.zone.upper[c] - cut.upper[c] : cut.lower[c] - layout.zone.lower[c];
-    if (distance >= keep_off * (1 - 1e-9))
-      continue;
-    f.error(key,
-            fmt::format("{} {} the discrete zone at its {} end in {}", name,
-                        distance < 0 ? "reaches out of" : "is too near the edge of",
-                        side % 2 ? "upper" : "lower", axis_names[c]),
-            fmt::format("it must stay {:.4g} m inside /discrete_zone/region there: the overlap and "
-                        "two cells",
-                        keep_off),
-            fmt::format("move that side of the region outward by {:.4g} m, or move the cut",
-                        keep_off - distance));
-    return;
-  }
-}
-
 bool overlaps(const Box &a, const Box &b, int dim)
 {
   for (int c = 0; c < dim; ++c)
@@ -175,7 +133,7 @@ private:
   void in_zone(const Box &cut, const std::string &name, const std::string &key)
   {
     if (layout_)
-      check_in_zone(cut, name, key, *layout_, f_);
+      check_inside_zone(cut, name, key, *layout_, f_);
   }
 
   const Scene &scene_;
@@ -190,6 +148,47 @@ double distance(const Point &a, const Point &b)
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 } // namespace
+
+void check_inside_zone(const Box &cut, const std::string &name, const std::string &key,
+                       const Layout &layout, Findings &f)
+{
+  if (!layout.coupled)
+    return;
+  const double keep_off = layout.overlap + 2 * layout.cell_size;
+  if (!layout.boxes.boxes.empty()) {
+    Vector<3> lower = Vector<3>::Zero(), upper = Vector<3>::Zero();
+    for (int c = 0; c < layout.dim; ++c) {
+      lower[c] = cut.lower[c] - keep_off;
+      upper[c] = cut.upper[c] + keep_off;
+    }
+    if (!layout.boxes.covers(lower, upper, 1e-9 * keep_off))
+      f.error(key, fmt::format("{} is too near the edge of the discrete zone, or outside", name),
+              fmt::format("it must stay {:.4g} m inside the union of /discrete_zone/boxes: the "
+                          "overlap and two cells",
+                          keep_off),
+              "widen the boxes or move it");
+    return;
+  }
+  for (int side = 0; side < 2 * layout.dim; ++side) {
+    if (!layout.coupled_side[side])
+      continue;
+    const int c = side / 2;
+    const double distance =
+        side % 2 ? layout.zone.upper[c] - cut.upper[c] : cut.lower[c] - layout.zone.lower[c];
+    if (distance >= keep_off * (1 - 1e-9))
+      continue;
+    f.error(key,
+            fmt::format("{} {} the discrete zone at its {} end in {}", name,
+                        distance < 0 ? "reaches out of" : "is too near the edge of",
+                        side % 2 ? "upper" : "lower", axis_names[c]),
+            fmt::format("it must stay {:.4g} m inside /discrete_zone/region there: the overlap and "
+                        "two cells",
+                        keep_off),
+            fmt::format("move that side of the region outward by {:.4g} m, or move it",
+                        keep_off - distance));
+    return;
+  }
+}
 
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &f)
 {

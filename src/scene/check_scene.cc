@@ -90,12 +90,6 @@ void check_packing_keys(const Scene &scene, Findings &f)
             fmt::format("\"orientation\" in /discrete_zone has no meaning for the packing \"{}\"",
                         packing),
             "only lattices have rows to turn", "remove it");
-  if (packing == "file" && scene.material.fracture.toughness)
-    f.error("/material/fracture/toughness",
-            "\"toughness\" in /material/fracture cannot be used with the packing \"file\"",
-            "the factor between toughness and strength is calibrated on samples of a packing, "
-            "which a file cannot give",
-            "give the \"strength\" of a face");
 }
 
 void check_packing(const Scene &scene, Findings &f)
@@ -114,24 +108,6 @@ void check_packing(const Scene &scene, Findings &f)
             fmt::format("/dimension is {}", scene.dimension),
             scene.dimension == 2 ? "choose \"hexagonal\", \"square\" or \"random\""
                                  : "choose \"fcc\", \"simple_cubic\" or \"random\"");
-}
-
-void check_fracture(const Scene &scene, Findings &f)
-{
-  const std::string section = "/material/fracture";
-  const bool strength = f.given(section + "/strength"), toughness = f.given(section + "/toughness");
-  if (strength && toughness)
-    f.error(section + "/toughness", "both \"strength\" and \"toughness\" in /material/fracture",
-            "the strength of a bond follows from the toughness", "remove one of them");
-  if (!f.sound({section + "/criterion"}))
-    return;
-  if (scene.material.fracture.criterion == "none" && (strength || toughness))
-    f.warning(section + (strength ? "/strength" : "/toughness"),
-              "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"", "");
-  if (scene.material.fracture.criterion != "none" && !strength && !toughness && f.sound({section}))
-    f.error(section + "/criterion",
-            "\"criterion\" in /material/fracture has neither \"strength\" nor \"toughness\"",
-            "it needs to know when a bond breaks", "add one of them, or choose \"none\"");
 }
 
 void check_time(const Scene &scene, Findings &f)
@@ -421,11 +397,36 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
 }
 } // namespace
 
+void check_fracture(const FractureParameters &fracture, const std::string &section,
+                    const DiscreteZone &zone, Findings &f)
+{
+  const bool strength = f.given(section + "/strength"), toughness = f.given(section + "/toughness");
+  if (strength && toughness)
+    f.error(section + "/toughness",
+            fmt::format("both \"strength\" and \"toughness\" in {}", section),
+            "the strength of a bond follows from the toughness", "remove one of them");
+  if (toughness && zone.packing == "file")
+    f.error(section + "/toughness",
+            fmt::format("\"toughness\" in {} cannot be used with the packing \"file\"", section),
+            "the factor between toughness and strength is calibrated on samples of a packing, "
+            "which a file cannot give",
+            "give the \"strength\" of a face");
+  if (!f.sound({section + "/criterion"}))
+    return;
+  if (fracture.criterion == "none" && (strength || toughness))
+    f.warning(section + (strength ? "/strength" : "/toughness"),
+              "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"", "");
+  if (fracture.criterion != "none" && !strength && !toughness && f.sound({section}))
+    f.error(section + "/criterion",
+            fmt::format("\"criterion\" in {} has neither \"strength\" nor \"toughness\"", section),
+            "it needs to know when a bond breaks", "add one of them, or choose \"none\"");
+}
+
 void check_scene(const Scene &scene, Findings &f)
 {
   check_models(scene, f);
   check_packing(scene, f);
-  check_fracture(scene, f);
+  check_fracture(scene.material.fracture, "/material/fracture", scene.zone, f);
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;
@@ -434,6 +435,7 @@ void check_scene(const Scene &scene, Findings &f)
     const Box specimen = box_of(scene.specimen);
     layout = check_layout(scene, specimen, f);
     check_cuts(scene, specimen, layout ? &*layout : nullptr, f);
+    check_inclusions(scene, specimen, layout ? &*layout : nullptr, f);
   }
   check_loads(scene, layout ? &*layout : nullptr, f);
 }

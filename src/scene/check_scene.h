@@ -30,6 +30,19 @@ void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 /// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
 
+/// Whether what lies in the box keeps its distance from the overlap: the mesh there is whole and of
+/// one material. `name` begins the message.
+void check_inside_zone(const Box &cut, const std::string &name, const std::string &key,
+                       const Layout &layout, Findings &findings);
+
+/// Other materials. `layout` as above.
+void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout,
+                      Findings &findings);
+
+/// When the bonds of a material break; `section` is the key of its "fracture".
+void check_fracture(const FractureParameters &fracture, const std::string &section,
+                    const DiscreteZone &zone, Findings &findings);
+
 /// Loads against each other, and against the overlap. `layout` as above.
 void check_loads(const Scene &scene, const Layout *layout, Findings &findings);
 } // namespace ligament::program

@@ -62,6 +62,15 @@ struct MaterialParameters
   FractureParameters fracture;
 };
 
+/// Particles of another material: those with their centre in one of the regions. The k-th one, from
+/// 1, also has the particles whose material is k in the file of the packing.
+struct Inclusion
+{
+  MaterialParameters material;
+  std::vector<Hole> balls; // discs in 2D
+  std::vector<Notch> boxes;
+};
+
 /// m; sides as those of DiscreteZone.
 struct ZoneBox
 {
@@ -164,6 +173,7 @@ struct Scene
   PlaneMode plane = PlaneMode::strain;
   Specimen specimen;
   MaterialParameters material;
+  std::vector<Inclusion> inclusions; // later ones over earlier ones
   DiscreteZone zone;
   std::optional<FarField> far_field;
   CouplingParameters coupling;

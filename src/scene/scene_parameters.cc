@@ -42,11 +42,24 @@ void declare_fracture(Section &s, FractureParameters &f)
 
 void declare_material(Section &s, MaterialParameters &m)
 {
-  s.add("youngs_modulus", m.youngs_modulus, "E of the body, the same in both models").in("Pa").above(0).required();
-  s.add("poissons_ratio", m.poissons_ratio, "nu of the body, the same in both models").at_least(-0.2).at_most(0.49).required();
+  s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").above(0).required();
+  s.add("poissons_ratio", m.poissons_ratio, "nu, the same in both models").at_least(-0.2).at_most(0.49).required();
   s.add("density", m.density, "mass per volume").in("kg/m^3").above(0).required();
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
+}
+
+void declare_ball(Section &s, Hole &h)
+{
+  s.add("centre", h.centre, "its centre").in("m").required();
+  s.add("radius", h.radius, "its radius").in("m").above(0).required();
+}
+
+void declare_inclusion(Section &s, Inclusion &i)
+{
+  declare_material(s, i.material);
+  s.list("balls", i.balls, "discs (2D) or balls of this material", declare_ball);
+  s.list("boxes", i.boxes, "boxes of this material", declare_notch);
 }
 
 template <typename Box>
@@ -67,7 +80,7 @@ void declare_zone(Section &s, DiscreteZone &z)
   s.add("seed", z.seed, "random packing: which one").at_least(0).at_most(1000000000);
   s.add("relaxation_sweeps", z.relaxation_sweeps, "random packing: how often every particle moves to the centroid of its cell").at_least(0).at_most(1000);
   s.add("size_ratio", z.size_ratio, "random packing: largest over smallest radius").at_least(1).at_most(5);
-  s.add("packing_file", z.packing_file, "packing file: CSV with the columns x, y, z, r, material and a row of units; relative to the scene");
+  s.add("packing_file", z.packing_file, "packing file: CSV with the columns x, y, z, r, material (0, or the number of an inclusion) and a row of units; relative to the scene");
   s.set_shorthand("extent");
   s.set_required();
 }
@@ -142,6 +155,7 @@ void declare_scene(Section &s, Scene &scene)
   s.add("plane", scene.plane, "plane strain or plane stress", {"strain", "stress"}).only_in(2);
   declare_specimen(s.section("specimen", "the body"), scene.specimen);
   declare_material(s.section("material", "what it is made of"), scene.material);
+  s.list("inclusions", scene.inclusions, "other materials inside the discrete zone, later ones over earlier ones: particles whose centres lie in their regions, and in a packing from a file those whose material is their number, from 1", declare_inclusion);
   declare_zone(s.section("discrete_zone", "where the body may break"), scene.zone);
   s.section("far_field", scene.far_field, "none", "finite elements around the discrete zone; none: the pure discrete reference of the scene", declare_far_field).required_unless("extent is all");
   declare_coupling(s.section("coupling", "the overlap of the two models"), scene.coupling);

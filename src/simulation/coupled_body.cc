@@ -1,17 +1,13 @@
 #include "src/simulation/coupled_body.h"
 
 #include "core/check.h"
-#include "dem/toughness_calibration.h"
-#include "particles/absorbing_sides.h"
-#include "particles/lattice_packing.h"
-#include "particles/packing_file.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/make_zone.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ligament::program
 {
@@ -41,69 +37,6 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
   return loads;
 }
 
-template <int dim>
-void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
-{
-  p.spacing = scene.zone.spacing;
-  p.thickness = scene.specimen.thickness;
-  p.upper = to_vector<dim>(scene.specimen.size) / 2;
-  p.lower = -p.upper;
-  for (const auto &hole : scene.specimen.holes)
-    p.holes.push_back({to_vector<dim>(hole.centre), hole.radius});
-  for (const auto &notch : scene.specimen.notches)
-    p.notches.push_back({to_vector<dim>(notch.lower), to_vector<dim>(notch.upper)});
-  for (const auto &crack : scene.specimen.cracks) {
-    auto &points = p.cracks.emplace_back();
-    for (const auto &point : crack.points)
-      points.push_back(to_vector<dim>(point));
-  }
-  if (scene.zone.extent != DiscreteZone::Extent::box)
-    return;
-  // The corners around all boxes; the default reaches through.
-  const Vector<dim> through = p.zone_upper;
-  p.zone_lower = through;
-  p.zone_upper = -through;
-  for (const auto &box : zone_shape<dim>(scene).boxes) {
-    p.zone_lower = p.zone_lower.cwiseMin(box.lower).cwiseMax(-through);
-    p.zone_upper = p.zone_upper.cwiseMax(box.upper).cwiseMin(through);
-  }
-}
-
-template <int dim>
-particles::LatticeParameters<dim> lattice_of(const Scene &scene)
-{
-  particles::LatticeParameters<dim> p;
-  set_specimen<dim>(scene, p);
-  if (scene.zone.extent == DiscreteZone::Extent::box && scene.zone.boxes.size() > 1)
-    p.zone_parts = zone_shape<dim>(scene);
-  p.kind = particles::lattice_kind(scene.zone.packing);
-  for (int c = 0; c < n_spins<dim>; ++c)
-    p.orientation[c] = scene.zone.orientation[c];
-  return p;
-}
-
-template <int dim>
-particles::RandomParameters<dim> random_packing_of(const Scene &scene)
-{
-  particles::RandomParameters<dim> p;
-  set_specimen<dim>(scene, p);
-  p.seed = scene.zone.seed;
-  p.relaxation_sweeps = scene.zone.relaxation_sweeps;
-  p.size_ratio = scene.zone.size_ratio;
-  return p;
-}
-
-dem::DemMaterial material_of(const Scene &scene)
-{
-  dem::DemMaterial m;
-  m.youngs_modulus = scene.material.youngs_modulus;
-  m.poissons_ratio = scene.material.poissons_ratio;
-  m.density = scene.material.density;
-  m.plane = scene.plane;
-  m.friction = scene.material.friction;
-  return m;
-}
-
 /// Volume of the specimen without its holes and notches, in m^3.
 double material_volume(const Scene &scene)
 {
@@ -120,110 +53,6 @@ double material_volume(const Scene &scene)
     volume -= box;
   }
   return volume * (scene.dimension == 2 ? scene.specimen.thickness : 1);
-}
-
-double mean_cell_volume(const Scene &scene)
-{
-  const double d = scene.zone.spacing, thickness = scene.specimen.thickness;
-  if (scene.zone.is_irregular())
-    return scene.dimension == 2 ? particles::mean_cell_volume<2>(d) * thickness
-                                : particles::mean_cell_volume<3>(d);
-  switch (particles::lattice_kind(scene.zone.packing)) {
-  case particles::LatticeKind::square:
-    return d * d * thickness;
-  case particles::LatticeKind::hexagonal:
-    return std::sqrt(3.) / 2 * d * d * thickness;
-  case particles::LatticeKind::simple_cubic:
-    return d * d * d;
-  case particles::LatticeKind::fcc:
-    return d * d * d / std::sqrt(2.);
-  }
-  return 0;
-}
-
-template <int dim>
-double toughness_factor(const Scene &scene)
-{
-  if (scene.zone.packing == "random")
-    return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material_of(scene));
-  const auto lattice = lattice_of<dim>(scene);
-  return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material_of(scene));
-}
-
-/// Strength from the scene, or from the toughness through the calibrated factor c.
-template <int dim>
-dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
-{
-  dem::FractureLaw law;
-  const auto &p = scene.material.fracture;
-  if (p.criterion == "none")
-    return law;
-  law.criterion = dem::FractureLaw::Criterion::maximum_tension;
-  if (p.strength)
-    law.strength = *p.strength;
-  else {
-    const double c = toughness_factor<dim>(scene);
-    law.strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
-    body.figures["toughness_factor"] = {c, ""};
-    log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, law.strength,
-             scene.zone.spacing);
-  }
-  body.figures["strength"] = {law.strength, "Pa"};
-  return law;
-}
-
-/// Seeds of an irregular packing, from their file or from random numbers.
-template <int dim>
-particles::RandomPacking<dim> irregular_packing(const Scene &scene)
-{
-  const auto parameters = random_packing_of<dim>(scene);
-  if (scene.zone.packing == "random")
-    return particles::make_random_packing<dim>(parameters);
-  auto packing = particles::pack_seeds<dim>(
-      parameters, particles::read_packing_file<dim>(scene.zone.packing_file));
-  const auto &cells = packing.packing.volume;
-  const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
-  const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
-  require(
-      ratio > 0.9 && ratio < 1.1,
-      fmt::format("/discrete_zone/spacing: the packing of {} has the spacing {:.4g} m; give that",
-                  scene.zone.packing_file, ratio * scene.zone.spacing));
-  return packing;
-}
-
-template <int dim>
-particles::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
-{
-  if (!scene.zone.is_irregular())
-    return particles::make_lattice_packing<dim>(lattice_of<dim>(scene));
-  auto irregular = irregular_packing<dim>(scene);
-  if (irregular.n_healed > 0)
-    log.info("{} radii made smaller, lest a neighbour's cell lose its centre", irregular.n_healed);
-  body.figures["healed_radii"] = {double(irregular.n_healed), ""};
-  body.seeds = std::move(irregular.seeds);
-  return std::move(irregular.packing);
-}
-
-template <int dim>
-void make_zone(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
-{
-  const auto fracture = fracture_of<dim>(scene, body, log);
-  auto packing = make_packing<dim>(scene, body, log);
-  particles::Particles<dim> state;
-  particles::fill_particles(packing, scene.material.density, state);
-  const auto constants = material_of(scene).elastic_constants<dim>();
-  auto dashpots = particles::absorbing_dashpots(packing, state, body.loads, scene.material.density,
-                                                constants.wave_speed_p, constants.wave_speed_s);
-  body.n_cracked_faces = std::count_if(packing.faces.begin(), packing.faces.end(),
-                                       [](const auto &face) { return face.cracked; });
-  auto force = std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), material_of(scene),
-                                                         body.loads, fracture);
-  body.force = force.get();
-  body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
-  body.zone->dashpots = std::move(dashpots);
-  body.dt_zone = body.force->stable_step(body.zone->state);
-  log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
-           body.zone->state.n_owned, body.force->n_bonds(), body.n_cracked_faces, body.dt_zone);
 }
 
 template <int dim>
@@ -345,7 +174,7 @@ std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim
     skipped.push_back({"far field and overlap", "the whole specimen is discrete"});
   if (!body.zone)
     skipped.push_back({"particles and overlap", "the whole specimen is mesh"});
-  if (body.zone && scene.material.poissons_ratio == 0)
+  if (body.zone && body.force->materials().has_no_dilatation())
     skipped.push_back({"dilatation sweep", "Poisson's ratio is 0"});
   if (body.zone && scene.material.fracture.criterion == "none")
     skipped.push_back({"bond checks", "no fracture criterion"});

@@ -1,7 +1,7 @@
 // Random packings: closed cells, the true volume, the same particles whatever is packed, healing.
+#include "particles/random_packing.h"
 #include "particles/packing_file.h"
 #include "particles/power_diagram.h"
-#include "particles/random_packing.h"
 
 #include "core/check.h"
 #include "core/files.h"
@@ -149,7 +149,8 @@ TEST(RandomPacking, CracksCutTheFacesThatTheyCross)
   const auto packing = make_random_packing<2>(p).packing;
   int n_cracked = 0;
   for (const auto &face : packing.faces) {
-    const bool crosses = (packing.centre[1][face.i] > height) != (packing.centre[1][face.j] > height);
+    const bool crosses =
+        (packing.centre[1][face.i] > height) != (packing.centre[1][face.j] > height);
     EXPECT_EQ(face.cracked, crosses);
     n_cracked += face.cracked;
   }
@@ -247,8 +248,9 @@ TEST(PackingFile, WrongFilesAreRefusedWithTheLine)
     return "accepted";
   };
   const std::string head = "x,y,r,material\nm,m,m,1\n";
-  EXPECT_EQ(message(""), "wrong.csv:1: the file is empty: the first line names the columns x, y, z, "
-                         "r, material");
+  EXPECT_EQ(message(""),
+            "wrong.csv:1: the file is empty: the first line names the columns x, y, z, "
+            "r, material");
   EXPECT_EQ(message("x,y\nm,m\n"), "wrong.csv:2: there is no column \"r\"");
   EXPECT_EQ(message("x,x,r\nm,m,m\n"), "wrong.csv:1: two columns are called \"x\"");
   EXPECT_EQ(message("x,y,r\n"), "wrong.csv:1: the row with the units is missing: the second line, "
@@ -260,8 +262,8 @@ TEST(PackingFile, WrongFilesAreRefusedWithTheLine)
   EXPECT_EQ(message(head + "0,one,1,0\n"), "wrong.csv:3: \"one\" in column \"y\" is no number");
   EXPECT_EQ(message(head + "0,nan,1,0\n"), "wrong.csv:3: \"nan\" in column \"y\" is no number");
   EXPECT_EQ(message(head + "0,0,-1,0\n"), "wrong.csv:3: the radius must be positive");
-  EXPECT_EQ(message(head + "0,0,1,2\n"),
-            "wrong.csv:3: the material must be 0: a scene has one material");
+  EXPECT_EQ(message(head + "0,0,1,0.5\n"),
+            "wrong.csv:3: the material must be 0 or the number of an inclusion");
   EXPECT_THROW(read_packing_file<2>("no_such_file.csv"), core::EnvironmentError);
 }
 } // namespace ligament::particles::test
