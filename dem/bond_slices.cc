@@ -94,7 +94,7 @@ void BondSlices<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int ne
 {
   const Vector<dim> &own = is_i ? b.lever_i : b.lever_j, &other = is_i ? b.lever_j : b.lever_i;
   const double s_r = b.area / b.distance;
-  const auto stiffness = stiffness_of(b, b.weight * 2 * shear_modulus_ * s_r);
+  const auto stiffness = stiffness_of(b, b.weight * 2 * b.shear_i * s_r);
   const long slot = place / slice_width, lane = place % slice_width;
   double *const g = table_.geometry.data() + slot * n_geometry<dim> * slice_width + lane;
   double *const k = table_.stiffness.data() + slot * n_stiffness<dim> * slice_width + lane;
