@@ -25,8 +25,9 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(),
                without_pads(std::move(overlap))),
-      transfer_(overlap_, bodies.zone->state),
-      projector_(overlap_, transfer_, bodies.zone->state, parameters.solver),
+      transfer_(overlap_, bodies.zone->state), shares_(weigh(bodies)),
+      weighted_transfer_(overlap_, bodies.zone->state),
+      projector_(overlap_, weighted_transfer_, bodies.zone->state, parameters.solver),
       mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
@@ -36,7 +37,6 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
   stiffness_blocks_ = std::make_unique<BlockMatrix<dim>>(stiffness_);
   mass_ = take_over_cells(overlap_, far) + operators.mass;
   mass_solver_->factorise(mass_);
-  weigh(bodies);
   constraint_ = std::make_unique<VelocityConstraint<dim>>(
       parameters.scheme, overlap_, transfer_, shares_, mass_, parameters.multiplier_cells,
       parameters.solver);
@@ -48,7 +48,8 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
   for (auto &v : member_velocity_)
     v.resize(transfer_.size());
   lost_ = before_damper_ = member_velocity_;
-  displacement_ = velocity_ = force_ = dead_nodal_ = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  displacement_ = velocity_ = force_ = acceleration_ = dead_nodal_ =
+      Nodal<dim>::Zero(overlap_.n_nodes(), dim);
   if (std::any_of(parameters.reference_strain.begin(), parameters.reference_strain.end(),
                   [](double e) { return e != 0; }))
     find_dead_load(bodies);
@@ -56,7 +57,7 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
 }
 
 template <int dim>
-void BridgingDomain<dim>::weigh(Bodies<dim> &bodies)
+std::vector<double> BridgingDomain<dim>::weigh(Bodies<dim> &bodies) const
 {
   auto &zone = bodies.zone->state;
   const std::vector<double> weights =
@@ -64,14 +65,16 @@ void BridgingDomain<dim>::weigh(Bodies<dim> &bodies)
           ? point_weights(overlap_, zone, parameters_.point_weight_floor)
           : mean_weights(overlap_, zone, *bodies.zone->force);
   bodies.zone->force->set_energy_weights(weights);
+  std::vector<double> shares;
   for (int k = 0; k < transfer_.size(); ++k) {
     const int i = transfer_.particle(k);
-    shares_.push_back(weights[i]);
+    shares.push_back(weights[i]);
     zone.mass[i] *= weights[i];
     zone.inertia[i] *= weights[i];
     zone.inverse_mass[i] /= weights[i];
     zone.inverse_inertia[i] /= weights[i];
   }
+  return shares;
 }
 
 // The forces and torques that a uniform strain would leave at the members, their neighbours and the
@@ -148,7 +151,8 @@ void BridgingDomain<dim>::take_velocities(Bodies<dim> &bodies)
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
-  project(bodies);
+  if (!corrects_at_whole_steps()) // these carry any
+    project(bodies);
 }
 
 template <int dim>
@@ -164,13 +168,18 @@ template <int dim>
 void BridgingDomain<dim>::write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const
 {
   auto &zone = bodies.zone->state;
-  auto &far = *bodies.far;
-  for (int c = 0; c < dim; ++c) {
+  for (int c = 0; c < dim; ++c)
     for (int k = 0; k < transfer_.size(); ++k)
       zone.velocity[c][transfer_.particle(k)] = v[c][k];
+  write_near_velocities(*bodies.far);
+}
+
+template <int dim>
+void BridgingDomain<dim>::write_near_velocities(fem::FemSolver<dim> &far) const
+{
+  for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
       far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
-  }
 }
 
 template <int dim>
@@ -226,76 +235,94 @@ void BridgingDomain<dim>::compute_near_force(const Bodies<dim> &bodies, Nodal<di
   stiffness_blocks_->subtract_product(displacement_, force);
 }
 
-// One kick and one projection of all velocities: what is projected is the acceleration, because the
-// velocities before fulfil the constraint. The schemes after Xiao and Belytschko move with the
-// unconstrained acceleration and correct velocities at whole steps: half a kick on either side.
+template <int dim>
+bool BridgingDomain<dim>::corrects_at_whole_steps() const
+{
+  return parameters_.scheme == Scheme::xiao_belytschko ||
+         parameters_.scheme == Scheme::xiao_belytschko_lumped;
+}
+
+// Particles and near nodes by the forces alone.
+template <int dim>
+void BridgingDomain<dim>::push(Bodies<dim> &bodies, double dt)
+{
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->kick(dt);
+  }
+  const auto timing = this->timers_.scope(this->coupling_);
+  velocity_ += dt * acceleration_;
+  write_near_velocities(*bodies.far);
+}
+
+// Of `acceleration` one kick and one projection of all velocities: what is projected is the
+// acceleration, because the velocities before fulfil the constraint. The schemes after Xiao and
+// Belytschko move with the unconstrained acceleration and correct velocities at whole steps. All
+// dampers act at whole steps, on velocities that the scheme carries: there they take energy
+// whatever the step (theory.md section 3.9).
 template <int dim>
 void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
-  const bool corrects_at_whole_steps = parameters_.scheme == Scheme::xiao_belytschko ||
-                                       parameters_.scheme == Scheme::xiao_belytschko_lumped;
-  const double part = corrects_at_whole_steps ? 0.5 : 1;
   {
     const auto timing = this->timers_.scope(this->coupling_);
     compute_near_force(bodies, force_);
-    if (parameters_.fine_damper > 0)
-      damp(bodies, step.dt);
+    acceleration_ = force_;
+    mass_solver_->solve(acceleration_.data(), dim);
   }
   {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(step.dt, step.time);
   }
-  {
-    const auto timing = this->timers_.scope(this->motion_);
-    bodies.zone->kick(part * step.dt);
-  }
-  {
-    const auto timing = this->timers_.scope(this->coupling_);
-    Nodal<dim> change = part * step.dt * force_;
-    mass_solver_->solve(change.data(), dim);
-    velocity_ += change;
+  const bool corrects = corrects_at_whole_steps(), damps = parameters_.fine_damper > 0;
+  if (!corrects && !damps) {
+    push(bodies, step.dt);
     project(bodies);
-    if (!corrects_at_whole_steps) {
-      if (parameters_.fine_damper > 0)
-        book_damper(bodies);
-      return;
-    }
-    velocity_ += change;
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < overlap_.n_nodes(); ++i)
-        bodies.far->velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
+    return;
   }
-  const auto timing = this->timers_.scope(this->motion_);
-  bodies.zone->kick(part * step.dt);
-  if (parameters_.fine_damper > 0)
+  if (!corrects)
+    read_velocities(bodies.zone->state, before_damper_);
+  push(bodies, step.dt / 2);
+  if (!corrects)
+    project(bodies);
+  else if (damps)
+    read_velocities(bodies.zone->state, before_damper_);
+  if (damps)
+    damp(bodies, step.dt);
+  if (corrects) {
+    if (damps)
+      book_damper(bodies);
+    project(bodies);
+  }
+  push(bodies, step.dt / 2);
+  if (!corrects) {
+    project(bodies);
     book_damper(bodies);
+  }
 }
 
-// v -= M^-1 Q^T M g Q v (theory.md eq. (B7)), on the velocities before the kick: the projection
-// that follows serves both. With the unweighted masses m that Q is made of, Q^T = m Q m^-1.
+// v -= Q g Q v, theory.md eq. (B7).
 template <int dim>
 void BridgingDomain<dim>::damp(Bodies<dim> &bodies, double dt)
 {
+  const auto timing = this->timers_.scope(this->coupling_);
   auto &zone = bodies.zone->state;
-  read_velocities(zone, before_damper_);
-  lost_ = before_damper_;
+  read_velocities(zone, lost_);
   projector_.project(lost_);
-  const bool symmetric = parameters_.damper_form == DamperForm::symmetrised;
   for (auto &v : lost_)
     for (int k = 0; k < transfer_.size(); ++k)
-      v[k] *= (1 - std::exp(-rate_[k] * dt)) * (symmetric ? shares_[k] : 1);
-  if (symmetric)
+      v[k] *= 1 - std::exp(-rate_[k] * dt);
+  if (parameters_.damper_form == DamperForm::symmetrised)
     projector_.project(lost_);
   for (int c = 0; c < dim; ++c)
     for (int k = 0; k < transfer_.size(); ++k) {
       const int i = transfer_.particle(k);
-      const double change = lost_[c][k] / (symmetric ? shares_[k] : 1);
-      zone.velocity[c][i] -= change;
-      lost_[c][k] = zone.mass[i] * change;
+      zone.velocity[c][i] -= lost_[c][k];
+      lost_[c][k] *= zone.mass[i];
     }
 }
 
-// theory.md eq. (E3), with the velocities after the kick.
+// theory.md eq. (E3): with the velocities before and after the kick where what follows the damper
+// is a projection, else with those before and after the damper.
 template <int dim>
 void BridgingDomain<dim>::book_damper(const Bodies<dim> &bodies)
 {

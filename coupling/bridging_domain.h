@@ -50,10 +50,13 @@ public:
   int n_multipliers() const { return constraint_->n_multipliers(); }
 
 private:
-  void weigh(Bodies<dim> &bodies);
+  std::vector<double> weigh(Bodies<dim> &bodies) const;
   void find_dead_load(Bodies<dim> &bodies);
   void read_velocities(const particles::Particles<dim> &zone, Components<dim> &v) const;
   void write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const;
+  void write_near_velocities(fem::FemSolver<dim> &far) const;
+  bool corrects_at_whole_steps() const;
+  void push(Bodies<dim> &bodies, double dt);
   void damp(Bodies<dim> &bodies, double dt);
   void book_damper(const Bodies<dim> &bodies);
   void project(Bodies<dim> &bodies);
@@ -61,10 +64,11 @@ private:
 
   BridgingDomainParameters parameters_;
   Overlap<dim> overlap_;
-  Transfer<dim> transfer_; // with the unweighted masses
-  FluctuationProjector<dim> projector_;
-  std::vector<double> shares_; // a of the members
-  std::vector<double> rate_;   // c_f of the members, 1/s
+  Transfer<dim> transfer_;              // with the unweighted masses, for the constraint
+  std::vector<double> shares_;          // a of the members
+  Transfer<dim> weighted_transfer_;     // with the weighted masses, for the damper
+  FluctuationProjector<dim> projector_; // orthogonal in the weighted masses
+  std::vector<double> rate_;            // c_f of the members, 1/s
   std::unique_ptr<VelocityConstraint<dim>> constraint_;
 
   Eigen::SparseMatrix<double> stiffness_, mass_; // of the near nodes
@@ -72,13 +76,13 @@ private:
   std::unique_ptr<LinearSolver> mass_solver_;
 
   Nodal<dim> displacement_, velocity_;   // U, V of the near nodes
-  Nodal<dim> force_;                     // on the near nodes at the last kick, N
+  Nodal<dim> force_, acceleration_;      // of the near nodes at the last kick
   Nodal<dim> dead_nodal_;                // N
   Components<dim> dead_;                 // of all particles, N; empty without
   Components<n_spins<dim>> dead_torque_; // likewise, N m
   Components<dim> member_velocity_;
   Components<dim> lost_;          // momentum that the damper took in this step, of the members
-  Components<dim> before_damper_; // velocities of the members before the step
+  Components<dim> before_damper_; // velocities of the members that its energy is booked with
   double fine_damper_energy_ = 0;
 };
 } // namespace ligament::coupling

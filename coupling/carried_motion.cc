@@ -6,7 +6,7 @@ namespace ligament::coupling
 {
 template <int dim>
 CarriedMotion<dim>::CarriedMotion(const Overlap<dim> &overlap,
-                                  const particles::Particles<dim> &particles,
+                                  const std::function<double(const Member &)> &mass,
                                   const std::string &solver)
     : solver_(make_linear_solver(solver))
 {
@@ -22,7 +22,7 @@ CarriedMotion<dim>::CarriedMotion(const Overlap<dim> &overlap,
       for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
         for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
           entries.emplace_back(rank[m.nodes[a]], rank[m.nodes[b]],
-                               particles.mass[m.particle] * m.value[a] * m.value[b]);
+                               mass(m) * m.value[a] * m.value[b]);
   Eigen::SparseMatrix<double> gram(n, n);
   gram.setFromTriplets(entries.begin(), entries.end());
   const std::vector<char> keep = independent_columns(gram);

@@ -4,15 +4,19 @@
 #include "coupling/linear_solver.h"
 #include "coupling/transfer.h"
 
+#include <functional>
+
 namespace ligament::coupling
 {
-/// x = (Phi^T M Phi)^-1 Phi^T M w over the members that are not pad (theory.md eq. (C1)). Columns
-/// of Phi that the others already span are left out, which does not change Phi x.
+/// x = (Phi^T M Phi)^-1 Phi^T M w over the members that are not pad (theory.md eqs. (C1), (C19)).
+/// Columns of Phi that the others already span are left out, which does not change Phi x.
 template <int dim>
 class CarriedMotion
 {
 public:
-  CarriedMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+  using Member = typename Overlap<dim>::Member;
+  /// mass: entry of M of a member, in kg.
+  CarriedMotion(const Overlap<dim> &overlap, const std::function<double(const Member &)> &mass,
                 const std::string &solver);
 
   /// Phi^T M w in, x out; rows are near nodes.

@@ -18,13 +18,39 @@ auto pointers(Field &field)
     p[c] = field[c].data();
   return p;
 }
+/// Phi^T M damping (1 - damping/2) Phi over the free members.
+template <int dim>
+ScalarMatrix<dim> loss_matrix(const Overlap<dim> &overlap,
+                              const particles::Particles<dim> &particles,
+                              const std::function<double(double)> &damping)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto &m : overlap.members) {
+    const double g = m.pad ? 0 : float(damping(m.position));
+    if (g > 0)
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
+          entries.emplace_back(m.nodes[a], m.nodes[b],
+                               particles.mass[m.particle] * g * (1 - g / 2) * m.value[a] *
+                                   m.value[b]);
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(overlap.n_nodes(), overlap.n_nodes());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return ScalarMatrix<dim>(matrix);
+}
 } // namespace
 
 template <int dim>
 FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                             const std::function<double(double)> &damping, const std::string &solver)
-    : carrier_(overlap, particles, solver), carried_(overlap.n_nodes(), dim),
-      lost_(overlap.n_nodes(), dim)
+    : carrier_(
+          overlap,
+          [&](const typename Overlap<dim>::Member &m) {
+            return particles.mass[m.particle] * (1 - float(damping(m.position)) / 2.);
+          },
+          solver),
+      carried_(overlap.n_nodes(), dim), lost_(overlap.n_nodes(), dim),
+      loss_(loss_matrix(overlap, particles, damping))
 {
   make_lanes(overlap, particles, damping);
   motion_.resize(dim * lanes_.slots.size());
@@ -108,8 +134,7 @@ void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
   add_pad_torques(particles, force);
 }
 
-// The damper takes 1/2 sum damping m w_old (w_old + w), w = w' - Phi x: the part of x is a sum over
-// nodes.
+// The damper takes (C20) with w = w' - (1 - damping/2) Phi x: the parts of x are sums over nodes.
 template <int dim>
 void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, double dt,
                                  Nodal<dim> &force)
@@ -120,7 +145,11 @@ void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, dou
                                                 force.data(), carried_.data(), lost_.data()});
   add_pad_torques(particles, force);
   carrier_.solve(carried_);
-  damper_energy_ += (sum - lost_.cwiseProduct(carried_).sum()) / 2;
+  if (loss_.is_empty())
+    return;
+  Nodal<dim> square;
+  loss_.multiply(carried_, square);
+  damper_energy_ += (sum - carried_.cwiseProduct(lost_ - 0.5 * square).sum()) / 2;
 }
 
 template <int dim>
@@ -146,8 +175,11 @@ void FineMotion<dim>::take_velocities(const Nodal<dim> &coarse,
       const Slot &slot = lanes_.slots[k];
       for (int l = 0; l < lanes_.n_members[k]; ++l)
         for (int c = 0; c < dim; ++c) {
-          const bool free = slot.mass.value[l] > 0;
-          const double w = free ? particles.velocity[c][slot.particle[l]] : 0;
+          double w = particles.velocity[c][slot.particle[l]];
+          for (int a = 0; a < nc; ++a)
+            w -= slot.value[a].value[l] * coarse(batch.node[a][l], c);
+          if (slot.mass.value[l] == 0)
+            w = 0;
           motion_[k * dim + c].value[l] = w;
           for (int a = 0; a < nc; ++a)
             carried_(batch.node[a][l], c) += slot.value[a].value[l] * slot.mass.value[l] * w;

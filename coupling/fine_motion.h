@@ -4,6 +4,7 @@
 
 #include "coupling/carried_motion.h"
 #include "coupling/member_lanes.h"
+#include "coupling/scalar_matrix.h"
 
 #include <functional>
 
@@ -23,19 +24,20 @@ public:
   /// force += Phi^T f + Psi_pad^T T_pad, in N.
   void add_forces(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
 
-  /// w <- w - damping w + dt f/m, what the mesh carries not yet taken out; adds forces as above.
+  /// theory.md eq. (C19), what the mesh carries not yet taken out; adds forces as above.
   void begin_kick(const particles::Particles<dim> &particles, double dt, Nodal<dim> &force);
-  /// Once V is known: w <- Q w and v = Phi V + w; pads also turn with the mesh.
+  /// Once V is known: takes out what the mesh carries, v = Phi V + w; pads also turn with the mesh.
   void finish_kick(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
 
-  /// w = Q v of the particles' velocities, then as write_velocities.
+  /// w of the particles' velocities: v - Phi V less what the mesh carries of it; then as
+  /// write_velocities.
   void take_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
   /// v = Phi V + w; pads also turn with the mesh.
   void write_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
 
   void scale(double factor);
 
-  /// What the damper has taken so far, in J, theory.md eq. (E3).
+  /// What the damper has taken so far, in J, theory.md eq. (C20).
   double damper_energy() const { return damper_energy_; }
 
   /// 1/2 w M w + 1/2 dt w f, in J.
@@ -64,7 +66,8 @@ private:
   CarriedMotion<dim> carrier_;
   std::vector<Octet> motion_; // w, dim per slot, m/s
   Nodal<dim> carried_;        // Phi^T M w', then x: what the mesh carries of w'
-  Nodal<dim> lost_;           // Phi^T M (damping w)
+  Nodal<dim> lost_;           // Phi^T M damping (w + w')
+  ScalarMatrix<dim> loss_;    // Phi^T M damping (1 - damping/2) Phi
   double damper_energy_ = 0;
   std::vector<Pad> pads_;
 };

@@ -7,7 +7,12 @@ FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
                                                 const Transfer<dim> &transfer,
                                                 const particles::Particles<dim> &particles,
                                                 const std::string &solver)
-    : transfer_(transfer), carried_(overlap, particles, solver), nodal_(overlap.n_nodes(), dim)
+    : transfer_(transfer),
+      carried_(
+          overlap,
+          [&](const typename Overlap<dim>::Member &m) { return particles.mass[m.particle]; },
+          solver),
+      nodal_(overlap.n_nodes(), dim)
 {
 }
 

@@ -66,12 +66,21 @@ HWY_INLINE void take_from_nodes(const typename MemberLanes<dim>::Batch &batch, c
       at_node[a].value[l] = nodal[batch.node[a][l] * dim + c];
 }
 
+/// Share of a kick that a damped motion takes up: 1 - damping/2.
+template <int dim>
+HWY_INLINE Vector response(const typename MemberLanes<dim>::Slot &slot, int part)
+{
+  const Lanes d;
+  const hn::Rebind<float, Lanes> single;
+  return hn::NegMulAdd(hn::Set(d, 0.5), hn::PromoteTo(d, hn::LoadU(single, slot.damping + part)),
+                       hn::Set(d, 1));
+}
+
 template <int dim>
 HWY_INLINE double kick_all(const MemberLanes<dim> &members, const FineKick<dim> &kick)
 {
   constexpr int nc = MemberLanes<dim>::nc;
   const Lanes d;
-  const hn::Rebind<float, Lanes> single;
   const Vector dt = hn::Set(d, kick.dt);
   Vector loss = hn::Zero(d);
   Octet force[nc], momentum[nc], lost[nc];
@@ -85,13 +94,15 @@ HWY_INLINE double kick_all(const MemberLanes<dim> &members, const FineKick<dim> 
           const auto &slot = members.slots[k];
           const Vector f = gather<dim>(kick.force[c], slot, part);
           const Vector old = load(kick.motion[k * dim + c], part), mass = load(slot.mass, part);
-          const Vector damping = hn::PromoteTo(d, hn::LoadU(single, slot.damping + part));
-          const Vector push =
-              hn::IfThenElseZero(hn::Gt(mass, hn::Zero(d)), hn::Div(hn::Mul(dt, f), mass));
+          const Vector share = response<dim>(slot, part);
+          const Vector damping = hn::Mul(hn::Set(d, 2), hn::Sub(hn::Set(d, 1), share));
+          const Vector push = hn::IfThenElseZero(hn::Gt(mass, hn::Zero(d)),
+                                                 hn::Div(hn::Mul(hn::Mul(dt, share), f), mass));
           const Vector w = hn::Add(push, hn::NegMulAdd(damping, old, old));
           store(w, kick.motion[k * dim + c], part);
-          const Vector p = hn::Mul(mass, w), l = hn::Mul(hn::Mul(mass, damping), old);
-          loss = hn::MulAdd(l, hn::Add(old, w), loss);
+          const Vector p = hn::Mul(mass, w), sum = hn::Add(old, w),
+                       l = hn::Mul(hn::Mul(mass, damping), sum);
+          loss = hn::MulAdd(hn::Div(l, hn::Add(share, share)), sum, loss);
           for (int a = 0; a < nc; ++a) {
             const Vector value = load(slot.value[a], part);
             f_sum[a] = hn::MulAdd(value, f, f_sum[a]);
@@ -131,9 +142,9 @@ HWY_INLINE void split_all(const MemberLanes<dim> &members, const FineSplit<dim> 
             from_carried = hn::MulAdd(value, load(carried[a], part), from_carried);
             v = hn::MulAdd(value, load(coarse[a], part), v);
           }
-          const Vector w =
-              hn::IfThenElseZero(hn::Gt(load(slot.mass, part), hn::Zero(d)),
-                                 hn::Sub(load(split.motion[k * dim + c], part), from_carried));
+          const Vector w = hn::IfThenElseZero(hn::Gt(load(slot.mass, part), hn::Zero(d)),
+                                              hn::NegMulAdd(response<dim>(slot, part), from_carried,
+                                                            load(split.motion[k * dim + c], part)));
           store(w, split.motion[k * dim + c], part);
           store(hn::Add(v, w), velocity, part);
         }

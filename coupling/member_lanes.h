@@ -36,8 +36,8 @@ struct MemberLanes
   std::vector<Batch> batches;
 };
 
-/// First pass: w' = (1 - damping) w + dt f/m of the free members; forces, momenta and what the
-/// damper takes of the momentum to the nodes.
+/// First pass, theory.md eq. (C19): w' = (1 - damping) w + (1 - damping/2) dt f/m of the free
+/// members; forces, momenta and what the damper takes of the momentum to the nodes.
 template <int dim>
 struct FineKick
 {
@@ -46,10 +46,10 @@ struct FineKick
   Octet *motion;                         // w in, w' out, m/s: dim per slot
   double *nodal_force;                   // += Phi^T f, dim per near node
   double *nodal_momentum;                // += Phi^T M w'
-  double *nodal_loss;                    // += Phi^T M damping w
+  double *nodal_loss;                    // += Phi^T M damping (w + w')
 };
 
-/// Second pass: w = w' - Phi x of the free members; v = Phi V + w of all.
+/// Second pass: w = w' - (1 - damping/2) Phi x of the free members; v = Phi V + w of all.
 template <int dim>
 struct FineSplit
 {
@@ -59,7 +59,7 @@ struct FineSplit
   std::array<double *, dim> velocity; // of the particles, m/s
 };
 
-/// Returns sum damping m w (w + w') over the members, in J.
+/// Returns sum damping/(2 - damping) m (w + w')^2 over the members, in J.
 template <int dim>
 double kick_members(const MemberLanes<dim> &members, const FineKick<dim> &kick);
 
