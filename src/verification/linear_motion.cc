@@ -1,6 +1,7 @@
 #include "src/verification/linear_motion.h"
 
 #include "core/check.h"
+#include "src/verification/body_state.h"
 
 #include <Eigen/Dense>
 
@@ -92,35 +93,8 @@ Vector<dim> LinearMotion<dim>::node(const Eigen::VectorXd &x, int i) const
 template <int dim>
 void LinearMotion<dim>::set_state(const Eigen::VectorXd &x)
 {
-  auto &zone = body_.zone->state;
-  const double *value = x.data();
-  for (auto &u : zone.displacement)
-    for (double &v : u)
-      v = *value++;
-  for (int c = 0; c < n_spins<dim>; ++c)
-    for (int i = 0; i < n_particles_; ++i, ++value) {
-      if constexpr (dim == 2)
-        zone.rotation[0][i] = *value;
-      else {
-        zone.rotation[0][i] = 1; // quaternion of a rotation whose square is round-off
-        zone.rotation[1 + c][i] = *value / 2;
-      }
-    }
-  const auto stop = [](auto &components) {
-    for (auto &v : components)
-      std::fill(v.begin(), v.end(), 0.);
-  };
-  stop(zone.velocity);
-  stop(zone.spin);
-  if (!body_.far)
-    return;
-  for (auto &u : body_.far->displacement)
-    for (double &v : u)
-      v = *value++;
-  stop(body_.far->velocity);
-  body_.far->distribute();
-  auto bodies = body_.bodies();
-  body_.coupler->take_velocities(bodies);
+  set_displacement(body_, x);
+  admissible<dim>(body_, Eigen::VectorXd::Zero(size()));
 }
 
 template <int dim>
@@ -141,38 +115,7 @@ Eigen::VectorXd LinearMotion<dim>::accelerations(const Eigen::VectorXd &x, bool 
 template <int dim>
 Eigen::VectorXd LinearMotion<dim>::velocities() const
 {
-  Eigen::VectorXd x(size());
-  double *value = x.data();
-  const auto read = [&](const auto &components) {
-    for (const auto &v : components)
-      value = std::copy(v.begin(), v.end(), value);
-  };
-  read(body_.zone->state.velocity);
-  read(body_.zone->state.spin);
-  if (body_.far)
-    read(body_.far->velocity);
-  return x;
-}
-
-template <int dim>
-Eigen::VectorXd LinearMotion<dim>::admissible(const Eigen::VectorXd &x)
-{
-  set_state(Eigen::VectorXd::Zero(size()));
-  const double *value = x.data();
-  const auto write = [&](auto &components) {
-    for (auto &component : components)
-      for (double &v : component)
-        v = *value++;
-  };
-  write(body_.zone->state.velocity);
-  write(body_.zone->state.spin);
-  if (body_.far) {
-    write(body_.far->velocity);
-    body_.far->distribute();
-  }
-  auto bodies = body_.bodies();
-  body_.coupler->take_velocities(bodies);
-  return velocities();
+  return velocity(body_);
 }
 
 template <int dim>
@@ -243,7 +186,7 @@ Eigen::VectorXd LinearMotion<dim>::solve()
   // Each round starts from the true residual, without the round-off that left the admissible
   // motions.
   for (const double tolerance : {1e-8, 1e-5, 1e-2})
-    x = admissible(x + conjugate_gradients(accelerations(x, true), tolerance));
+    x = admissible<dim>(body_, x + conjugate_gradients(accelerations(x, true), tolerance));
   accelerations(x, true);
   return x;
 }
@@ -256,7 +199,7 @@ Eigen::VectorXd LinearMotion<dim>::noise()
   Eigen::VectorXd x(size());
   for (double &v : x)
     v = uniform(random);
-  x = admissible(x);
+  x = admissible(body_, x);
   return x / std::sqrt(inner(x, x));
 }
 

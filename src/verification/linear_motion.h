@@ -58,8 +58,6 @@ public:
 
 private:
   void set_state(const Eigen::VectorXd &x);
-  /// The motion that the program makes of x: v = Phi V + w, Phi^T M w = 0, pads carried along.
-  Eigen::VectorXd admissible(const Eigen::VectorXd &x);
   Vector<dim> particle(const Eigen::VectorXd &x, int i) const;
   Vector<dim> node(const Eigen::VectorXd &x, int i) const;
   void find_free_motions();
