@@ -93,12 +93,20 @@ void choose_step(const Scene &scene, CoupledBody<dim> &body)
       fmt::format("/time/step: {:.4g} s is above the stable step of {:.4g} s; give at most 0.95 "
                   "of that, or leave it out",
                   body.dt, stable));
-  if (body.zone && body.far)
-    require(scene.coupling.step_ratio * body.dt <= 0.6 * body.dt_far,
-            fmt::format("/coupling/step_ratio: {} steps of {:.4g} s are more than 0.6 of the far "
-                        "field's stable step of {:.4g} s; give at most {}",
-                        scene.coupling.step_ratio, body.dt, body.dt_far,
-                        int(0.6 * body.dt_far / body.dt)));
+  if (!body.zone || !body.far)
+    return;
+  const double most = 0.6 * body.dt_far;
+  const std::string remedy = scene.time.step
+                                 ? fmt::format("{:.4g} s", most)
+                                 : fmt::format("{:.2f}", std::floor(100 * most / stable) / 100);
+  require(body.dt <= most,
+          fmt::format("/time/{}: the step of {:.4g} s is more than 0.6 of the far field's stable "
+                      "step of {:.4g} s; give at most {}, or a larger /far_field/cell_size",
+                      scene.time.step ? "step" : "step_fraction", body.dt, body.dt_far, remedy));
+  require(scene.coupling.step_ratio * body.dt <= most,
+          fmt::format("/coupling/step_ratio: {} steps of {:.4g} s are more than 0.6 of the far "
+                      "field's stable step of {:.4g} s; give at most {}",
+                      scene.coupling.step_ratio, body.dt, body.dt_far, int(most / body.dt)));
 }
 
 template <int dim>
