@@ -2,6 +2,7 @@
 // literature.
 #include "src/verification/cases.h"
 #include "src/verification/linear_motion.h"
+#include "src/verification/noise_run.h"
 #include "src/verification/unit_bodies.h"
 #include "src/verification/waves.h"
 
@@ -9,8 +10,8 @@
 
 #include <Eigen/LU>
 
+#include <cmath>
 #include <limits>
-#include <random>
 
 namespace ligament::program
 {
@@ -21,6 +22,8 @@ using coupling::WeightShape;
 using Bound = Result::Bound;
 
 constexpr double tiny = 1e-14; // strains whose square is round-off
+constexpr int noise_interval = 20;
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 /// A band whose overlap ends at free edges, with a mesh that does not fit the packing.
 Scene band(Scheme scheme)
@@ -31,41 +34,18 @@ Scene band(Scheme scheme)
   return scene;
 }
 
-double mechanical(const coupling::CoupledEnergy &e)
+/// Mechanical energy of noise at strains of 1e-9, every 20 steps.
+std::vector<double> noise(const Scene &scene, long n_steps)
 {
-  return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
+  UnitBody<2> unit(scene);
+  return run_noise(unit.body, 1e-9, n_steps + 1, noise_interval, 0).leap_frog;
 }
 
 /// Mechanical energy of noise after n_steps over that at its start.
 double noise_left(const Scene &scene, long n_steps)
 {
-  UnitBody<2> unit(scene);
-  auto &body = unit.body;
-  auto bodies = body.bodies();
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> uniform(-1e-9, 1e-9);
-  const auto fill = [&](auto &components) {
-    for (auto &component : components)
-      for (double &v : component)
-        v = uniform(random);
-  };
-  fill(body.zone->state.velocity);
-  fill(body.far->velocity);
-  body.far->distribute();
-  body.coupler->take_velocities(bodies);
-  coupling::StepTime step;
-  step.dt = body.dt;
-  double before = 0;
-  for (; step.step <= n_steps; ++step.step, step.time = double(step.step) * step.dt) {
-    body.coupler->compute_forces(bodies, step);
-    if (step.step == 0)
-      before = mechanical(body.coupler->energy(bodies, step));
-    if (step.step == n_steps)
-      break;
-    body.coupler->kick(bodies, step);
-    body.coupler->drift(bodies, step);
-  }
-  return mechanical(body.coupler->energy(bodies, step)) / before;
+  const auto series = noise(scene, n_steps);
+  return series.back() / series.front();
 }
 
 /// Largest error of strain between neighbours over the applied uniaxial strain, static solve.
@@ -140,15 +120,19 @@ std::vector<Result> measure(const Row &row)
       cost = f.cost;
     }
   }
-  results.push_back(energy_lost(row, name + "lost_noise", 1 - noise_left(band(row.scheme), 5000)));
+  const auto energy = noise(band(row.scheme), 10000);
+  results.push_back(energy_lost(row, name + "lost_noise", 1 - energy.back() / energy.front()));
+  results.push_back({name + "drift",
+                     course_of(energy, noise_interval).drift,
+                     row.keeps_energy ? 1e-8 : no_bound,
+                     {}});
   results.push_back({name + "stable_step",
                      stable_step_ratio(band(row.scheme)),
                      row.stable_step,
                      {},
                      Bound::at_least});
   // The machine's affair: no bound.
-  results.push_back(
-      {name + "nanoseconds", 1e9 * cost, std::numeric_limits<double>::infinity(), {}});
+  results.push_back({name + "nanoseconds", 1e9 * cost, no_bound, {}});
   return results;
 }
 
@@ -158,23 +142,27 @@ std::vector<Result> wave_weaknesses()
 {
   auto p = wave(Scheme::xiao_belytschko, 16);
   p.fine_damper = 0;
+  p.overlap_cells = 6;
   const double whole = measure_wave<2>(p).missing;
   p.step_fraction = 0.45;
-  const double half = measure_wave<2>(p).missing;
+  const auto half = measure_wave<2>(p);
+  // theory.md eq. (B9), cubic; the multipliers see part of what it counts.
+  const double formula = 1 - std::exp(-9 * std::log(3.) * half.courant / 2);
   p = wave(Scheme::xiao_belytschko_lumped, 4);
   p.fine_damper = 0;
   const double lumped = measure_wave<2>(p).missing;
   const double pointwise = measure_wave<2>(wave(Scheme::pointwise, 1)).reflected;
   p = wave(Scheme::acceleration, 4);
-  const double fine = measure_wave<2>(p).reflected;
-  p.multiplier_cells = 3;
+  p.fine_damper = 0;
+  p.overlap_cells = p.multiplier_cells = 4;
   const double coarse = measure_wave<2>(p).reflected;
   const std::string name = "weaknesses_waves/";
-  return {{name + "xiao_belytschko_missing_16h", whole, 0.02, {}, Bound::at_least},
-          {name + "xiao_belytschko_half_the_step", half / whole, 0.6, {}, Bound::at_most},
+  return {{name + "xiao_belytschko_missing_16h", half.missing, 0.02, {}, Bound::at_least},
+          {name + "xiao_belytschko_missing_over_formula", half.missing / formula, 1, {}},
+          {name + "xiao_belytschko_half_the_step", half.missing / whole, 0.6, {}},
           {name + "lumped_missing_4h", lumped, 0.1, {}, Bound::at_least},
           {name + "pointwise_reflected_1h", pointwise, 0.9, {}, Bound::at_least},
-          {name + "coarse_over_fine_multipliers_4h", coarse / fine, 100, {}, Bound::at_least}};
+          {name + "coarse_multipliers_reflected_4h", coarse, 0.62, {}, Bound::at_least}};
 }
 
 std::vector<Result> noise_weaknesses()
@@ -206,8 +194,8 @@ std::vector<Result> patch_weaknesses()
     scene.coupling.ghost_force_correction = {-share * nu / (1 - nu) * strain, share * strain, 0};
     return patch_error(scene) / plain;
   };
-  return {{name + "constant_weight_strain", constant, 0.1, {}, Bound::at_least},
-          {name + "ghost_correction_at_its_state", corrected(1), 1e-2, {}, Bound::at_most},
+  return {{name + "constant_weight_strain", constant, 0.17, {}, Bound::at_least},
+          {name + "ghost_correction_at_its_state", corrected(1), no_bound, {}},
           {name + "ghost_correction_at_twice_its_state", corrected(0.5), 0.4, {}, Bound::at_least}};
 }
 } // namespace

@@ -91,8 +91,12 @@ WaveFigures measure_wave(const WaveParameters &p)
   for (const auto &row : strip.timers->rows())
     if (row.name == "coupling")
       seconds = row.seconds;
+  const auto &overlap = *strip.coupler->overlap();
+  const double rise = overlap.parameters.length - overlap.parameters.spacing - overlap.depth;
+  const auto constants = strip_parameters.material.template elastic_constants<dim>();
   return {kinetic_energy(strip) / before, lost / whole, 1 - (mechanical_energy(e) + lost) / whole,
-          seconds / double(time.step * strip.coupler->overlap()->members.size())};
+          seconds / double(time.step * overlap.members.size()),
+          constants.wave_speed_p * strip.dt / rise};
 }
 
 namespace

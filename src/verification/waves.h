@@ -29,6 +29,7 @@ struct WaveFigures
   double lost;      // taken by the dampers of the overlap
   double missing; // of all mechanical energy, neither left nor booked: what the scheme itself lost
   double cost;    // seconds of the coupler per overlap particle and step
+  double courant; // c_P dt over the length on which the weight goes from 0 to 1
 };
 
 /// Sends a packet from the zone at normal incidence into the mesh (docs/verification_waves.md).
