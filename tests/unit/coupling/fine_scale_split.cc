@@ -134,6 +134,7 @@ TEST(FineScaleSplit, DampersBookWhatTheyTake)
   EXPECT_GT(end.fine_damper, 0.01 * start);
   EXPECT_GT(end.gap_filter, 0);
   EXPECT_NEAR(total(end), start, 1e-9 * start);
+}
 
 // Near the critical step, where nearly incompressible packings have their highest modes anywhere:
 // every step takes energy, and just what is booked, however strong the damper.
