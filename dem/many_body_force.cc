@@ -234,7 +234,7 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   double sum = surface_.energy(p) + contacts_.energy(p);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
     if (!b.joins_materials)
-      sum += bond_energy(b, p);
+      sum += bond_energy(b, motion(b, p, work), p);
   });
   sum += interfaces_.energy(p, work.pressure);
   for (int i = 0; i < packing_.size(); ++i)

@@ -146,7 +146,8 @@ private:
   /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
   /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
-  double bond_energy(const Bond<dim> &bond, const Particles &particles) const;
+  double bond_energy(const Bond<dim> &bond, const BondMotion<dim> &motion,
+                     const Particles &particles) const;
   bool is_at_interface(const Bond<dim> &bond) const
   {
     return interfaces_.is_member(bond.i) || interfaces_.is_member(bond.j);

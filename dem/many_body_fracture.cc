@@ -68,16 +68,16 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
 }
 
 template <int dim>
-double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
+double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const BondMotion<dim> &m,
+                                       const Particles &p) const
 {
-  return b.weight * b.shear_i * b.area / b.distance * motion(b, p).du.squaredNorm() +
-         bending_energy(b, p);
+  return b.weight * b.shear_i * b.area / b.distance * m.du.squaredNorm() + bending_energy(b, p);
 }
 
 template <int dim>
 double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) const
 {
-  double sum = b.joins_materials ? 0 : bond_energy(b, p);
+  double sum = b.joins_materials ? 0 : bond_energy(b, motion(b, p), p);
   for (const int i : {b.i, b.j})
     if (lambda_per_volume_[i] != 0 && !interfaces_.is_member(i))
       sum += 0.5 * work_.pressure[i] * work_.pressure[i] / lambda_per_volume_[i];
@@ -112,7 +112,7 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
     }
   if (at_interface)
     interfaces_.add_own_part(p, lambda_per_volume_, pressure);
-  return local_energy(b, p) - (b.joins_materials ? 0 : bond_energy(b, p));
+  return local_energy(b, p) - (b.joins_materials ? 0 : bond_energy(b, motion(b, p), p));
 }
 
 template <int dim>
@@ -159,8 +159,10 @@ template double ManyBodyForce<2>::screening_strength() const;
 template double ManyBodyForce<3>::screening_strength() const;
 template double ManyBodyForce<2>::strength_of(const Bond<2> &) const;
 template double ManyBodyForce<3>::strength_of(const Bond<3> &) const;
-template double ManyBodyForce<2>::bond_energy(const Bond<2> &, const Particles &) const;
-template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const Particles &) const;
+template double ManyBodyForce<2>::bond_energy(const Bond<2> &, const BondMotion<2> &,
+                                              const Particles &) const;
+template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const BondMotion<3> &,
+                                              const Particles &) const;
 template double ManyBodyForce<3>::strength() const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 
 using namespace ligament;
 using namespace ligament::program;
@@ -45,8 +44,8 @@ std::string write_packing(double half_height, int stride)
   for (double y = -half_height + 0.5; y < half_height; ++y)
     for (double x = -11.5; x < 12; ++x, ++n)
       text += fmt::format("{},{},0.5,{}\n", x + 0.1 * std::sin(7 * n), y + 0.1 * std::cos(5 * n),
-                          n % stride == 0);
-  const std::string path = std::filesystem::temp_directory_path() / "inclusions_test.csv";
+                          int(n % stride == 0));
+  const std::string path = "inclusions_test.csv";
   core::write_file(path, text);
   return path;
 }
