@@ -133,12 +133,11 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
                               i));
     if (cell < 0)
       continue;
-    Member m;
+    member_of_particle[i] = int(members.size());
+    Member &m = members.emplace_back(); // the rest with its cell, in find_cells
     m.particle = i;
     m.pad = pad[i];
-    m.cell = cell; // of the mesh, until find_cells
-    member_of_particle[i] = int(members.size());
-    members.push_back(m);
+    m.cell = cell; // of the mesh until then
     if (pad[i])
       depth = std::max(depth, distance_to_edge(x));
     else if (!parameters.has_pads)
