@@ -6,6 +6,8 @@
 #include "src/scene/geometry.h"
 #include "src/scene/scene.h"
 
+#include <optional>
+
 namespace ligament::program
 {
 /// Where the models are, as far as the keys they follow from are right.
@@ -23,6 +25,12 @@ struct Layout
 
 /// The scene as it was read, region sides still infinite where they reach through.
 void check_scene(const Scene &scene, Findings &findings);
+
+/// Where the models lie, and what joins them; empty when zone or far field are wrong themselves.
+std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Findings &findings);
+
+/// Scheme, sizes and masses of a coupled scene with sound spacing and cell size.
+void check_coupling(const Scene &scene, Findings &findings);
 
 /// Sizes of the far field's cells.
 void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
