@@ -151,6 +151,14 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
                     strength > 0 ? least_strain * least_strain : never, all_particles_, &exceeded});
 }
 
+template <int dim>
+void BondSlices<dim>::add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                                   double *energy) const
+{
+  if (!empty())
+    add_slice_energies({table_, arrays, records.data(), never, false, nullptr, energy});
+}
+
 template class BondSlices<2>;
 template class BondSlices<3>;
 } // namespace ligament::dem

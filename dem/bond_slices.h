@@ -48,6 +48,7 @@ struct SliceSweep
   double limit2 = 0; // (strength / 2G)^2, of the weakest bond
   bool replace;      // forces and torques are overwritten, not added to
   std::vector<int> *exceeded;
+  double *energy = nullptr; // of the particles, J
 };
 
 /// Fills the records, without pressures.
@@ -60,6 +61,9 @@ void add_pressures(const SliceSweep<3> &sweep);
 /// the limit.
 void add_slice_forces(const SliceSweep<2> &sweep);
 void add_slice_forces(const SliceSweep<3> &sweep);
+/// Adds to each particle's energy its half of every bond's, bending and twist included.
+void add_slice_energies(const SliceSweep<2> &sweep);
+void add_slice_energies(const SliceSweep<3> &sweep);
 
 /// The table's bonds of a network in slices.
 template <int dim>
@@ -85,6 +89,10 @@ public:
   /// particles among which are those of all bonds under at least that tension.
   void forces(const LatticeArrays<dim> &arrays, double strength, core::LargeArray &records,
               std::vector<int> &exceeded) const;
+
+  /// Adds to each particle's energy (J) its half of every bond's.
+  void add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                    double *energy) const;
 
 private:
   void lay_out(const std::vector<int> &n_bonds_of);

@@ -107,6 +107,21 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   sweep_rows(s);
 }
 
+template <int dim>
+void LatticeKernel<dim>::energies(const LatticeArrays<dim> &arrays,
+                                  const std::vector<RowSegment> &segments, RowWindow &window,
+                                  double *energy) const
+{
+  if (constants_.n_directions == 0) {
+    dilatation(arrays, segments, window);
+    return;
+  }
+  RowSweep<dim> s = sweep(arrays, segments, window);
+  s.with_forces = true;
+  s.energy = energy;
+  sweep_rows(s);
+}
+
 template class LatticeKernel<2>;
 template class LatticeKernel<3>;
 } // namespace ligament::dem

@@ -84,6 +84,7 @@ struct RowSweep
   bool with_forces;
   std::vector<RowRange> *exceeded;
   RowWindow *window;
+  double *energy = nullptr; // in place of forces: of each particle's forward bonds, J
 
   /// Particles that the window must hold at least.
   long window_length() const { return 3L * reach + 2 * row_piece; }
@@ -113,6 +114,11 @@ public:
   /// particles that have a forward bond under at least that tension; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
               double strength, RowWindow &window, std::vector<RowRange> &exceeded) const;
+
+  /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
+  /// bonds, bending and twist included, volumes not.
+  void energies(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
+                RowWindow &window, double *energy) const;
 
 private:
   RowSweep<dim> sweep(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,

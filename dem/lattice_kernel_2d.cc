@@ -126,6 +126,28 @@ public:
     return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
   }
 
+  /// Of the forward bonds.
+  template <typename D>
+  HWY_INLINE hn::Vec<D> energy(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    auto du2 = hn::Zero(d), angle2 = hn::Zero(d);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const auto angle = hn::LoadU(d, at + angle_ * stride);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k];
+      const auto h = along<k, h_>(d, at) + along<k, h_>(d, f);
+      const auto du = masked(mask, neg_mul_add(hn::Set(d, c_.half), h, displacement(d, f) - u), k);
+      const auto turn = mask(hn::Sub(hn::LoadU(d, f + angle_ * stride), angle), k);
+      du2 = add_dot(du, du, du2);
+      angle2 = hn::MulAdd(turn, turn, angle2);
+    });
+    return hn::MulAdd(hn::Set(d, 0.5 * c_.shear), du2,
+                      hn::Mul(hn::Set(d, 0.5 * c_.bending), angle2));
+  }
+
   /// True when the tension along the present normal of a forward face reaches the strength.
   template <typename D>
   HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const

@@ -173,6 +173,34 @@ public:
     return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
   }
 
+  /// Of the forward bonds.
+  template <typename D>
+  HWY_INLINE hn::Vec<D> energy(D d, long i, const Offsets &offsets) const
+  {
+    const BondMask<D> mask(d, a_.mask, i);
+    const auto zero = hn::Zero(d);
+    auto du2 = zero, v2 = zero, vn2 = zero;
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    const auto q = quaternion(d, at);
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k];
+      const auto h = along<k, h_>(d, at) + along<k, h_>(d, f);
+      const auto du = masked(mask, neg_mul_add(hn::Set(d, c_.half), h, displacement(d, f) - u), k);
+      const auto q_f = quaternion(d, f);
+      // Vector part of q* q_f.
+      const auto v = masked(mask, add_cross(q_f.v, q.v, neg_mul_add(q_f.w, q.v, q.w * q_f.v)), k);
+      const auto vn = add_dot(v, normal(d, k), zero);
+      du2 = add_dot(du, du, du2);
+      v2 = add_dot(v, v, v2);
+      vn2 = hn::MulAdd(vn, vn, vn2);
+    });
+    return hn::MulAdd(
+        hn::Set(d, 0.5 * c_.shear), du2,
+        hn::MulAdd(hn::Set(d, 2 * c_.bending), v2, hn::Mul(hn::Set(d, 2 * c_.twist), vn2)));
+  }
+
   /// True when the tension along the present normal of a forward face reaches the strength.
   template <typename D>
   HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const

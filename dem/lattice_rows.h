@@ -75,7 +75,7 @@ HWY_INLINE void for_each_vector(long first, long begin, long end, Visit &&visit)
 }
 
 /// Three stages, each as far ahead of the next as its neighbours need: turn (of each particle by
-/// itself), dilatation, forces.
+/// itself), dilatation, forces or energies.
 template <typename Bonds, int dim>
 class RowPipeline
 {
@@ -100,7 +100,10 @@ public:
         forces_at_ = begin;
         dilate_to(std::min(end + sweep_.reach, sweep_.n_particles));
         bonds_.set_window(sweep_.window->origin());
-        forces(segment, begin, end);
+        if (sweep_.energy)
+          energies(segment, begin, end);
+        else
+          forces(segment, begin, end);
       }
   }
 
@@ -152,6 +155,14 @@ private:
       if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)) && bonds_.exceeds(d, i, offsets))
         sweep_.exceeded->push_back({std::max(int(i), done), after});
       done = after;
+    });
+  }
+
+  HWY_INLINE void energies(const RowSegment &segment, int begin, int end)
+  {
+    const typename Bonds::Offsets offsets(segment);
+    for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
+      hn::StoreU(bonds_.energy(d, i, offsets), d, sweep_.energy + i);
     });
   }
 

@@ -230,16 +230,17 @@ template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
   Workspace work;
-  find_pressure(p, work);
-  double sum = surface_.energy(p) + contacts_.energy(p);
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    if (!b.joins_materials)
-      sum += bond_energy(b, motion(b, p, work), p);
-  });
-  sum += interfaces_.energy(p, work.pressure);
-  for (int i = 0; i < packing_.size(); ++i)
+  find_other_pressure(p, surface_, work);
+  const LatticeArrays<dim> a = arrays(p, work);
+  std::vector<double> energy(packing_.size(), 0.);
+  kernel_.energies(a, bonds_.segments(), rows_, energy.data());
+  slices_.add_energies(a, records_, energy.data());
+  double sum = surface_.energy(p) + contacts_.energy(p) + interfaces_.energy(p, work.pressure);
+  for (int i = 0; i < packing_.size(); ++i) {
+    sum += energy[i];
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)
       sum += 0.5 * work.pressure[i] * work.pressure[i] / lambda_per_volume_[i];
+  }
   return sum;
 }
 

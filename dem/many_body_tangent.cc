@@ -203,7 +203,13 @@ double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::ve
   double largest = 0;
   for (const int i : of)
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-      largest = std::max(largest, tension(b, particles, work.pressure));
+      const Vector<dim> f = bond_force(b, motion(b, particles, work), work.pressure);
+      // No tension is larger than the force: its direction is looked at only where it could count.
+      if (f.norm() > largest * b.weight * b.area) {
+        const Vector<dim> n =
+            present_normal(b, turn(particles, work, b.i), turn(particles, work, b.j));
+        largest = std::max(largest, f.dot(n) / (b.weight * b.area));
+      }
     });
   return largest;
 }

@@ -80,6 +80,18 @@ public:
     sum = hn::MulAdd(bond.geometry(d, 4), add_dot(m.a_i, m.du, hn::Zero(d)), sum);
   }
 
+  /// The half of the bond's energy that is the particle's.
+  template <typename Bonds>
+  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+                                    V &sum)
+  {
+    const Motion m(d, own, bond, other);
+    const V turn = hn::Sub(m.other.angle, own.angle);
+    const V twice = hn::Mul(bond.stiffness(d, 0), add_dot(m.du, m.du, hn::Zero(d)));
+    sum = hn::MulAdd(hn::Set(d, 0.25), hn::MulAdd(bond.stiffness(d, 1), hn::Mul(turn, turn), twice),
+                     sum);
+  }
+
   template <typename Bonds>
   static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
                                     V limit2, Sums &sums)
@@ -149,6 +161,10 @@ void add_slice_forces_2d(const SliceSweep<2> &sweep)
 {
   Slices2d(sweep).forces();
 }
+void add_slice_energies_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).energies();
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -158,6 +174,7 @@ namespace ligament::dem
 HWY_EXPORT(load_records_2d);
 HWY_EXPORT(add_pressures_2d);
 HWY_EXPORT(add_slice_forces_2d);
+HWY_EXPORT(add_slice_energies_2d);
 
 void load_records(const SliceSweep<2> &sweep)
 {
@@ -170,6 +187,10 @@ void add_pressures(const SliceSweep<2> &sweep)
 void add_slice_forces(const SliceSweep<2> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_forces_2d)(sweep);
+}
+void add_slice_energies(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_slice_energies_2d)(sweep);
 }
 } // namespace ligament::dem
 #endif

@@ -87,6 +87,19 @@ public:
     sum = hn::MulAdd(bond.geometry(d, 6), dot(m.a_i, m.du), sum);
   }
 
+  /// The half of the bond's energy that is the particle's.
+  template <typename Bonds>
+  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+                                    V &sum)
+  {
+    const Motion m(d, own, bond, other);
+    const V3 v = relative_turn(own, m);
+    const V vn = dot(m.lever_i - m.lever_j, v);
+    sum = hn::MulAdd(hn::Mul(hn::Set(d, 0.25), bond.stiffness(d, 0)), dot(m.du, m.du), sum);
+    sum = hn::MulAdd(bond.stiffness(d, 1), dot(v, v), sum);
+    sum = hn::MulAdd(bond.stiffness(d, 2), hn::Mul(vn, vn), sum);
+  }
+
   template <typename Bonds>
   static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
                                     V limit2, Sums &sums)
@@ -103,7 +116,7 @@ public:
 
     // The rotation of j as i sees it, and half the couple of (D8d).
     const V w = dot(own.q, m.q);
-    const V3 v = add_cross(m.q.v, own.q.v, own.q.w * m.q.v - m.q.w * own.q.v);
+    const V3 v = relative_turn(own, m);
     const V c = hn::Mul(bond.stiffness(d, 2), dot(distance, v));
     sums.couple = mul_add(hn::Mul(bond.stiffness(d, 1), w), v, sums.couple);
     sums.couple = mul_add(hn::Mul(c, w), distance, sums.couple);
@@ -165,6 +178,11 @@ private:
       return add_cross(q.v, t, q.w * t);
     }
   };
+  /// Vector part of the rotation of j as i sees it.
+  static HWY_INLINE V3 relative_turn(const Own &own, const Motion &m)
+  {
+    return add_cross(m.q.v, own.q.v, own.q.w * m.q.v - m.q.w * own.q.v);
+  }
 };
 
 using Slices3d = Slices<SliceLaw3d, 3>;
@@ -181,6 +199,10 @@ void add_slice_forces_3d(const SliceSweep<3> &sweep)
 {
   Slices3d(sweep).forces();
 }
+void add_slice_energies_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).energies();
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -190,6 +212,7 @@ namespace ligament::dem
 HWY_EXPORT(load_records_3d);
 HWY_EXPORT(add_pressures_3d);
 HWY_EXPORT(add_slice_forces_3d);
+HWY_EXPORT(add_slice_energies_3d);
 
 void load_records(const SliceSweep<3> &sweep)
 {
@@ -202,6 +225,10 @@ void add_pressures(const SliceSweep<3> &sweep)
 void add_slice_forces(const SliceSweep<3> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_forces_3d)(sweep);
+}
+void add_slice_energies(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_slice_energies_3d)(sweep);
 }
 } // namespace ligament::dem
 #endif

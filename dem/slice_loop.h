@@ -169,6 +169,22 @@ public:
     }
   }
 
+  HWY_INLINE void energies() const
+  {
+    const SliceLanes d;
+    HWY_ALIGN double energy[slice_width];
+    for (int s = 0; s < table_.n_slices(); ++s) {
+      for (int lane = 0; lane < slice_width; lane += n_lanes) {
+        const typename Law::Own own(d, own_record(s, lane));
+        auto sum = hn::Zero(d);
+        for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
+          Law::add_energy(d, own, b, record(b.neighbour()), sum);
+        hn::Store(sum, d, energy + lane);
+      }
+      for_each_lane(s, [&](int l, int i) { sweep_.energy[i] += energy[l]; });
+    }
+  }
+
   HWY_INLINE void forces() const
   {
     const SliceLanes d;

@@ -44,7 +44,7 @@ struct RowKernel : ::testing::Test
         p.displacement[c][i] =
             1.02 * (p.displacement[c][i] + p.reference[c][i]) - p.reference[c][i];
     auto q = p;
-    oracle::ManyBodyOracle<dim>(packing, 3., 0.3).compute(q);
+    const double energy = oracle::ManyBodyOracle<dim>(packing, 3., 0.3).compute(q);
     for (const std::int64_t target : targets()) {
       hwy::SetSupportedTargetsForTest(target);
       force.compute(p, 0);
@@ -55,6 +55,9 @@ struct RowKernel : ::testing::Test
       force.compute(p, 0);
       EXPECT_EQ(p.force, first_force); // to the last bit
       EXPECT_EQ(p.torque, first_torque);
+      // Squares of what forces are: round-off of positions as below.
+      EXPECT_NEAR(force.potential_energy(p), energy, 1e-9 * energy);
+      EXPECT_EQ(force.potential_energy(p), force.potential_energy(p));
     }
   }
 

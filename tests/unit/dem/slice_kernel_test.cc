@@ -63,7 +63,7 @@ struct SliceKernel : ::testing::Test
     ManyBodyForce<dim> force(packing, material, {});
     auto p = state(packing);
     auto q = p;
-    oracle::ManyBodyOracle<dim>(packing, 3., nu).compute(q);
+    const double energy = oracle::ManyBodyOracle<dim>(packing, 3., nu).compute(q);
     for (const std::int64_t target : {HWY_EMU128, HWY_SCALAR, HWY_AVX2, HWY_AVX3}) {
       hwy::SetSupportedTargetsForTest(0);
       if (!(hwy::SupportedTargets() & target))
@@ -75,6 +75,8 @@ struct SliceKernel : ::testing::Test
       const auto first = p.force;
       force.compute(p, 0);
       EXPECT_EQ(p.force, first); // to the last bit
+      EXPECT_NEAR(force.potential_energy(p), energy, 1e-13 * energy);
+      EXPECT_EQ(force.potential_energy(p), force.potential_energy(p));
     }
   }
 
