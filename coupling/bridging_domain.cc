@@ -2,6 +2,7 @@
 
 #include "coupling/blended_operators.h"
 #include "coupling/energy_weights.h"
+#include "coupling/fine_damper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +42,9 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
       parameters.scheme, overlap_, transfer_, shares_, mass_, parameters.multiplier_cells,
       parameters.solver);
   const double wave_speed = bodies.zone->force->elastic_constants().wave_speed_p;
-  for (int k = 0; k < transfer_.size(); ++k) {
-    const double s = transfer_.position(k);
-    rate_.push_back(parameters.fine_damper * wave_speed / overlap_.cell_size * (1 - s) * (1 - s));
-  }
+  for (int k = 0; k < transfer_.size(); ++k)
+    rate_.push_back(fine_damper_rate(parameters.fine_damper, wave_speed, overlap_.cell_size,
+                                     transfer_.position(k)));
   for (auto &v : member_velocity_)
     v.resize(transfer_.size());
   lost_ = before_damper_ = member_velocity_;

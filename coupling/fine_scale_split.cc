@@ -1,6 +1,7 @@
 #include "coupling/fine_scale_split.h"
 
 #include "core/check.h"
+#include "coupling/fine_damper.h"
 #include "coupling/gap_filter.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
           overlap_, bodies.zone->state,
           [&, speed = bodies.zone->force->elastic_constants().wave_speed_p](double s) {
             const double rate =
-                parameters.fine_damper * speed / overlap_.cell_size * std::pow(1 - s, 1.5);
+                fine_damper_rate(parameters.fine_damper, speed, overlap_.cell_size, s);
             return 1 - std::exp(-rate * dt);
           },
           parameters.solver),

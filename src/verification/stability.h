@@ -23,6 +23,9 @@ struct StabilitySetting
   Scene scene(double width) const;
 };
 
+/// The same scene held at both ends of its bar: no rigid motion.
+Scene held(Scene scene);
+
 /// Eigenvalues of the step operator of small bodies.
 std::vector<Case> spectrum_cases();
 

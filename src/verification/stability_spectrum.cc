@@ -7,21 +7,6 @@ namespace ligament::program
 {
 namespace
 {
-/// Held at both ends: no rigid motion.
-Scene held(Scene scene)
-{
-  for (const int side : {2, 3}) {
-    LoadParameters load;
-    load.boundary = side_names[side];
-    load.kind = "velocity";
-    for (int c = 0; c < 2; ++c)
-      load.value[c] = 0;
-    load.velocity = load.value;
-    scene.loads.push_back(load);
-  }
-  return scene;
-}
-
 std::vector<Result> spectrum()
 {
   using coupling::Scheme;
@@ -48,6 +33,20 @@ std::vector<Result> spectrum()
   return results;
 }
 } // namespace
+
+Scene held(Scene scene)
+{
+  for (const int side : {2, 3}) {
+    LoadParameters load;
+    load.boundary = side_names[side];
+    load.kind = "velocity";
+    for (int c = 0; c < 2; ++c)
+      load.value[c] = 0;
+    load.velocity = load.value;
+    scene.loads.push_back(load);
+  }
+  return scene;
+}
 
 std::vector<Case> spectrum_cases()
 {
