@@ -22,6 +22,7 @@ struct AbsorbingParameters
   double wave_length = 8; // cells
   double angle = 0;       // degrees
   double layer = 0;       // cells
+  double lengths = 8;     // of the packet, in wave lengths
 };
 
 dem::DemMaterial material()
@@ -42,13 +43,13 @@ std::vector<core::BoundaryLoad<dim>> absorbing_top(const AbsorbingParameters &p)
   return {load};
 }
 
-/// Length of the strip: the packet of eight wave lengths starts in its middle below the layer.
+/// Length of the strip: the packet starts in its middle below the layer.
 struct Course
 {
   double width, reach, length;
 
   Course(const AbsorbingParameters &p, double angle)
-      : width(2 * p.wave_length * cell_size / std::cos(angle * M_PI / 180)),
+      : width(p.lengths / 4 * p.wave_length * cell_size / std::cos(angle * M_PI / 180)),
         reach(std::max(4.5 * width, 20. * cell_size)), length(3 * reach + p.layer * cell_size)
   {
   }
@@ -76,6 +77,15 @@ double reflected(coupling::Bodies<dim> bodies, double dt, double duration, Energ
   return energy() / before;
 }
 
+/// Plane waves vary along the first and the last axis alone.
+template <int dim>
+Across<dim> thin(int across)
+{
+  Across<dim> n = 3;
+  n.n[0] = across;
+  return n;
+}
+
 template <int dim>
 double slowest(const Packet<dim> &, const Dispersion<dim> &medium, const Vector<dim> &k,
                WaveKind kind)
@@ -97,9 +107,9 @@ double reflected_by_mesh(const AbsorbingParameters &p)
   fem::Body<dim> body;
   body.stiffness = constants.stiffness;
   body.density = constants.density;
-  fem::FemSolver<dim> far(
-      make_periodic_mesh<dim>(wave.cells_across, int(course.length / cell_size), cell_size, 0),
-      body, absorbing_top<dim>(p));
+  fem::FemSolver<dim> far(make_periodic_mesh<dim>(thin<dim>(wave.cells_across),
+                                                  int(course.length / cell_size), cell_size, 0),
+                          body, absorbing_top<dim>(p));
   // As in a coupled body: far below the mesh's own stable step.
   const double dt = 0.25 * far.stable_step();
   const Dispersion<dim> medium = [&](const Vector<dim> &k) {
@@ -119,10 +129,10 @@ double reflected_by_mesh(const AbsorbingParameters &p)
 template <int dim>
 double reflected_by_packing(const AbsorbingParameters &p)
 {
-  const auto wave = fit_wave<dim>(p.wave_length, p.angle, cell_size);
+  const auto wave = fit_wave<dim>(2 * p.wave_length, p.angle, cell_size / 2.);
   const Course course(p, wave.angle);
   const auto kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
-  auto packing = make_periodic_packing<dim>(kind, wave.cells_across * cell_size,
+  auto packing = make_periodic_packing<dim>(kind, thin<dim>(wave.cells_across * cell_size / 2),
                                             int(course.length / layer_height<dim>), true);
   particles::Particles<dim> state;
   particles::fill_particles(packing, material().density, state);
@@ -149,46 +159,55 @@ double reflected_by_packing(const AbsorbingParameters &p)
 
 /// A random packing is no wave guide of exact modes: the packet is that of the continuum, in a
 /// strip whose sides slide on mirrors. What the packing scatters counts as reflected.
+template <int dim>
 double reflected_by_random_packing(const AbsorbingParameters &p)
 {
   const Course course(p, 0);
   const bool is_p = p.kind == WaveKind::p;
-  Scene scene = unit_scene(2, {12, course.length, 0}, material().poissons_ratio);
+  constexpr double across = dim == 2 ? 12 : 6;
+  Point size{across, across, across};
+  size[dim - 1] = course.length;
+  Scene scene = unit_scene(dim, size, material().poissons_ratio);
   scene.zone.packing = "random";
-  scene.loads.resize(3);
-  for (int side = 0; side < 2; ++side) {
-    scene.loads[side].boundary = side_names[side];
-    scene.loads[side].kind = "displacement";
-    scene.loads[side].value[is_p ? 0 : 1] = 0;
+  // S waves move along the first axis.
+  for (int side = 0; side < 2 * dim - 2; ++side) {
+    auto &mirror = scene.loads.emplace_back();
+    mirror.boundary = side_names[side];
+    mirror.kind = "displacement";
+    mirror.value[is_p || side / 2 > 0 ? side / 2 : dim - 1] = 0;
   }
-  scene.loads[2].boundary = "top";
-  scene.loads[2].kind = "traction";
-  scene.loads[2].absorbing = true;
-  scene.loads[2].absorbing_layer = p.layer * cell_size;
-  UnitBody<2> unit(scene);
+  auto &top = scene.loads.emplace_back();
+  top.boundary = side_names[2 * dim - 1];
+  top.kind = "traction";
+  top.absorbing = true;
+  top.absorbing_layer = p.layer * cell_size;
+  UnitBody<dim> unit(scene);
   auto &zone = *unit.body.zone;
   const auto constants = unit.body.force->elastic_constants();
   const double speed = is_p ? constants.wave_speed_p : constants.wave_speed_s,
                k = 2 * M_PI / (p.wave_length * cell_size),
                start = course.centre() - course.length / 2;
-  const int component = is_p ? 1 : 0;
-  const auto wave = [&](double y) {
-    const double x = (y - start) / course.width;
-    return 1e-8 * std::exp(-x * x / 2) * std::cos(k * (y - start));
+  const int component = is_p ? dim - 1 : 0;
+  const auto wave = [&](double z) {
+    const double x = (z - start) / course.width;
+    return 1e-8 * std::exp(-x * x / 2) * std::cos(k * (z - start));
   };
   const double dt = unit.body.dt, h = 1e-3; // of the central differences
+  // Half the curl of a motion along x: about -z in 2D, about +y in 3D.
+  const double turn = dim == 2 ? -0.5 : 0.5;
   for (int i = 0; i < zone.state.n_owned; ++i) {
-    const double y = zone.state.reference[1][i];
+    const double z = zone.state.reference[dim - 1][i];
     const auto slope = [&](double at) { return (wave(at + h) - wave(at - h)) / (2 * h); };
-    zone.state.displacement[component][i] = wave(y);
-    zone.state.velocity[component][i] = -speed * slope(y + speed * dt / 2);
+    zone.state.displacement[component][i] = wave(z);
+    zone.state.velocity[component][i] = -speed * slope(z + speed * dt / 2);
     if (is_p)
       continue;
-    zone.state.rotation[0][i] = -slope(y) / 2; // half the curl
-    zone.state.spin[0][i] =
-        speed * (slope(y + h + speed * dt / 2) - slope(y - h + speed * dt / 2)) / (4 * h);
+    const double rate =
+        -speed * (slope(z + h + speed * dt / 2) - slope(z - h + speed * dt / 2)) / (2 * h);
+    zone.state.rotation[dim == 2 ? 0 : 2][i] = (dim == 2 ? 1 : 0.5) * turn * slope(z);
+    zone.state.spin[dim == 2 ? 0 : 1][i] = turn * rate;
   }
-  return reflected<2>({&zone, nullptr}, dt, course.way() / speed, [&] {
+  return reflected<dim>({&zone, nullptr}, dt, course.way() / speed, [&] {
     zone.compute_forces(0);
     return zone.kinetic_energy(0) + zone.potential_energy();
   });
@@ -197,7 +216,7 @@ double reflected_by_random_packing(const AbsorbingParameters &p)
 /// P and S at normal incidence ("must") and at oblique ones (stated: only below 1).
 template <typename Measure>
 std::vector<Result> measure(const std::string &name, Measure reflect, double layer, double must,
-                            const std::vector<double> &angles)
+                            const std::vector<double> &angles, double lengths = 8)
 {
   std::vector<Result> results;
   for (const double angle : angles)
@@ -206,6 +225,7 @@ std::vector<Result> measure(const std::string &name, Measure reflect, double lay
       p.kind = kind;
       p.angle = angle;
       p.layer = layer;
+      p.lengths = lengths;
       results.push_back(
           {fmt::format("{}/{}_8h_{:g}deg", name, kind == WaveKind::p ? "P" : "S", angle),
            reflect(p),
@@ -219,19 +239,39 @@ std::vector<Result> measure(const std::string &name, Measure reflect, double lay
 std::vector<Case> absorbing_cases()
 {
   const std::string text = "energy that an absorbing side reflects, waves of 8 cells: ";
-  return {{"absorbing_2d", text + "mesh, dashpots alone", false,
-           [] {
-             return measure("absorbing_2d", reflected_by_mesh<2>, 0, 1e-3, {0, 45});
-           }},
-          {"absorbing_2d_layer", text + "mesh, with a layer of 16 cells", false,
-           [] {
-             return measure("absorbing_2d_layer", reflected_by_mesh<2>, 16, 1e-3, {0, 45});
-           }},
-          {"absorbing_3d", text + "3D mesh, dashpots alone", false,
-           [] { return measure("absorbing_3d", reflected_by_mesh<3>, 0, 1e-3, {0}); }},
-          {"absorbing_random", text + "random packing, with a layer of 16 cells", true,
-           [] { return measure("absorbing_random", reflected_by_random_packing, 16, 1e-3, {0}); }},
-          {"absorbing_particles", text + "hexagonal packing, with a layer of 16 cells", true,
-           [] { return measure("absorbing_particles", reflected_by_packing<2>, 16, 1e-3, {0}); }}};
+  return {
+      {"absorbing_2d", text + "mesh, dashpots alone", false,
+       [] {
+         return measure("absorbing_2d", reflected_by_mesh<2>, 0, 1e-3, {0, 45});
+       }},
+      {"absorbing_2d_layer", text + "mesh, with a layer of 16 cells", false,
+       [] {
+         return measure("absorbing_2d_layer", reflected_by_mesh<2>, 16, 1e-3, {0, 45});
+       }},
+      {"absorbing_3d", text + "3D mesh, dashpots alone", false,
+       [] { return measure("absorbing_3d", reflected_by_mesh<3>, 0, 1e-3, {0}); }},
+      {"absorbing_3d_layer", text + "3D mesh, with a layer of 16 cells", true,
+       [] {
+         return measure("absorbing_3d_layer", reflected_by_mesh<3>, 16, 1e-3, {0, 45});
+       }},
+      {"absorbing_random", text + "random packing, with a layer of 16 cells", true,
+       [] { return measure("absorbing_random", reflected_by_random_packing<2>, 16, 1e-3, {0}); }},
+      {"absorbing_random_3d", text + "3D random packing, with a layer of 16 cells", true,
+       [] {
+         return measure("absorbing_random_3d", reflected_by_random_packing<3>, 16, 1e-3, {0});
+       }},
+      {"absorbing_particles", text + "hexagonal packing, with a layer of 16 cells", true,
+       [] { return measure("absorbing_particles", reflected_by_packing<2>, 16, 1e-3, {0}); }},
+      {"absorbing_particles_3d", text + "FCC packing, with a layer of 16 cells", true,
+       [] { return measure("absorbing_particles_3d", reflected_by_packing<3>, 16, 1e-3, {0}); }},
+      {"absorbing_particles_oblique", text + "hexagonal packing at 45 degrees, short packets", true,
+       [] {
+         return measure("absorbing_particles_oblique", reflected_by_packing<2>, 16, 1e-3, {45}, 4);
+       }},
+      {"absorbing_particles_3d_oblique", text + "FCC packing at 45 degrees, short packets", true,
+       [] {
+         return measure("absorbing_particles_3d_oblique", reflected_by_packing<3>, 16, 1e-3, {45},
+                        4);
+       }}};
 }
 } // namespace ligament::program

@@ -4,16 +4,18 @@
 #include "dem/many_body_force.h"
 #include "particles/lattice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace ligament::program
 {
 template <int dim>
-particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int across, int layers,
-                                              bool closed)
+particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind,
+                                              const Across<dim> &across, int layers, bool closed)
 {
-  core::require(across >= 3, "a periodic packing is at least 3 particles across");
+  core::require(*std::min_element(across.n.begin(), across.n.end()) >= 3,
+                "a periodic packing is at least 3 particles across");
   particles::LatticeParameters<dim> parameters;
   parameters.kind = kind;
   parameters.spacing = 1;
@@ -21,12 +23,12 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
   using Index = particles::LatticeIndex<dim>;
   const Vector<dim> origin = lattice.position(Index::Zero());
 
-  const int columns = dim == 2 ? across : across * across;
+  const int columns = across.columns();
   // Columns run along the last basis vector: neighbours of a column lie at constant offsets.
   const auto number = [&](const Index &k) {
     int column = 0;
     for (int c = dim - 2; c >= 0; --c)
-      column = column * across + ((k[c] % across) + across) % across;
+      column = column * across[c] + ((k[c] % across[c]) + across[c]) % across[c];
     return column * layers + k[dim - 1];
   };
   const auto has_layer = [&](int layer) { return layer >= 0 && layer < layers; };
@@ -44,12 +46,12 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
 
   for (int i = 0; i < n; ++i) {
     Index k;
-    for (int c = 0, rest = i / layers; c < dim - 1; ++c, rest /= across)
-      k[c] = rest % across;
+    for (int c = 0, rest = i / layers; c < dim - 1; rest /= across[c++])
+      k[c] = rest % across[c];
     k[dim - 1] = i % layers;
     Vector<dim> x = lattice.position(k) - origin;
     for (int c = 0; c < dim - 1; ++c)
-      x[c] -= across * std::floor(x[c] / across);
+      x[c] -= across[c] * std::floor(x[c] / across[c]);
     set(packing.centre, i, x);
     packing.global_id.push_back(particles::Lattice<dim>::global_id(k));
 
@@ -71,8 +73,8 @@ particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int a
 }
 
 template <int dim>
-fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower, int fine,
-                                  double growth)
+fem::Mesh<dim> make_periodic_mesh(const Across<dim> &across, int layers, double size, double lower,
+                                  int fine, double growth)
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
   fem::Mesh<dim> mesh;
@@ -81,11 +83,11 @@ fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lo
     height.push_back(i == 0 || i < fine ? size : std::min(height.back() * growth, 2 * size));
     border.push_back(border.back() + height.back());
   }
-  const int columns = dim == 2 ? across : across * across;
+  const int columns = across.columns();
   const auto index = [&](int i) { // of cell or node i: along each axis
     Eigen::Matrix<int, dim, 1> k;
-    for (int c = 0; c < dim - 1; ++c, i /= across)
-      k[c] = i % across;
+    for (int c = 0; c < dim - 1; i /= across[c++])
+      k[c] = i % across[c];
     k[dim - 1] = i;
     return k;
   };
@@ -101,8 +103,10 @@ fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lo
     std::array<int, nc> nodes;
     for (int a = 0; a < nc; ++a) {
       int node = 0;
-      for (int c = dim - 1; c >= 0; --c)
-        node = node * across + (k[c] + (a >> c & 1)) % (c < dim - 1 ? across : layers + 1);
+      for (int c = dim - 1; c >= 0; --c) {
+        const int n = c < dim - 1 ? across[c] : layers + 1;
+        node = node * n + (k[c] + (a >> c & 1)) % n;
+      }
       nodes[a] = node;
     }
     mesh.cells.push_back(nodes);
@@ -227,8 +231,10 @@ Strip<dim> make_strip(const StripParameters &p, particles::Packing<dim> packing,
   return strip;
 }
 
-template particles::Packing<2> make_periodic_packing(particles::LatticeKind, int, int, bool);
-template particles::Packing<3> make_periodic_packing(particles::LatticeKind, int, int, bool);
+template particles::Packing<2> make_periodic_packing(particles::LatticeKind, const Across<2> &, int,
+                                                     bool);
+template particles::Packing<3> make_periodic_packing(particles::LatticeKind, const Across<3> &, int,
+                                                     bool);
 template LatticeBar<2> lattice_bar<2>(const StripParameters &);
 template LatticeBar<3> lattice_bar<3>(const StripParameters &);
 template Strip<2> make_strip<2>(const StripParameters &);

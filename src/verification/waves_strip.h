@@ -7,24 +7,37 @@
 #include "dem/material.h"
 #include "particles/lattice_packing.h"
 
+#include <array>
 #include <limits>
 
 namespace ligament::program
 {
-/// Particles of spacing 1 in `layers` layers of `across` (2D) or across x across (3D) particles;
+/// Numbers of particles or cells along the axes across a bar: all alike, or each its own.
+template <int dim>
+struct Across
+{
+  Across(int all) { n.fill(all); } // implicit: most bars are square
+  Across(const std::array<int, dim - 1> &each) : n(each) {}
+  int operator[](int axis) const { return n[axis]; }
+  int columns() const { return dim == 2 ? n[0] : n[0] * n[dim - 2]; }
+
+  std::array<int, dim - 1> n;
+};
+
+/// Particles of spacing 1 in `layers` layers of `across` particles along each axis;
 /// layers are stacked along the last axis, neighbours across the sides are those of the other side.
 /// Missing neighbours of the first layer, and of the last one when `closed`, are free surface.
 /// The first layer lies at 0. Lengths in units of the spacing; `across` is at least 3.
 template <int dim>
-particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind, int across, int layers,
-                                              bool closed);
+particles::Packing<dim> make_periodic_packing(particles::LatticeKind kind,
+                                              const Across<dim> &across, int layers, bool closed);
 
 /// Cubes of edge `size` from `lower` on along the last axis, `across` of them and periodic
 /// sideways; behind the layer `fine` each is higher by the factor `growth` than the one before, up
 /// to twice the size.
 template <int dim>
-fem::Mesh<dim> make_periodic_mesh(int across, int layers, double size, double lower, int fine = 0,
-                                  double growth = 1);
+fem::Mesh<dim> make_periodic_mesh(const Across<dim> &across, int layers, double size, double lower,
+                                  int fine = 0, double growth = 1);
 
 /// The same in 2D with cells of twice the size from the layer `fine` on, `coarse` layers of them;
 /// `across` is even.
