@@ -7,6 +7,7 @@
 #include "particles/particle_solver.h"
 #include "particles/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
+#include "tests/support/von_mises.h"
 
 #include <fmt/format.h>
 #include <hwy/highway.h>
@@ -151,7 +152,8 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
   a.pressure = pressure.data();
   dem::RowWindow window;
   std::vector<dem::RowRange> exceeded;
-  return 1e-6 * n * bench::rate([&] { kernel.forces(a, bonds.segments(), 1e3, window, exceeded); });
+  return 1e-6 * n *
+         bench::rate([&] { kernel.forces(a, bonds.segments(), 1e3, {}, window, exceeded); });
 }
 
 template <int dim>
@@ -242,10 +244,63 @@ void measure_largest(const std::string &name, particles::LatticeKind kind, doubl
   print(label + ", memory while it runs; reference: 24 GiB", resident_bytes(), "B",
         24. * (1 << 30));
 }
+/// Forces of a body with a law of plastic flow: far from it, after it, and with all particles
+/// flowing in every step; and what the search for breaking bonds costs. Fifteen pairs in turns.
+template <int dim>
+void measure_plastic(const std::string &name, const particles::Packing<dim> &packing)
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  auto p = move(packing);
+  const auto make = [&](double yield_stress, double strength) {
+    dem::FractureLaw fracture;
+    if (strength > 0)
+      fracture = {dem::FractureLaw::Criterion::maximum_tension, strength};
+    auto force = std::make_unique<dem::ManyBodyForce<dim>>(
+        packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture);
+    if (yield_stress > 0)
+      force->set_yield(
+          std::make_unique<tests::VonMises>(material.shear_modulus(), yield_stress, 0.1));
+    return force;
+  };
+  const auto elastic = make(0, 0), breaking = make(0, 1e3), far = make(1e3, 0),
+             plastic = make(1e-9, 0);
+  double time = 0, growth = 1;
+  const auto rate = [&](dem::ManyBodyForce<dim> &force) {
+    return 1e-6 * packing.size() * bench::rate([&] {
+             for (auto &array : p.displacement)
+               for (double &u : array)
+                 u *= growth;
+             force.compute(p, time += 1);
+           });
+  };
+  const std::string label = fmt::format("{}, {} particles, forces", name, packing.size());
+  const std::string unit = "1e6 particle-steps/s";
+  const auto compare = [&](const std::string &what, dem::ManyBodyForce<dim> &force, int pairs) {
+    std::vector<double> rates, ratios;
+    for (int k = 0; k < pairs; ++k) {
+      const double reference = rate(*elastic);
+      rates.push_back(rate(force));
+      ratios.push_back(rates.back() / reference);
+    }
+    std::sort(rates.begin(), rates.end());
+    std::sort(ratios.begin(), ratios.end());
+    const double median = ratios[ratios.size() / 2], value = rates[rates.size() / 2];
+    print(label + ", " + what + "; reference: elastic, median of pairs", value, unit,
+          value / median);
+  };
+  compare("search for breaking bonds", *breaking, 15);
+  compare("law of plastic flow, far from yielding", *far, 15);
+  growth = 1 + 1e-4;
+  compare("all particles flow in every step", *plastic, 3);
+  growth = 1 - 1e-6; // unloads
+  compare("all particles plastic, none flows", *plastic, 3);
+}
 } // namespace
 
 /// Without arguments the bodies of 33 000 particles and lattices of 880 000; "random": random
-/// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles.
+/// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles; "plastic": what
+/// breaking and yielding cost.
 int main(int argc, char **argv)
 {
   using particles::LatticeKind;
@@ -254,7 +309,10 @@ int main(int argc, char **argv)
     measure_largest<2>("hexagonal", LatticeKind::hexagonal, 1 / 2943.);
   else if (what == "3d")
     measure_largest<3>("fcc", LatticeKind::fcc, 1 / 192.);
-  else if (what == "random") {
+  else if (what == "plastic") {
+    measure_plastic<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 28.5));
+    measure_plastic<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 169.));
+  } else if (what == "random") {
     measure<2>("random 2D", make_random<2>(1 / 875.), false);
     measure<3>("random 3D", make_random<3>(1 / 85.5), false);
   } else {

@@ -25,6 +25,7 @@ struct BondMotion
 {
   Vector<dim> a_i, a_j; // m, present levers
   Vector<dim> du;       // m, Du of theory.md eq. (D8b)
+  Vector<dim> elastic;  // m, Du without its plastic part
 
   BondMotion(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j,
              const Vector<dim> &u_i, const Vector<dim> &u_j)
@@ -34,6 +35,7 @@ struct BondMotion
     a_i = bond.lever_i + change_i;
     a_j = bond.lever_j + change_j;
     du = (u_j - u_i) + (change_j - change_i);
+    elastic = du;
   }
 };
 

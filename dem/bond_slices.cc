@@ -13,8 +13,6 @@ namespace
 constexpr int sorted_group = 32 * slice_width;
 /// An array of so many numbers is worth large pages.
 constexpr int several_pages = 4096;
-/// The square of a strain that no bond reaches.
-constexpr double never = 1e200;
 
 /// Stiffness of a bond as the table wants it.
 std::array<double, n_stiffness<2>> stiffness_of(const Bond<2> &b, double shear)
@@ -125,7 +123,7 @@ void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &r
     const long n = table_.n_records();
     records = core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
   }
-  load_records({table_, arrays, records.data(), never, false, nullptr});
+  load_records({table_, arrays, records.data(), 0, false, nullptr});
 }
 
 template <int dim>
@@ -135,20 +133,24 @@ void BondSlices<dim>::add_pressures(LatticeArrays<dim> arrays, double *pressure,
   if (empty())
     return;
   arrays.pressure = pressure;
-  ligament::dem::add_pressures({table_, arrays, records.data(), never, false, nullptr});
+  ligament::dem::add_pressures({table_, arrays, records.data(), 0, false, nullptr});
 }
 
 template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
-                             core::LargeArray &records, std::vector<int> &exceeded) const
+                             const TractionScreen &screen, core::LargeArray &records,
+                             std::vector<int> &exceeded) const
 {
   exceeded.clear();
   if (empty())
     return;
   constexpr double round_off = 1e-9;
-  const double least_strain = strength / (2 * shear_modulus_) * (1 - round_off);
-  add_slice_forces({table_, arrays, records.data(),
-                    strength > 0 ? least_strain * least_strain : never, all_particles_, &exceeded});
+  const auto squared = [&](double traction) {
+    const double least_strain = traction / (2 * shear_modulus_) * (1 - round_off);
+    return traction > 0 ? least_strain * least_strain : SliceSweep<dim>::never;
+  };
+  add_slice_forces({table_, arrays, records.data(), squared(strength), all_particles_, &exceeded,
+                    nullptr, squared(screen.traction), screen});
 }
 
 template <int dim>
@@ -156,7 +158,7 @@ void BondSlices<dim>::add_energies(const LatticeArrays<dim> &arrays, core::Large
                                    double *energy) const
 {
   if (!empty())
-    add_slice_energies({table_, arrays, records.data(), never, false, nullptr, energy});
+    add_slice_energies({table_, arrays, records.data(), 0, false, nullptr, energy});
 }
 
 template class BondSlices<2>;

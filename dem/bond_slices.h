@@ -49,6 +49,10 @@ struct SliceSweep
   bool replace;      // forces and torques are overwritten, not added to
   std::vector<int> *exceeded;
   double *energy = nullptr; // of the particles, J
+  double screen2 = never;   // (traction / 2G)^2 at which the screen marks
+  TractionScreen screen = {};
+
+  static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
 
 /// Fills the records, without pressures.
@@ -86,9 +90,10 @@ public:
   void add_pressures(LatticeArrays<dim> arrays, double *pressure, core::LargeArray &records) const;
 
   /// Adds the forces at arrays.pressure. With a strength above 0 (Pa) replaces `exceeded` by
-  /// particles among which are those of all bonds under at least that tension.
-  void forces(const LatticeArrays<dim> &arrays, double strength, core::LargeArray &records,
-              std::vector<int> &exceeded) const;
+  /// particles among which are those of all bonds under at least that tension. The screen's marks
+  /// are set for both particles of a bond.
+  void forces(const LatticeArrays<dim> &arrays, double strength, const TractionScreen &screen,
+              core::LargeArray &records, std::vector<int> &exceeded) const;
 
   /// Adds to each particle's energy (J) its half of every bond's.
   void add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,

@@ -92,7 +92,8 @@ void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
 template <int dim>
 void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments, double strength,
-                                RowWindow &window, std::vector<RowRange> &exceeded) const
+                                const TractionScreen &screen, RowWindow &window,
+                                std::vector<RowRange> &exceeded) const
 {
   exceeded.clear();
   if (constants_.n_directions == 0) {
@@ -101,8 +102,13 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   }
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
-  s.constants.limit2 =
-      strength > 0 ? strength * area_ * strength * area_ : std::numeric_limits<double>::infinity();
+  const auto squared = [&](double traction) {
+    const double force = traction * area_;
+    return traction > 0 ? force * force : std::numeric_limits<double>::infinity();
+  };
+  s.constants.strength2 = squared(strength);
+  s.constants.limit2 = std::min(s.constants.strength2, squared(screen.traction));
+  s.screen = screen;
   s.exceeded = &exceeded;
   sweep_rows(s);
 }

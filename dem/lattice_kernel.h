@@ -28,12 +28,13 @@ struct LatticeConstants
 {
   int n_directions = 0;
   std::array<std::array<double, dim>, max_directions> normal{};
-  double half = 0;    // q = r/2, m
-  double shear = 0;   // 2G S/r, N/m
-  double area_r = 0;  // S/r, m
-  double bending = 0; // k_b, N m
-  double twist = 0;   // k_t - k_b, N m
-  double limit2 = 0;  // (strength S)^2, N^2; infinite when nothing breaks
+  double half = 0;      // q = r/2, m
+  double shear = 0;     // 2G S/r, N/m
+  double area_r = 0;    // S/r, m
+  double bending = 0;   // k_b, N m
+  double twist = 0;     // k_t - k_b, N m
+  double strength2 = 0; // (strength S)^2, N^2; infinite when nothing breaks
+  double limit2 = 0;    // the same of what is looked for first: strength or screen
 };
 
 /// Particles that each stage of the sweep takes at once.
@@ -43,6 +44,18 @@ inline constexpr int row_piece = 256;
 struct RowRange
 {
   int begin, end;
+};
+
+/// Which blocks of particles [b block, (b + 1) block) have a bond under a traction,
+/// in any direction, of at least `traction` (Pa): their marks are set, others are left alone. A
+/// lattice bond marks the block of its first particle at least.
+struct TractionScreen
+{
+  double traction = 0; // Pa; 0: nothing is marked
+  std::uint8_t *marks = nullptr;
+
+  void mark(int i) const { marks[i / block] = 1; }
+  static constexpr int block = 256;
 };
 
 /// State and intermediate results of the rows at work, one stream per number; it slides along the
@@ -85,6 +98,7 @@ struct RowSweep
   std::vector<RowRange> *exceeded;
   RowWindow *window;
   double *energy = nullptr; // in place of forces: of each particle's forward bonds, J
+  TractionScreen screen = {};
 
   /// Particles that the window must hold at least.
   long window_length() const { return 3L * reach + 2 * row_piece; }
@@ -113,7 +127,8 @@ public:
   /// there is no lattice. With a strength above 0 (Pa), replaces `exceeded` by the ranges of
   /// particles that have a forward bond under at least that tension; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-              double strength, RowWindow &window, std::vector<RowRange> &exceeded) const;
+              double strength, const TractionScreen &screen, RowWindow &window,
+              std::vector<RowRange> &exceeded) const;
 
   /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
   /// bonds, bending and twist included, volumes not.

@@ -84,7 +84,7 @@ public:
     store(d, {hn::MulAdd(factor, h.x, vp), hn::Mul(factor, h.y)}, at + g_ * stride);
   }
 
-  /// True when the force on a face, in any direction, reaches the strength.
+  /// True when the force on a forward face, in any direction, reaches the limit.
   template <typename D>
   HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
   {
@@ -167,7 +167,7 @@ public:
       const auto n = normal(d, k);
       const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
       const auto tension = add_dot(t, mean, zero);
-      const auto limit = hn::Mul(hn::Set(d, c_.limit2), add_dot(mean, mean, zero));
+      const auto limit = hn::Mul(hn::Set(d, c_.strength2), add_dot(mean, mean, zero));
       found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
     });
     return !hn::AllFalse(d, found);

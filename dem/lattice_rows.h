@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -152,10 +153,22 @@ private:
     int done = begin;
     for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
       const int after = int(i) + int(hn::Lanes(d));
-      if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)) && bonds_.exceeds(d, i, offsets))
-        sweep_.exceeded->push_back({std::max(int(i), done), after});
+      if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)))
+        note(d, i, offsets, {std::max(int(i), done), after});
       done = after;
     });
+  }
+
+  /// Where the limit was reached: marks of the screen, and bonds that exceed the strength.
+  template <typename D>
+  HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, const RowRange &range)
+  {
+    if (sweep_.screen.traction > 0) {
+      sweep_.screen.mark(range.begin);
+      sweep_.screen.mark(range.end - 1);
+    }
+    if (std::isfinite(sweep_.constants.strength2) && bonds_.exceeds(d, i, offsets))
+      sweep_.exceeded->push_back(range);
   }
 
   HWY_INLINE void energies(const RowSegment &segment, int begin, int end)

@@ -82,7 +82,7 @@ template <int dim>
 void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 {
   core::require(energy_weights_.empty() && int(weights.size()) == packing_.size() &&
-                    broken_.empty(),
+                    broken_.empty() && !plastic_,
                 "energy weights are set once, for every particle of an intact body");
   bonds_.for_each_interface([&](BondId, const Bond<dim> &b) {
     core::require(weights[b.i] == 1 && weights[b.j] == 1,
@@ -134,15 +134,25 @@ template <int dim>
 BondMotion<dim> ManyBodyForce<dim>::motion(const Bond<dim> &b, const Particles &p,
                                            const Workspace &work) const
 {
-  return {b, turn(p, work, b.i), turn(p, work, b.j), get(p.displacement, b.i),
-          get(p.displacement, b.j)};
+  return motion(b, p, turn(p, work, b.i), turn(p, work, b.j));
 }
 
 template <int dim>
 BondMotion<dim> ManyBodyForce<dim>::motion(const Bond<dim> &b, const Particles &p) const
 {
-  return {b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j), get(p.displacement, b.i),
-          get(p.displacement, b.j)};
+  return motion(b, p, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
+}
+
+template <int dim>
+BondMotion<dim> ManyBodyForce<dim>::motion(const Bond<dim> &b, const Particles &p,
+                                           const Turn<dim> &turn_i, const Turn<dim> &turn_j) const
+{
+  BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
+  if (plastic_ && (plastic_->is_plastic(b.i) || plastic_->is_plastic(b.j))) {
+    const auto part = plastic_stretch(b, turn_i, turn_j);
+    m.elastic -= part[0] + part[1];
+  }
+  return m;
 }
 
 template <int dim>
@@ -152,7 +162,7 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
   if (b.joins_materials)
     return b.area * Interfaces<dim>::traction(b, m, pressure);
   return b.area / b.distance *
-         (2 * b.weight * b.shear_i * m.du + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+         (2 * b.weight * b.shear_i * m.elastic + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
 }
 
 template <int dim>
@@ -175,10 +185,14 @@ void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLo
     return;
   for (const int i : other_particles_)
     work.other_pressure[i] = 0;
+  for_each_plastic([&](int i) { work.other_pressure[i] = 0; });
   slices_.add_pressures(a, work.other_pressure.data(), records_);
   surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
   if (!interfaces_.empty())
     interfaces_.add_own_part(p, lambda_per_volume_, work.other_pressure);
+  for_each_plastic([&](int i) {
+    work.other_pressure[i] -= lambda_per_volume_[i] * plastic_->flowed_volume()[i];
+  });
 }
 
 template <int dim>
@@ -200,10 +214,18 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     a.force[c] = p.force[c].data();
   for (int c = 0; c < n_spins<dim>; ++c)
     a.torque[c] = p.torque[c].data();
-  kernel_.forces(a, bonds_.segments(), strength, rows_, work.exceeded_rows);
-  slices_.forces(a, strength > 0 ? screening_strength() : 0, records_, work.exceeded_particles);
+  TractionScreen screen;
+  if (plastic_) {
+    work.marks.assign(plastic_->n_blocks(), 0);
+    screen = {yield_traction_, work.marks.data()};
+  }
+  kernel_.forces(a, bonds_.segments(), strength, screen, rows_, work.exceeded_rows);
+  slices_.forces(a, strength > 0 ? screening_strength() : 0, screen, records_,
+                 work.exceeded_particles);
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
+  if (plastic_)
+    add_plastic_forces(p);
 }
 
 template <int dim>
@@ -214,6 +236,10 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   time_ = time;
   surface_.set_time(time);
   elastic_forces(p, surface_, strength(), work_);
+  if (plastic_) {
+    surface_.book_work(p, work_.pressure); // with the reactions before the flow
+    flow(p);
+  }
   if (!contacts_.all().empty()) {
     searching_ = searching_ || contacts_.has_slid(p, packing_.spacing / 4);
     if (searching_)
@@ -236,6 +262,8 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   kernel_.energies(a, bonds_.segments(), rows_, energy.data());
   slices_.add_energies(a, records_, energy.data());
   double sum = surface_.energy(p) + contacts_.energy(p) + interfaces_.energy(p, work.pressure);
+  if (plastic_)
+    sum += plastic_energy(p);
   for (int i = 0; i < packing_.size(); ++i) {
     sum += energy[i];
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)

@@ -9,6 +9,7 @@
 #include "dem/fracture_law.h"
 #include "dem/interfaces.h"
 #include "dem/lattice_kernel.h"
+#include "dem/plastic_blocks.h"
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
 
@@ -94,6 +95,14 @@ public:
   long n_bonds() const { return bonds_.n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
+  /// Particles flow by this law from now on: once at every new time of compute(), whose forces are
+  /// then those after the flow. Of bodies of one elastic material with its whole energy.
+  void set_yield(std::unique_ptr<const YieldLaw> law);
+  /// Null without a law.
+  const PlasticBlocks<dim> *plastic() const { return plastic_.get(); }
+  /// Energy in J that plastic flow took: with it the leap-frog's balance is closed.
+  double plastic_dissipation() const { return plastic_dissipation_; }
+
   /// Bonds break at this tension on the face from now on, in Pa.
   void set_strength(double strength);
   const FractureLaw &fracture() const { return fracture_; }
@@ -108,6 +117,7 @@ private:
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
     std::vector<RowRange> exceeded_rows;
     std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
+    std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
   };
 
   LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
@@ -117,6 +127,8 @@ private:
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles) const;
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles,
                          const Workspace &work) const;
+  BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles, const Turn<dim> &turn_i,
+                         const Turn<dim> &turn_j) const;
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
 
@@ -133,6 +145,32 @@ private:
   /// strength when it is above 0.
   void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
                       Workspace &work) const;
+
+  /// visit(i) for the particles of blocks with plastic strains.
+  template <typename Visit>
+  void for_each_plastic(Visit &&visit) const
+  {
+    for (int i = 0; plastic_ && i < packing_.size(); ++i)
+      if (plastic_->is_plastic(i))
+        visit(i);
+  }
+  bool is_plane_strain() const;
+  /// What no traction answers of Du: the parts of both particles, in m.
+  std::array<Vector<dim>, 2> plastic_stretch(const Bond<dim> &bond, const Turn<dim> &turn_i,
+                                             const Turn<dim> &turn_j) const;
+  /// What plastic strains change in the forces of bonds and in their energy (J).
+  void add_plastic_forces(Particles &particles) const;
+  double plastic_energy(const Particles &particles) const;
+  /// The energy that changes when plastic strains do, in J.
+  double flowing_energy(const Particles &particles) const;
+  /// Averaged stresses of bonds and loaded faces in the axes of the particles.
+  void particle_stresses(const Particles &particles, const RowRange &range,
+                         std::vector<Tensor> &stress) const;
+  /// V M : ep of a particle, and the share of one of its bonds, in m^3.
+  void update_flowed_volume(int i);
+  double flowed_volume(const Bond<dim> &bond, int i) const;
+  /// Yields where the stress asks for it; forces and pressures follow.
+  void flow(Particles &particles);
 
   /// Of lattice bonds in Pa; 0: nothing breaks.
   double strength() const;
@@ -178,6 +216,11 @@ private:
   mutable RowWindow rows_; // scratch: nothing in it outlives a call
   mutable core::LargeArray records_;
   std::vector<BrokenBond<dim>> broken_;
+  std::unique_ptr<PlasticBlocks<dim>> plastic_;
+  double yield_traction_ = 0;       // Pa: no particle yields whose bonds all have less,
+  double pressure_share_ = 0;       // and whose pressure (plane strain) is below this share of it
+  std::optional<double> flowed_at_; // s
+  double plastic_dissipation_ = 0;
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;
 };

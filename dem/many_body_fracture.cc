@@ -57,6 +57,12 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
       if (tension(b, p, work_.pressure) >= strength_of(b))
         found.push_back(id);
     });
+  if (plastic_ && strength() > 0) // the kernels don't know plastic strains
+    for (const RowRange &range : plastic_->around_plastic())
+      for (int i = range.begin; i < range.end; ++i) {
+        test(i, true);
+        test(i, false);
+      }
   const auto ids = [&](const BondId &id) {
     const Bond<dim> b = bonds_.bond(id);
     const auto i = p.global_id[b.i], j = p.global_id[b.j];
@@ -64,6 +70,9 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   };
   std::sort(found.begin(), found.end(),
             [&](const BondId &a, const BondId &b) { return ids(a) < ids(b); });
+  found.erase(std::unique(found.begin(), found.end(),
+                          [&](const BondId &a, const BondId &b) { return ids(a) == ids(b); }),
+              found.end());
   return found;
 }
 
@@ -71,7 +80,8 @@ template <int dim>
 double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const BondMotion<dim> &m,
                                        const Particles &p) const
 {
-  return b.weight * b.shear_i * b.area / b.distance * m.du.squaredNorm() + bending_energy(b, p);
+  return b.weight * b.shear_i * b.area / b.distance * m.elastic.squaredNorm() +
+         bending_energy(b, p);
 }
 
 template <int dim>
@@ -97,13 +107,20 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
     interfaces_.take_own_part(p, lambda_per_volume_, pressure);
   const auto m = motion(b, p);
   const double s_r = b.joins_materials ? 0 : b.area / b.distance;
-  const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
-                                                        std::pair(b.j, -s_r * m.a_j.dot(m.du))};
+  std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
+                                                  std::pair(b.j, -s_r * m.a_j.dot(m.du))};
+  if (plastic_)
+    for (auto &[i, share] : shares)
+      share -= flowed_volume(b, i);
   bonds_.remove(id);
   if (b.joins_materials)
     interfaces_.remove(id.index);
   else if (id.direction < 0)
     slices_.remove(id.index);
+  if (plastic_)
+    for (const int i : {b.i, b.j})
+      if (plastic_->is_plastic(i))
+        update_flowed_volume(i);
   for (const auto &[i, share] : shares)
     if (lambda_per_volume_[i] != 0) {
       const double rest = pressure[i] / lambda_per_volume_[i] - share;

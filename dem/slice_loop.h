@@ -190,21 +190,25 @@ public:
     const SliceLanes d;
     take_pressures();
     HWY_ALIGN double sums[Law::n_sums][slice_width];
-    const auto limit2 = hn::Set(d, sweep_.limit2);
+    const auto limit2 = hn::Set(d, std::min(sweep_.limit2, sweep_.screen2));
     for (int s = 0; s < table_.n_slices(); ++s) {
-      bool exceeded = false;
+      bool exceeded = false, reached = false;
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
         const typename Law::Own own(d, own_record(s, lane));
         typename Law::Sums sum;
         for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
           Law::add_forces(d, own, b, record(b.neighbour()), limit2, sum);
         sum.store(d, own, sums, lane);
-        if (HWY_UNLIKELY(sum.exceeds(d)))
-          exceeded = exceeded || exceeds(s, lane);
+        if (HWY_UNLIKELY(sum.exceeds(d))) {
+          reached = true;
+          exceeded = exceeded || (sweep_.limit2 < sweep_.never && exceeds(s, lane));
+        }
       }
       finish_forces(s, sums);
       if (HWY_UNLIKELY(exceeded))
         for_each_lane(s, [&](int, int i) { sweep_.exceeded->push_back(i); });
+      if (HWY_UNLIKELY(reached) && sweep_.screen.traction > 0)
+        for_each_lane(s, [&](int, int i) { sweep_.screen.mark(i); });
     }
   }
 

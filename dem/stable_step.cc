@@ -43,6 +43,8 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
 template <int dim>
 double ManyBodyForce<dim>::stable_step(const Particles &particles) const
 {
+  core::require(!plastic_ || plastic_->n_plastic_blocks() == 0,
+                "the stable step is that of a body without plastic strains");
   Particles p = particles;
   SurfaceLoads<dim> surface = surface_;
   surface.set_zero();

@@ -74,7 +74,7 @@ Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall,
   Vector<dim> du = -get(p.displacement, wall.i) - Turn<dim>::of(p, wall.i).change(wall.lever);
   for (int c = 0; c < dim; ++c)
     du[c] = wall.load[c] < 0 ? 0. : du[c] + displacement_[wall.load[c]][c];
-  return du;
+  return du - wall.plastic;
 }
 
 template <int dim>
@@ -140,17 +140,17 @@ void SurfaceLoads<dim>::add_moments(const particles::Particles<dim> &particles,
                                     const std::vector<double> &pressure,
                                     Components<n_strains<dim>> &moments) const
 {
-  const auto lever = [&](const auto &face) -> Vector<dim> {
-    return face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
-  };
-  for (const auto &wall : walls_) {
-    const Vector<dim> f =
-        wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
-                     pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
-    add(moments, wall.i, symmetric_product<dim>(lever(wall), f));
-  }
-  for (const auto &face : tractions_)
-    add(moments, face.i, symmetric_product<dim>(lever(face), face.area * traction(face)));
+  for_each_moment(particles, pressure, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
+    add(moments, i, symmetric_product<dim>(a, f));
+  });
+}
+
+template <int dim>
+void SurfaceLoads<dim>::set_plastic(
+    const std::function<Eigen::Matrix<double, dim, dim>(int)> &strain_of)
+{
+  for (auto &wall : walls_)
+    wall.plastic = wall.q * wall.prescribed.cwiseProduct(strain_of(wall.i) * wall.normal);
 }
 
 template <int dim>

@@ -6,6 +6,8 @@
 #include "dem/turn.h"
 #include "particles/packing.h"
 
+#include <functional>
+
 namespace ligament::dem
 {
 /// Side of the specimen whose motion is prescribed: a bond of length q between the particle and the
@@ -21,6 +23,7 @@ struct WallFace
   Vector<dim> prescribed;    // 1 where the component is prescribed, 0 where it is free
   std::array<int, dim> load; // number of the load that prescribes the component, or -1
   double shear_modulus;      // Pa, of the particle
+  Vector<dim> plastic = Vector<dim>::Zero(); // m, what no traction answers of Du
 };
 
 /// Outer face under a given traction (theory.md, loaded outer faces).
@@ -58,6 +61,14 @@ public:
   /// Elastic energy of the walls without the volumetric part, in J.
   double energy(const particles::Particles<dim> &particles) const;
 
+  /// visit(i, a, f): lever (m) and force (N) of every loaded face of particle i.
+  template <typename Visit>
+  void for_each_moment(const particles::Particles<dim> &particles,
+                       const std::vector<double> &pressure, Visit &&visit) const;
+
+  /// Plastic strains of the particles, in their own axes, stretch the wall pairs.
+  void set_plastic(const std::function<Eigen::Matrix<double, dim, dim>(int)> &strain_of);
+
   /// Adds S a (x) t of the loaded faces to the tensors of their particles (Voigt order, N m).
   void add_moments(const particles::Particles<dim> &particles, const std::vector<double> &pressure,
                    Components<n_strains<dim>> &moments) const;
@@ -88,6 +99,22 @@ private:
   std::vector<Vector<dim>> old_displacement_, old_traction_, old_reaction_;
   std::vector<Vector<dim>> old_place_, old_gradient_; // of each traction face
 };
+
+template <int dim>
+template <typename Visit>
+void SurfaceLoads<dim>::for_each_moment(const particles::Particles<dim> &particles,
+                                        const std::vector<double> &pressure, Visit &&visit) const
+{
+  const auto lever = [&](const auto &face) -> Vector<dim> {
+    return face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
+  };
+  for (const auto &wall : walls_)
+    visit(wall.i, lever(wall),
+          Vector<dim>(wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
+                                   pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal))));
+  for (const auto &face : tractions_)
+    visit(face.i, lever(face), Vector<dim>(face.area * traction(face)));
+}
 
 /// The tensor a (x) b, symmetric part, in Voigt order without engineering factors.
 template <int dim>

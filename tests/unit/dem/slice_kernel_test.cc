@@ -100,7 +100,7 @@ struct SliceKernel : ::testing::Test
     std::vector<int> exceeded;
     slices.load(a, records);
     slices.add_pressures(a, pressure.data(), records);
-    slices.forces(a, 0., records, exceeded);
+    slices.forces(a, 0., {}, records, exceeded);
     return p;
   }
 

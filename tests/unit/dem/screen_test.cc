@@ -1,0 +1,156 @@
+// Bounds of the kernels: no bond that exceeds the strength and no particle that could yield is
+// missed, in random states of any packing.
+#include "particles/random_packing.h"
+#include "tests/support/von_mises.h"
+#include "tests/unit/dem/cases.h"
+
+#include <algorithm>
+
+namespace ligament::dem::testing
+{
+/// Notes the equivalent stresses that it is shown, and never flows.
+class Witness : public YieldLaw
+{
+public:
+  Witness(double limit, std::vector<double> *seen) : limit_(limit), seen_(seen) {}
+  double elastic_limit() const override { return limit_; }
+  void flow(int n, const Tensor *stress, double *, Tensor *increment) const override
+  {
+    for (int i = 0; i < n; ++i) {
+      seen_->push_back(tests::mises_stress(stress[i]));
+      increment[i].setZero();
+    }
+  }
+
+private:
+  double limit_;
+  std::vector<double> *seen_;
+};
+
+/// So many particles and more along each axis, `longer` times as many along the last.
+template <int dim>
+Packing<dim> lattice(Kind kind, double n, int longer)
+{
+  particles::LatticeParameters<dim> p;
+  p.kind = kind;
+  p.spacing = 0.01;
+  p.upper.setConstant((n + 0.3) * p.spacing);
+  p.upper[dim - 1] *= longer;
+  return particles::make_lattice_packing<dim>(p);
+}
+
+template <int dim>
+Packing<dim> random_packing(double n, int longer)
+{
+  particles::RandomParameters<dim> p;
+  p.spacing = 0.01;
+  p.size_ratio = 2;
+  p.relaxation_sweeps = 2;
+  p.upper.setConstant((n + 0.3) * p.spacing);
+  p.upper[dim - 1] *= longer;
+  return particles::make_random_packing<dim>(p).packing;
+}
+
+/// Noise and swelling that grow from the lower end to the upper one, in a turned body.
+template <int dim>
+Particles<dim> state(const Packing<dim> &packing, double swelling, unsigned seed)
+{
+  Particles<dim> p;
+  particles::fill_particles(packing, 1., p);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  const auto noise = [&] { return uniform(random); };
+  const Spin<dim> turn = Spin<dim>::Constant(0.7);
+  const auto &height = p.reference[dim - 1];
+  const double top = *std::max_element(height.begin(), height.end());
+  for (int i = 0; i < p.size(); ++i) {
+    const double share = std::pow(height[i] / top, 4);
+    turn_by<dim>(p, i, turn);
+    const Vector<dim> x = get(p.reference, i), rigid = Turn<dim>::of(p, i).change(x),
+                      u = packing.spacing * Vector<dim>::NullaryExpr(noise);
+    set(p.displacement, i, Vector<dim>(rigid + share * (u + swelling * (x + rigid))));
+    turn_by<dim>(p, i, share * Spin<dim>::NullaryExpr(noise));
+  }
+  return p;
+}
+
+template <int dim>
+void expect_all_yielding_seen(const Packing<dim> &packing, const DemMaterial &material)
+{
+  bool skipped = false;
+  for (const double swelling : {0., 0.02, -0.02}) {
+    auto p = state(packing, swelling, 1);
+    std::vector<double> all, seen;
+    ManyBodyForce<dim> force(packing, material, {});
+    force.set_yield(std::make_unique<Witness>(1e-300, &all));
+    force.compute(p, 0);
+    ASSERT_EQ(int(all.size()), packing.size());
+    std::sort(all.begin(), all.end());
+    for (const double quantile : {0.2, 0.5, 0.9, 0.999}) {
+      const double limit = all[std::size_t(quantile * double(all.size()))];
+      seen.clear();
+      force.set_yield(std::make_unique<Witness>(limit, &seen));
+      force.compute(p, 0);
+      const auto yielding = [&](const std::vector<double> &stress) {
+        return std::count_if(stress.begin(), stress.end(), [&](double s) { return s >= limit; });
+      };
+      EXPECT_EQ(yielding(seen), yielding(all)) << swelling << " " << quantile;
+      skipped = skipped || seen.size() < all.size();
+    }
+  }
+  EXPECT_TRUE(skipped); // else the bound says nothing
+}
+
+TEST(Screen, NoParticleThatCouldYieldIsMissed)
+{
+  const auto hexagonal = lattice<2>(Kind::hexagonal, 40, 2), random = random_packing<2>(20, 8);
+  for (const double nu : {-0.2, 0.3, 0.49})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+      const DemMaterial material{3., nu, 1, plane, 0};
+      expect_all_yielding_seen<2>(hexagonal, material);
+      expect_all_yielding_seen<2>(random, material);
+    }
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  expect_all_yielding_seen<3>(lattice<3>(Kind::fcc, 7, 5), material);
+  expect_all_yielding_seen<3>(random_packing<3>(6, 12), material);
+}
+
+/// The particles of the bonds that break at once are those with a tension above the strength.
+template <int dim>
+void expect_all_breaking_found(const Packing<dim> &packing)
+{
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  for (const unsigned seed : {1, 2}) {
+    auto p = state(packing, 0.02, seed);
+    const ManyBodyForce<dim> intact(packing, material, {});
+    std::vector<double> tension(packing.size());
+    for (int i = 0; i < packing.size(); ++i)
+      tension[i] = intact.max_tension(p, {i});
+    auto sorted = tension;
+    std::sort(sorted.begin(), sorted.end());
+    for (const double quantile : {0.5, 1.}) {
+      const double strength =
+          (1 - 1e-12) * sorted[std::size_t(quantile * double(sorted.size() - 1))];
+      ManyBodyForce<dim> force(packing, material, {},
+                               {FractureLaw::Criterion::maximum_tension, strength});
+      force.compute(p, 0);
+      std::vector<char> broken(packing.size(), 0);
+      for (const auto &bond : force.broken_bonds())
+        broken[bond.i] = broken[bond.j] = 1;
+      for (int i = 0; i < packing.size(); ++i)
+        ASSERT_EQ(bool(broken[i]), tension[i] >= strength) << i;
+      ASSERT_FALSE(force.broken_bonds().empty());
+    }
+  }
+}
+
+TEST(Screen, NoBondAboveTheStrengthIsMissed)
+{
+  expect_all_breaking_found<2>(lattice<2>(Kind::hexagonal, 20, 1));
+  expect_all_breaking_found<2>(lattice<2>(Kind::square, 20, 1));
+  expect_all_breaking_found<2>(random_packing<2>(15, 1));
+  expect_all_breaking_found<3>(lattice<3>(Kind::fcc, 7, 1));
+  expect_all_breaking_found<3>(lattice<3>(Kind::simple_cubic, 7, 1));
+  expect_all_breaking_found<3>(random_packing<3>(5, 1));
+}
+} // namespace ligament::dem::testing
