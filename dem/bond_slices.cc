@@ -115,7 +115,24 @@ void BondSlices<dim>::remove(int index)
 }
 
 template <int dim>
-void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &records) const
+SliceNearness BondSlices<dim>::nearness(const particles::RestBlocks<dim> &rest) const
+{
+  SliceNearness nearness;
+  nearness.slice.assign(table_.n_slices(), 0);
+  nearness.records.assign(table_.n_slices(), 0);
+  for (int l = 0; l < table_.n_records(); ++l) {
+    const auto raise = [&](std::uint8_t &to, int particle) {
+      to = std::max(to, std::uint8_t(rest.nearness(particle)));
+    };
+    raise(nearness.slice[l / slice_width], table_.particle[table_.lane[l] / record_size]);
+    raise(nearness.records[l / slice_width], table_.particle[l]);
+  }
+  return nearness;
+}
+
+template <int dim>
+void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                           const SliceNearness *nearness) const
 {
   if (empty())
     return;
@@ -123,23 +140,23 @@ void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &r
     const long n = table_.n_records();
     records = core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
   }
-  load_records({table_, arrays, records.data(), 0, false, nullptr});
+  load_records({table_, arrays, records.data(), 0, false, nullptr, nearness});
 }
 
 template <int dim>
 void BondSlices<dim>::add_pressures(LatticeArrays<dim> arrays, double *pressure,
-                                    core::LargeArray &records) const
+                                    core::LargeArray &records, const SliceNearness *nearness) const
 {
   if (empty())
     return;
   arrays.pressure = pressure;
-  ligament::dem::add_pressures({table_, arrays, records.data(), 0, false, nullptr});
+  ligament::dem::add_pressures({table_, arrays, records.data(), 0, false, nullptr, nearness});
 }
 
 template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
                              const TractionScreen &screen, core::LargeArray &records,
-                             std::vector<int> &exceeded) const
+                             std::vector<int> &exceeded, const SliceNearness *nearness) const
 {
   exceeded.clear();
   if (empty())
@@ -150,7 +167,7 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
     return traction > 0 ? least_strain * least_strain : SliceSweep<dim>::never;
   };
   add_slice_forces({table_, arrays, records.data(), squared(strength), all_particles_, &exceeded,
-                    nullptr, squared(screen.traction), screen});
+                    nearness, nullptr, squared(screen.traction), screen});
 }
 
 template <int dim>
@@ -158,7 +175,7 @@ void BondSlices<dim>::add_energies(const LatticeArrays<dim> &arrays, core::Large
                                    double *energy) const
 {
   if (!empty())
-    add_slice_energies({table_, arrays, records.data(), 0, false, nullptr, energy});
+    add_slice_energies({table_, arrays, records.data(), 0, false, nullptr, nullptr, energy});
 }
 
 template class BondSlices<2>;

@@ -5,6 +5,7 @@
 #include "core/large_array.h"
 #include "dem/bond_network.h"
 #include "dem/lattice_kernel.h"
+#include "particles/rest_blocks.h"
 
 namespace ligament::dem
 {
@@ -38,6 +39,13 @@ struct SliceTable
   int n_records() const { return int(particle.size()); }
 };
 
+/// How near each slice, and each eight records in their order, come to particles that move:
+/// RestBlocks::nearness of the nearest.
+struct SliceNearness
+{
+  std::vector<std::uint8_t> slice, records;
+};
+
 /// What one sweep over the slices needs; passed through the run-time dispatch.
 template <int dim>
 struct SliceSweep
@@ -48,8 +56,9 @@ struct SliceSweep
   double limit2 = 0; // (strength / 2G)^2, of the weakest bond
   bool replace;      // forces and torques are overwritten, not added to
   std::vector<int> *exceeded;
-  double *energy = nullptr; // of the particles, J
-  double screen2 = never;   // (traction / 2G)^2 at which the screen marks
+  const SliceNearness *nearness = nullptr; // null: all slices are swept
+  double *energy = nullptr;                // of the particles, J
+  double screen2 = never;                  // (traction / 2G)^2 at which the screen marks
   TractionScreen screen = {};
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
@@ -78,22 +87,28 @@ public:
   BondSlices(const BondNetwork<dim> &bonds, double shear_modulus, bool all_particles);
 
   bool empty() const { return table_.n_records() == 0; }
+
+  /// For the three sweeps below, which with it leave out what is at rest.
+  SliceNearness nearness(const particles::RestBlocks<dim> &rest) const;
   const std::vector<int> &particles() const { return table_.particle; }
 
   /// Bond `index` of the network's table no longer carries.
   void remove(int index);
 
   /// Reads the state into `records`, the scratch of all three; first of the three.
-  void load(const LatticeArrays<dim> &arrays, core::LargeArray &records) const;
+  void load(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+            const SliceNearness *nearness = nullptr) const;
 
   /// Adds lambda theta of the bonds to `pressure`, in Pa.
-  void add_pressures(LatticeArrays<dim> arrays, double *pressure, core::LargeArray &records) const;
+  void add_pressures(LatticeArrays<dim> arrays, double *pressure, core::LargeArray &records,
+                     const SliceNearness *nearness = nullptr) const;
 
   /// Adds the forces at arrays.pressure. With a strength above 0 (Pa) replaces `exceeded` by
   /// particles among which are those of all bonds under at least that tension. The screen's marks
   /// are set for both particles of a bond.
   void forces(const LatticeArrays<dim> &arrays, double strength, const TractionScreen &screen,
-              core::LargeArray &records, std::vector<int> &exceeded) const;
+              core::LargeArray &records, std::vector<int> &exceeded,
+              const SliceNearness *nearness = nullptr) const;
 
   /// Adds to each particle's energy (J) its half of every bond's.
   void add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,

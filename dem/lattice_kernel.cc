@@ -22,10 +22,11 @@ void RowWindow::slide(int keep, int end)
 {
   if (end <= begin_ + length_)
     return;
-  for (int s = 0; s < n_streams_; ++s) {
-    double *const first = data_.data() + s * stride_;
-    std::copy(first + (keep - begin_), first + length_, first);
-  }
+  if (keep < begin_ + length_) // else a gap at rest lies in between
+    for (int s = 0; s < n_streams_; ++s) {
+      double *const first = data_.data() + s * stride_;
+      std::copy(first + (keep - begin_), first + length_, first);
+    }
   begin_ = keep;
 }
 
@@ -33,7 +34,8 @@ template <int dim>
 LatticeKernel<dim>::LatticeKernel(const std::vector<DirectionData<dim>> &directions,
                                   const std::vector<RowSegment> &segments, int n_particles,
                                   double shear_modulus, bool volumetric)
-    : n_particles_(n_particles), volumetric_(volumetric)
+    : n_particles_(n_particles), volumetric_(volumetric),
+      everything_(particles::AwakeRanges::of_all(n_particles))
 {
   const int n = int(directions.size());
   auto &c = constants_;
@@ -74,8 +76,8 @@ RowSweep<dim> LatticeKernel<dim>::sweep(const LatticeArrays<dim> &arrays,
                                         const std::vector<RowSegment> &segments,
                                         RowWindow &window) const
 {
-  return {arrays,      constants_, &segments, n_particles_, reach_,
-          volumetric_, false,      nullptr,   &window};
+  return {arrays, constants_,  &segments, n_particles_, &everything_,
+          reach_, volumetric_, false,     nullptr,      &window};
 }
 
 template <int dim>
@@ -93,15 +95,20 @@ template <int dim>
 void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments, double strength,
                                 const TractionScreen &screen, RowWindow &window,
-                                std::vector<RowRange> &exceeded) const
+                                std::vector<RowRange> &exceeded,
+                                const particles::AwakeRanges *ranges) const
 {
   exceeded.clear();
   if (constants_.n_directions == 0) {
-    dilatation(arrays, segments, window);
+    for (const auto &[begin, end] : (ranges ? *ranges : everything_).pressed)
+      std::copy(arrays.other_pressure + begin, arrays.other_pressure + end,
+                arrays.pressure + begin);
     return;
   }
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
+  if (ranges)
+    s.ranges = ranges;
   const auto squared = [&](double traction) {
     const double force = traction * area_;
     return traction > 0 ? force * force : std::numeric_limits<double>::infinity();

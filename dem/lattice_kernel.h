@@ -3,6 +3,7 @@
 
 #include "core/large_array.h"
 #include "dem/bond_network.h"
+#include "particles/rest_blocks.h"
 
 namespace ligament::dem
 {
@@ -39,12 +40,10 @@ struct LatticeConstants
 
 /// Particles that each stage of the sweep takes at once.
 inline constexpr int row_piece = 256;
+/// And that a vector holds at most.
+inline constexpr int most_lanes = 8;
 
-/// Particles [begin, end).
-struct RowRange
-{
-  int begin, end;
-};
+using RowRange = particles::ParticleRange;
 
 /// Which blocks of particles [b block, (b + 1) block) have a bond under a traction,
 /// in any direction, of at least `traction` (Pa): their marks are set, others are left alone. A
@@ -92,6 +91,7 @@ struct RowSweep
   LatticeConstants<dim> constants;
   const std::vector<RowSegment> *segments;
   int n_particles;
+  const particles::AwakeRanges *ranges;
   int reach;       // largest offset between neighbours
   bool volumetric; // nu is not 0
   bool with_forces;
@@ -101,7 +101,7 @@ struct RowSweep
   TractionScreen screen = {};
 
   /// Particles that the window must hold at least.
-  long window_length() const { return 3L * reach + 2 * row_piece; }
+  long window_length() const { return 3L * reach + 2 * row_piece + most_lanes; }
 };
 
 /// cos - 1 and sin of n angles, to round-off for any angle below 1e5.
@@ -124,11 +124,14 @@ public:
                   RowWindow &window) const;
 
   /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
-  /// there is no lattice. With a strength above 0 (Pa), replaces `exceeded` by the ranges of
-  /// particles that have a forward bond under at least that tension; ranges don't overlap.
+  /// there is no lattice. With `ranges` only of the particles that are stepped, and the pressures
+  /// that they see; all others must be at rest, or held. With a strength above 0 (Pa), replaces
+  /// `exceeded` by the ranges of particles that have a forward bond under at least that tension;
+  /// ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
               double strength, const TractionScreen &screen, RowWindow &window,
-              std::vector<RowRange> &exceeded) const;
+              std::vector<RowRange> &exceeded,
+              const particles::AwakeRanges *ranges = nullptr) const;
 
   /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
   /// bonds, bending and twist included, volumes not.
@@ -143,5 +146,6 @@ private:
   double area_ = 0;
   int n_particles_, reach_ = 0;
   bool volumetric_;
+  particles::AwakeRanges everything_;
 };
 } // namespace ligament::dem

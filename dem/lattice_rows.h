@@ -75,13 +75,56 @@ HWY_INLINE void for_each_vector(long first, long begin, long end, Visit &&visit)
     visit(d, end - n);
 }
 
+/// Goes over ranges of particles in pieces that stay within a segment.
+class PieceCursor
+{
+public:
+  HWY_INLINE PieceCursor(const std::vector<RowSegment> &segments,
+                         const std::vector<RowRange> &ranges)
+      : segments_(segments), ranges_(ranges)
+  {
+    find();
+  }
+
+  HWY_INLINE bool has_more() const { return range_ < ranges_.size(); }
+  HWY_INLINE void next()
+  {
+    begin = end;
+    find();
+  }
+  const RowSegment &segment() const { return segments_[segment_]; }
+
+  int begin = 0, end = 0;
+  int first = 0; // where the segment, or the range if it begins later, begins
+
+private:
+  HWY_INLINE void find()
+  {
+    while (range_ < ranges_.size() && begin >= ranges_[range_].end)
+      ++range_;
+    if (range_ == ranges_.size())
+      return;
+    const RowRange &range = ranges_[range_];
+    begin = std::max(begin, range.begin);
+    while (segments_[segment_].end <= begin)
+      ++segment_;
+    first = std::max(segments_[segment_].begin, range.begin);
+    end = std::min({begin + row_piece, segments_[segment_].end, range.end});
+  }
+
+  const std::vector<RowSegment> &segments_;
+  const std::vector<RowRange> &ranges_;
+  std::size_t segment_ = 0, range_ = 0;
+};
+
 /// Three stages, each as far ahead of the next as its neighbours need: turn (of each particle by
 /// itself), dilatation, forces or energies.
 template <typename Bonds, int dim>
 class RowPipeline
 {
 public:
-  HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep) : sweep_(sweep), bonds_(sweep)
+  HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep)
+      : sweep_(sweep), bonds_(sweep), dilated_(*sweep.segments, sweep.ranges->pressed)
   {
     // Sliding takes little time when the window is twice as long as it must be.
     const long length = std::min(2 * sweep.window_length(), Bonds::stride);
@@ -92,66 +135,71 @@ public:
   HWY_INLINE void run()
   {
     if (!sweep_.with_forces) {
+      forces_at_ = sweep_.n_particles;
       dilate_to(sweep_.n_particles);
       return;
     }
-    for (const RowSegment &segment : *sweep_.segments)
-      for (int begin = segment.begin; begin < segment.end; begin += piece) {
-        const int end = std::min(begin + piece, segment.end);
-        forces_at_ = begin;
-        dilate_to(std::min(end + sweep_.reach, sweep_.n_particles));
-        bonds_.set_window(sweep_.window->origin());
-        if (sweep_.energy)
-          energies(segment, begin, end);
-        else
-          forces(segment, begin, end);
-      }
+    for (PieceCursor piece(*sweep_.segments, sweep_.ranges->stepped); piece.has_more();
+         piece.next()) {
+      forces_at_ = piece.begin;
+      dilate_to(std::min(piece.end + sweep_.reach, sweep_.n_particles));
+      bonds_.set_window(sweep_.window->origin());
+      if (sweep_.energy)
+        energies(piece);
+      else
+        forces(piece);
+    }
   }
 
 private:
-  static constexpr int piece = row_piece;
+  static constexpr int piece_size = row_piece;
 
   HWY_INLINE void dilate_to(int target)
   {
     if (!sweep_.volumetric)
-      turn_to(target);
-    while (sweep_.volumetric && dilated_ < target) {
-      const RowSegment &segment = (*sweep_.segments)[segment_];
-      const int begin = dilated_, end = std::min(begin + piece, segment.end);
-      if (!sweep_.with_forces)
-        forces_at_ = begin;
-      turn_to(std::min(end + sweep_.reach, sweep_.n_particles));
+      turn_to(target, forces_at_);
+    for (; sweep_.volumetric && dilated_.has_more() && dilated_.begin < target; dilated_.next()) {
+      turn_to(std::min(dilated_.end + sweep_.reach, sweep_.n_particles),
+              std::min(forces_at_, dilated_.begin));
       bonds_.set_window(sweep_.window->origin());
-      dilatation(segment, begin, end);
-      dilated_ = end;
-      segment_ += end == segment.end;
+      dilatation(dilated_);
     }
   }
 
-  HWY_INLINE void turn_to(int target)
+  /// What the particles from `needed` on see must stay in the window, and what the vector before
+  /// them sees that may overlap theirs.
+  HWY_INLINE void turn_to(int target, int needed)
   {
-    while (turned_ < target) {
-      const int end = std::min(turned_ + piece, target);
-      sweep_.window->slide(std::max(forces_at_ - sweep_.reach, 0), end);
-      bonds_.set_window(sweep_.window->origin());
-      // Overlapping vectors stay within this piece: what lies before may have left the window.
-      for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
-      turned_ = end;
+    const int keep = std::max(needed - sweep_.reach - most_lanes, 0);
+    const auto &ranges = sweep_.ranges->turned;
+    for (; turning_ < ranges.size(); ++turning_) {
+      turned_ = std::max({turned_, ranges[turning_].begin, keep});
+      const int stop = std::min(ranges[turning_].end, target);
+      while (turned_ < stop) {
+        const int end = std::min(turned_ + piece_size, stop);
+        sweep_.window->slide(keep, end);
+        bonds_.set_window(sweep_.window->origin());
+        // Overlapping vectors stay within this piece: what lies before may have left the window.
+        for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
+        turned_ = end;
+      }
+      if (ranges[turning_].end > target)
+        return;
     }
   }
 
-  HWY_INLINE void dilatation(const RowSegment &segment, int begin, int end)
+  HWY_INLINE void dilatation(const PieceCursor &piece)
   {
-    const typename Bonds::Offsets offsets(segment);
-    for_each_vector(segment.begin, begin, end,
+    const typename Bonds::Offsets offsets(piece.segment());
+    for_each_vector(piece.first, piece.begin, piece.end,
                     [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
   }
 
-  HWY_INLINE void forces(const RowSegment &segment, int begin, int end)
+  HWY_INLINE void forces(const PieceCursor &piece)
   {
-    const typename Bonds::Offsets offsets(segment);
-    int done = begin;
-    for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
+    const typename Bonds::Offsets offsets(piece.segment());
+    int done = piece.begin;
+    for_each_vector(piece.first, piece.begin, piece.end, [&](auto d, long i) HWY_ATTR {
       const int after = int(i) + int(hn::Lanes(d));
       if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)))
         note(d, i, offsets, {std::max(int(i), done), after});
@@ -171,18 +219,19 @@ private:
       sweep_.exceeded->push_back(range);
   }
 
-  HWY_INLINE void energies(const RowSegment &segment, int begin, int end)
+  HWY_INLINE void energies(const PieceCursor &piece)
   {
-    const typename Bonds::Offsets offsets(segment);
-    for_each_vector(segment.begin, begin, end, [&](auto d, long i) HWY_ATTR {
+    const typename Bonds::Offsets offsets(piece.segment());
+    for_each_vector(piece.first, piece.begin, piece.end, [&](auto d, long i) HWY_ATTR {
       hn::StoreU(bonds_.energy(d, i, offsets), d, sweep_.energy + i);
     });
   }
 
   const RowSweep<dim> &sweep_;
   Bonds bonds_;
-  int segment_ = 0;
-  int turned_ = 0, dilated_ = 0, forces_at_ = 0; // fronts of the stages
+  PieceCursor dilated_;
+  std::size_t turning_ = 0;        // range of the stage turn
+  int turned_ = 0, forces_at_ = 0; // fronts of the stages
 };
 
 /// Indices of the neighbours against those of the particles.

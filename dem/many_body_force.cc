@@ -180,13 +180,14 @@ void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLo
   work.pressure.resize(packing_.size());
   work.other_pressure.resize(packing_.size(), 0.);
   const LatticeArrays<dim> a = arrays(p, work);
-  slices_.load(a, records_);
+  const SliceNearness *const slices = awake_slices(work);
+  slices_.load(a, records_, slices);
   if (materials_.has_no_dilatation())
     return;
   for (const int i : other_particles_)
     work.other_pressure[i] = 0;
   for_each_plastic([&](int i) { work.other_pressure[i] = 0; });
-  slices_.add_pressures(a, work.other_pressure.data(), records_);
+  slices_.add_pressures(a, work.other_pressure.data(), records_, slices);
   surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
   if (!interfaces_.empty())
     interfaces_.add_own_part(p, lambda_per_volume_, work.other_pressure);
@@ -219,13 +220,16 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
-  kernel_.forces(a, bonds_.segments(), strength, screen, rows_, work.exceeded_rows);
+  kernel_.forces(a, bonds_.segments(), strength, screen, rows_, work.exceeded_rows,
+                 awake_ranges(work));
   slices_.forces(a, strength > 0 ? screening_strength() : 0, screen, records_,
-                 work.exceeded_particles);
+                 work.exceeded_particles, awake_slices(work));
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
   if (plastic_)
     add_plastic_forces(p);
+  if (work.rest && !work.rest->is_exact() && !work.rest->all_awake())
+    clear_forces_at_rest(p);
 }
 
 template <int dim>
@@ -235,6 +239,8 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     last_time_ = time_;
   time_ = time;
   surface_.set_time(time);
+  if (rest_ && !rest_->all_awake())
+    wake_loaded();
   elastic_forces(p, surface_, strength(), work_);
   if (plastic_) {
     surface_.book_work(p, work_.pressure); // with the reactions before the flow
@@ -244,6 +250,8 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     searching_ = searching_ || contacts_.has_slid(p, packing_.spacing / 4);
     if (searching_)
       search_.update(p, bonds_, contacts_);
+    if (searching_ && rest_ && !rest_->all_awake())
+      wake_contacts();
     contacts_.add_forces(p);
   }
   surface_.book_work(p, work_.pressure);

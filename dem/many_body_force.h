@@ -45,6 +45,9 @@ public:
   /// Calling it again in the same state changes nothing more.
   void compute(Particles &particles, double time) override;
 
+  /// Loads wake the blocks that they act on when they begin, contacts theirs.
+  void set_rest(particles::RestBlocks<dim> *rest) override;
+
   /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;
 
@@ -118,6 +121,9 @@ private:
     std::vector<RowRange> exceeded_rows;
     std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
+    const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
+    SliceNearness nearness;
+    long nearness_version = -1; // of rest
   };
 
   LatticeArrays<dim> arrays(const Particles &particles, Workspace &work) const;
@@ -139,6 +145,14 @@ private:
   /// The pressures from irregular bonds and loaded faces, and the slices' records.
   void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
                            Workspace &work) const;
+  /// What a step with this workspace passes over; null: everything.
+  const particles::AwakeRanges *awake_ranges(const Workspace &work) const;
+  const SliceNearness *awake_slices(Workspace &work) const;
+  void wake_loaded();
+  void wake_contacts();
+  /// Of particles that are not awake but that bonds of awake ones have pulled.
+  void clear_forces_at_rest(Particles &particles) const;
+
   /// Turns and pressures of all particles.
   void find_pressure(const Particles &particles, Workspace &work) const;
   /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
@@ -212,6 +226,7 @@ private:
   std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
   std::vector<double> energy_weights_;    // of the particles; empty: all 1
+  particles::RestBlocks<dim> *rest_ = nullptr;
   Workspace work_;
   mutable RowWindow rows_; // scratch: nothing in it outlives a call
   mutable core::LargeArray records_;

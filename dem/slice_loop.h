@@ -132,6 +132,8 @@ public:
     HWY_ALIGN double number[record_size][slice_width] = {};
     const int n_records = table_.n_records();
     for (int first = 0; first < n_records; first += slice_width) {
+      if (sweep_.nearness && sweep_.nearness->records[first / slice_width] < Rest::turned)
+        continue;
       const int size = std::min(slice_width, n_records - first);
       const int *const particle = table_.particle.data() + first;
       for (int f = 0; f < Law::n_loaded; ++f)
@@ -156,6 +158,8 @@ public:
     const SliceLanes d;
     HWY_ALIGN double theta[slice_width];
     for (int s = 0; s < table_.n_slices(); ++s) {
+      if (is_left_out(s, Rest::pressed))
+        continue;
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
         const typename Law::Own own(d, own_record(s, lane));
         auto sum = hn::Zero(d);
@@ -192,6 +196,8 @@ public:
     HWY_ALIGN double sums[Law::n_sums][slice_width];
     const auto limit2 = hn::Set(d, std::min(sweep_.limit2, sweep_.screen2));
     for (int s = 0; s < table_.n_slices(); ++s) {
+      if (is_left_out(s, Rest::awake))
+        continue;
       bool exceeded = false, reached = false;
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
         const typename Law::Own own(d, own_record(s, lane));
@@ -213,7 +219,13 @@ public:
   }
 
 private:
+  using Rest = particles::RestBlocks<dim>;
   static constexpr int n_lanes = int(hn::MaxLanes(SliceLanes()));
+
+  HWY_INLINE bool is_left_out(int slice, int least) const
+  {
+    return sweep_.nearness && sweep_.nearness->slice[slice] < least;
+  }
 
   HWY_INLINE Record<SliceLanes> record(const int *places) const
   {

@@ -6,6 +6,7 @@
 #include "dem/turn.h"
 #include "particles/packing.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace ligament::dem
@@ -49,6 +50,11 @@ public:
   void set_time(double t);
   /// As if nothing were applied: supports stand still, tractions vanish.
   void set_zero();
+
+  /// visit(particles) once for each load, as soon as it acts: a support moves, a traction is
+  /// applied.
+  template <typename Visit>
+  void for_each_that_begins(Visit &&visit);
 
   /// Adds lambda theta (Pa) of the loaded faces: stiffness_per_volume = lambda_i / V_i.
   void add_dilatation(const particles::Particles<dim> &particles,
@@ -94,6 +100,7 @@ private:
   std::vector<WallFace<dim>> walls_;
   std::vector<TractionFace<dim>> tractions_;
   std::vector<Vector<dim>> displacement_, traction_, reaction_; // of each load
+  std::vector<char> has_begun_;                                 // of each load
   double work_ = 0;
   bool booked_ = false;
   std::vector<Vector<dim>> old_displacement_, old_traction_, old_reaction_;
@@ -114,6 +121,26 @@ void SurfaceLoads<dim>::for_each_moment(const particles::Particles<dim> &particl
                                    pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal))));
   for (const auto &face : tractions_)
     visit(face.i, lever(face), Vector<dim>(face.area * traction(face)));
+}
+
+template <int dim>
+template <typename Visit>
+void SurfaceLoads<dim>::for_each_that_begins(Visit &&visit)
+{
+  has_begun_.resize(loads_.size(), 0);
+  for (int l = 0; l < int(loads_.size()); ++l) {
+    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0)))
+      continue;
+    has_begun_[l] = 1;
+    std::vector<int> loaded;
+    for (const auto &wall : walls_)
+      if (std::find(wall.load.begin(), wall.load.end(), l) != wall.load.end())
+        loaded.push_back(wall.i);
+    for (const auto &face : tractions_)
+      if (face.load == l)
+        loaded.push_back(face.i);
+    visit(loaded);
+  }
 }
 
 /// The tensor a (x) b, symmetric part, in Voigt order without engineering factors.

@@ -3,6 +3,7 @@
 
 #include "core/check.h"
 #include "particles/particles.h"
+#include "particles/rest_blocks.h"
 
 #include <functional>
 #include <memory>
@@ -74,6 +75,11 @@ public:
   /// Overwrites force and torque of all owned particles with those of the present state; time
   /// in s sets the prescribed boundaries.
   virtual void compute(Particles<dim> &particles, double time) = 0;
+
+  /// From now on compute() may leave out what these blocks do not list, and wakes those on which
+  /// anything else than bonds between particles acts. They must outlive it. A force that knows
+  /// nothing of rest computes all.
+  virtual void set_rest(RestBlocks<dim> *) {}
 
   /// Elastic (and contact) energy of the present state, in J.
   virtual double potential_energy(const Particles<dim> &particles) const = 0;

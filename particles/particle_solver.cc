@@ -12,22 +12,49 @@ ParticleSolver<dim>::ParticleSolver(Particles<dim> particles,
 }
 
 template <int dim>
+void ParticleSolver<dim>::let_rest(const RestLimits &limits)
+{
+  const auto for_each_pair = [&](const typename RestBlocks<dim>::VisitPair &visit) {
+    force->for_each_face([&](const FaceView<dim> &face) {
+      if (face.j >= 0)
+        visit(face.i, face.j);
+    });
+  };
+  rest_ = std::make_unique<RestBlocks<dim>>(state, for_each_pair, limits);
+  force->set_rest(rest_.get());
+}
+
+template <int dim>
+template <typename Visit>
+void ParticleSolver<dim>::for_each_awake(Visit &&visit) const
+{
+  if (!rest_ || rest_->all_awake())
+    visit(0, state.n_owned);
+  else
+    for (const auto &[begin, end] : rest_->ranges().stepped)
+      visit(begin, end);
+}
+
+template <int dim>
 void ParticleSolver<dim>::kick(double dt)
 {
-  const int n = state.n_owned;
   for (int c = 0; c < dim; ++c) {
     double *__restrict v = state.velocity[c].data();
     const double *__restrict f = state.force[c].data();
     const double *__restrict m = state.inverse_mass.data();
-    for (int i = 0; i < n; ++i)
-      v[i] += dt * f[i] * m[i];
+    for_each_awake([&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        v[i] += dt * f[i] * m[i];
+    });
   }
   for (int c = 0; c < n_spins<dim>; ++c) {
     double *__restrict w = state.spin[c].data();
     const double *__restrict t = state.torque[c].data();
     const double *__restrict j = state.inverse_inertia.data();
-    for (int i = 0; i < n; ++i)
-      w[i] += dt * t[i] * j[i];
+    for_each_awake([&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        w[i] += dt * t[i] * j[i];
+    });
   }
   dashpots.act(dt, state.inverse_mass, state.force, state.velocity);
 }
@@ -35,23 +62,31 @@ void ParticleSolver<dim>::kick(double dt)
 template <int dim>
 void ParticleSolver<dim>::drift(double dt)
 {
-  const int n = state.n_owned;
+  if (rest_)
+    rest_->look(state);
   for (int c = 0; c < dim; ++c) {
     double *__restrict u = state.displacement[c].data();
     const double *__restrict v = state.velocity[c].data();
-    for (int i = 0; i < n; ++i)
-      u[i] += dt * v[i];
+    for_each_awake([&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        u[i] += dt * v[i];
+    });
   }
   if constexpr (dim == 2) {
     double *__restrict angle = state.rotation[0].data();
     const double *__restrict w = state.spin[0].data();
-    for (int i = 0; i < n; ++i)
-      angle[i] += dt * w[i];
+    for_each_awake([&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        angle[i] += dt * w[i];
+    });
   } else {
     auto &[qw, qx, qy, qz] = state.rotation;
     const auto &[wx, wy, wz] = state.spin;
-    turn_orientations({qw.data(), qx.data(), qy.data(), qz.data()},
-                      {wx.data(), wy.data(), wz.data()}, dt, n);
+    for_each_awake([&, dt](int begin, int end) {
+      turn_orientations(
+          {qw.data() + begin, qx.data() + begin, qy.data() + begin, qz.data() + begin},
+          {wx.data() + begin, wy.data() + begin, wz.data() + begin}, dt, end - begin);
+    });
   }
 }
 

@@ -34,8 +34,22 @@ public:
   /// Velocities and spins of all particles times factor.
   void scale_velocities(double factor);
 
+  /// From now on blocks at rest are passed over. To be called with the forces of the present state;
+  /// afterwards particles that are not awake must not be moved from outside.
+  void let_rest(const RestLimits &limits = {});
+
+  /// Null: all particles take every step.
+  const RestBlocks<dim> *rest() const { return rest_.get(); }
+
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
   core::Dashpots<dim> dashpots; // of absorbing sides
+
+private:
+  /// visit(begin, end) for the particles that take the step.
+  template <typename Visit>
+  void for_each_awake(Visit &&visit) const;
+
+  std::unique_ptr<RestBlocks<dim>> rest_;
 };
 } // namespace ligament::particles

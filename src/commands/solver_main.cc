@@ -1,5 +1,6 @@
 // The program that computes: started by `ligament` with the same arguments.
 #include "core/check.h"
+#include "core/flush_denormals.h"
 #include "src/commands/commands.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
@@ -21,7 +22,9 @@ int dispatch(const CommandLine &line, int, char **)
 }
 } // namespace
 
+// Before any thread is started.
 int main(int argc, char **argv)
 {
+  core::flush_denormals();
   return run_program(argc, argv, dispatch);
 }

@@ -34,12 +34,34 @@ Clock Simulation<dim>::clock_of() const
   return clock;
 }
 
+// An overlap moves all its particles at once.
+template <int dim>
+void Simulation<dim>::let_rest()
+{
+  if (body_.zone && !body_.far)
+    body_.zone->let_rest();
+}
+
+template <int dim>
+void Simulation<dim>::report_rest(RunRecord &record)
+{
+  if (!body_.zone || !body_.zone->rest())
+    return;
+  const double share = body_.zone->rest()->share_at_rest();
+  record.figures["share_at_rest"] = {share, ""};
+  const std::string what = fmt::format("{:.1f} % of the particle-steps", 100 * share);
+  log_.info("not needed: {} (at rest until a wave arrived)", what);
+  if (share > 0)
+    record.skipped.push_back({what, "at rest until a wave arrived"});
+}
+
 template <int dim>
 std::optional<Stop> Simulation<dim>::loop()
 {
   auto bodies = body_.bodies();
   auto &coupler = *body_.coupler;
   coupler.compute_forces(bodies, clock_.now);
+  let_rest();
   while (!clock_.is_at_end()) {
     if (clock_.now.step % coupler.step_ratio() == 0) {
       if (const auto reason = regime_.look(body_, clock_.now, log_))
@@ -108,6 +130,7 @@ RunRecord Simulation<dim>::run()
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;
   recorder_.finish(body_, clock_.now, damping_.energy(), record);
+  report_rest(record);
   record.timing = timers_.rows();
   double discrete = 0;
   for (const auto &row : record.timing)

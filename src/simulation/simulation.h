@@ -38,6 +38,10 @@ public:
 private:
   Clock clock_of() const;
   RunRecord make_record() const;
+  /// Lets blocks of particles rest, in the state from which the loop starts.
+  void let_rest();
+  /// What was left out of the steps, for log and record.
+  void report_rest(RunRecord &record);
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop();
 
