@@ -185,11 +185,12 @@ void measure(const std::string &name, const particles::Packing<dim> &packing, bo
         move(packing), std::make_unique<dem::ManyBodyForce<dim>>(
                            packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture));
     const double dt = 1e-4 * packing.spacing; // a thousandth of the stable one: the motion stays
-    const double step = rate([&] {
+    const auto whole_step = [&] {
       solver.drift(dt);
       solver.compute_forces(0);
       solver.kick(dt);
-    });
+    };
+    const double step = rate(whole_step);
     print(label + ", whole step with fracture check; reference: roofline", step, unit, most);
     print(label + ", bytes of memory per particle; reference: 250 of elastic lattices",
           (resident_bytes() - before) / n, "B", 250);
@@ -201,6 +202,9 @@ void measure(const std::string &name, const particles::Packing<dim> &packing, bo
             rate_of_rows<dim>(packing, material), unit, 1e-6 * roof.flops / flops);
     if (!all_targets)
       break;
+    solver.let_rest(); // all are in motion
+    print(label + ", whole step when regions at rest are looked for; reference: whole step",
+          rate(whole_step), unit, step);
     const double forces = rate([&] { solver.compute_forces(0); });
     print(label + ", forces alone; reference: whole step", forces, unit, step);
     if (target == targets[0].first) {

@@ -39,7 +39,7 @@ struct RestLimits
 
 /// Blocks of particles side by side in memory and in space. A block moves as soon as a particle of
 /// it does; it is awake when it moves or lies within two bonds of one that does, as far as a force
-/// sees (theory.md section 1.10). Blocks only ever wake up. With limits of zero the particles of
+/// sees (theory.md section 1.11). Blocks only ever wake up. With limits of zero the particles of
 /// all other blocks stay where they are to the last bit, whether they are stepped or not.
 template <int dim>
 class RestBlocks
