@@ -71,9 +71,11 @@ public:
   template <typename Visit>
   void for_each_interface(Visit &&visit) const;
 
-  /// The same for the bonds of one particle.
+  /// The same for the bonds of one particle: all, and those of the table.
   template <typename Visit>
   void for_each_bond_of(int particle, Visit &&visit) const;
+  template <typename Visit>
+  void for_each_entry_of(int particle, Visit &&visit) const;
 
   /// The bond no longer carries.
   void remove(const BondId &id);
@@ -146,6 +148,13 @@ void BondNetwork<dim>::for_each_bond_of(int particle, Visit &&visit) const
     if (mask_[i] >> (n_dir + k) & 1)
       visit(BondId{i + s.backward[k], k}, lattice_bond(i + s.backward[k], i, k));
   }
+  for_each_entry_of(i, visit);
+}
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_entry_of(int i, Visit &&visit) const
+{
   for (int b = first_irregular_[i]; b < first_irregular_[i + 1]; ++b)
     if (intact_[irregular_of_[b]])
       visit(BondId{irregular_of_[b], -1}, irregular_[irregular_of_[b]]);

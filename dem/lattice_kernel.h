@@ -119,6 +119,8 @@ public:
                 const std::vector<RowSegment> &segments, int n_particles, double shear_modulus,
                 bool volumetric);
 
+  const LatticeConstants<dim> &constants() const { return constants_; }
+
   /// pressure = lambda_i theta_i of the lattice bonds + other_pressure.
   void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
                   RowWindow &window) const;

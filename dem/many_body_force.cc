@@ -227,7 +227,7 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
   if (plastic_)
-    add_plastic_forces(p);
+    add_plastic_forces(p, work);
   if (work.rest && !work.rest->is_exact() && !work.rest->all_awake())
     clear_forces_at_rest(p);
 }
@@ -271,7 +271,7 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   slices_.add_energies(a, records_, energy.data());
   double sum = surface_.energy(p) + contacts_.energy(p) + interfaces_.energy(p, work.pressure);
   if (plastic_)
-    sum += plastic_energy(p);
+    sum += plastic_energy(p, work);
   for (int i = 0; i < packing_.size(); ++i) {
     sum += energy[i];
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)

@@ -10,6 +10,7 @@
 #include "dem/interfaces.h"
 #include "dem/lattice_kernel.h"
 #include "dem/plastic_blocks.h"
+#include "dem/plastic_rows.h"
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
 
@@ -121,6 +122,7 @@ private:
     std::vector<RowRange> exceeded_rows;
     std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
+    double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
     SliceNearness nearness;
     long nearness_version = -1; // of rest
@@ -164,22 +166,27 @@ private:
   template <typename Visit>
   void for_each_plastic(Visit &&visit) const
   {
-    for (int i = 0; plastic_ && i < packing_.size(); ++i)
-      if (plastic_->is_plastic(i))
-        visit(i);
+    if (plastic_)
+      for (const RowRange &range : plastic_->plastic())
+        for (int i = range.begin; i < range.end; ++i)
+          visit(i);
   }
   bool is_plane_strain() const;
   /// What no traction answers of Du: the parts of both particles, in m.
   std::array<Vector<dim>, 2> plastic_stretch(const Bond<dim> &bond, const Turn<dim> &turn_i,
                                              const Turn<dim> &turn_j) const;
-  /// What plastic strains change in the forces of bonds and in their energy (J).
-  void add_plastic_forces(Particles &particles) const;
-  double plastic_energy(const Particles &particles) const;
-  /// The energy that changes when plastic strains do, in J.
+  PlasticRows<dim> plastic_rows(const Particles &particles, Workspace &work) const;
+  /// visit(i, force, torque, energy): what plastic strains change in those of a particle's bonds;
+  /// of the energy (J) each particle has half.
+  template <typename Visit>
+  void for_each_plastic_force(const Particles &particles, Workspace &work, Visit &&visit) const;
+  void add_plastic_forces(Particles &particles, Workspace &work) const;
+  double plastic_energy(const Particles &particles, Workspace &work) const;
+  /// The energy that changes when plastic strains do, in J, after elastic_forces().
   double flowing_energy(const Particles &particles) const;
   /// Averaged stresses of bonds and loaded faces in the axes of the particles.
-  void particle_stresses(const Particles &particles, const RowRange &range,
-                         std::vector<Tensor> &stress) const;
+  void particle_stresses(const Particles &particles, const PlasticRows<dim> &rows,
+                         const RowRange &range, std::vector<Tensor> &stress) const;
   /// V M : ep of a particle, and the share of one of its bonds, in m^3.
   void update_flowed_volume(int i);
   double flowed_volume(const Bond<dim> &bond, int i) const;

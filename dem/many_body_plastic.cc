@@ -70,13 +70,39 @@ std::array<Vector<dim>, 2> ManyBodyForce<dim>::plastic_stretch(const Bond<dim> &
 }
 
 template <int dim>
-void ManyBodyForce<dim>::add_plastic_forces(Particles &p) const
+PlasticRows<dim> ManyBodyForce<dim>::plastic_rows(const Particles &p, Workspace &work) const
 {
-  for (const RowRange &range : plastic_->around_plastic())
+  return {arrays(p, work),     kernel_.constants(), &bonds_.segments(),
+          plastic_->strains(), plastic_->turned(),  packing_.size()};
+}
+
+template <int dim>
+template <typename Visit>
+void ManyBodyForce<dim>::for_each_plastic_force(const Particles &p, Workspace &work,
+                                                Visit &&visit) const
+{
+  using Rows = PlasticRows<dim>;
+  Rows rows = plastic_rows(p, work);
+  const auto ranges = plastic_->around_plastic();
+  const bool has_rows = bonds_.n_directions() > 0;
+  std::vector<double> sums(Rows::n_forces * TractionScreen::block, 0.);
+  rows.sums = sums.data();
+  if (has_rows)
+    for (const RowRange &range : plastic_->and_neighbours(ranges))
+      turn_plastic(rows, range);
+  for (const RowRange &range : ranges) {
+    if (has_rows)
+      sum_plastic(rows, range, Rows::Sums::forces);
     for (int i = range.begin; i < range.end; ++i) {
-      Vector<dim> force = Vector<dim>::Zero();
-      Spin<dim> torque = Spin<dim>::Zero();
-      bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+      const double *const sum = sums.data() + (i - range.begin);
+      Vector<dim> force;
+      Spin<dim> torque;
+      for (int c = 0; c < dim; ++c)
+        force[c] = sum[c * TractionScreen::block];
+      for (int c = 0; c < n_spins<dim>; ++c)
+        torque[c] = sum[(dim + c) * TractionScreen::block];
+      double energy = sum[n_particle_dofs<dim> * TractionScreen::block];
+      bonds_.for_each_entry_of(i, [&](BondId, const Bond<dim> &b) {
         if (!plastic_->is_plastic(b.i) && !plastic_->is_plastic(b.j))
           return;
         const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
@@ -90,31 +116,38 @@ void ManyBodyForce<dim>::add_plastic_forces(Particles &p) const
         force += first ? Vector<dim>(-f) : f;
         torque += first ? Spin<dim>(cross(part[0], rest) - cross(m.a_i, f))
                         : Spin<dim>(cross(part[1], rest) + cross(m.a_j, f));
+        energy -= 0.25 * f.dot(2 * m.du - part[0] - part[1]);
       });
-      add(p.force, i, force);
-      add(p.torque, i, torque);
+      visit(i, force, torque, energy);
     }
+  }
 }
 
 template <int dim>
-double ManyBodyForce<dim>::plastic_energy(const Particles &p) const
+void ManyBodyForce<dim>::add_plastic_forces(Particles &p, Workspace &work) const
+{
+  work.plastic_energy = 0;
+  for_each_plastic_force(
+      p, work, [&](int i, const Vector<dim> &force, const Spin<dim> &torque, double energy) {
+        add(p.force, i, force);
+        add(p.torque, i, torque);
+        work.plastic_energy += energy;
+      });
+}
+
+template <int dim>
+double ManyBodyForce<dim>::plastic_energy(const Particles &p, Workspace &work) const
 {
   double sum = 0;
-  for (const RowRange &range : plastic_->around_plastic())
-    for (int i = range.begin; i < range.end; ++i)
-      bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-        if (b.i != i || (!plastic_->is_plastic(b.i) && !plastic_->is_plastic(b.j)))
-          return;
-        const BondMotion<dim> m = motion(b, p);
-        sum += b.shear_i * b.area / b.distance * (m.elastic.squaredNorm() - m.du.squaredNorm());
-      });
+  for_each_plastic_force(
+      p, work, [&](int, const Vector<dim> &, const Spin<dim> &, double energy) { sum += energy; });
   return sum;
 }
 
 template <int dim>
 double ManyBodyForce<dim>::flowing_energy(const Particles &p) const
 {
-  double sum = plastic_energy(p) + surface_.energy(p);
+  double sum = work_.plastic_energy + surface_.energy(p);
   for (int i = 0; i < packing_.size(); ++i)
     if (lambda_per_volume_[i] != 0)
       sum += 0.5 * work_.pressure[i] * work_.pressure[i] / lambda_per_volume_[i];
@@ -122,31 +155,34 @@ double ManyBodyForce<dim>::flowing_energy(const Particles &p) const
 }
 
 template <int dim>
-void ManyBodyForce<dim>::particle_stresses(const Particles &p, const RowRange &range,
-                                           std::vector<Tensor> &stress) const
+void ManyBodyForce<dim>::particle_stresses(const Particles &p, const PlasticRows<dim> &rows,
+                                           const RowRange &range, std::vector<Tensor> &stress) const
 {
+  using Matrix = typename PlasticBlocks<dim>::Matrix;
   stress.clear();
+  if (bonds_.n_directions() > 0)
+    sum_plastic(rows, range, PlasticRows<dim>::Sums::stresses);
+  const double twice_shear = 2 * materials_.base().shear_modulus();
   for (int i = range.begin; i < range.end; ++i) {
-    using Matrix = typename PlasticBlocks<dim>::Matrix;
-    Matrix moment = Matrix::Zero();
-    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    Matrix moment;
+    for (int c = 0; c < dim * dim; ++c)
+      moment(c / dim, c % dim) = rows.sums[c * TractionScreen::block + (i - range.begin)];
+    bonds_.for_each_entry_of(i, [&](BondId, const Bond<dim> &b) {
       const BondMotion<dim> m = motion(b, p);
       const Vector<dim> f = bond_force(b, m, work_.pressure);
-      moment += b.i == i ? Matrix(m.a_i * f.transpose()) : Matrix(-m.a_j * f.transpose());
+      moment += b.i == i ? Matrix(f * m.a_i.transpose()) : Matrix(-f * m.a_j.transpose());
     });
     if (std::binary_search(plastic_->always().begin(), plastic_->always().end(), i))
       surface_.for_each_moment(p, work_.pressure,
                                [&](int k, const Vector<dim> &a, const Vector<dim> &f) {
                                  if (k == i)
-                                   moment += a * f.transpose();
+                                   moment += f * a.transpose();
                                });
     const Matrix r = matrix_of(Turn<dim>::of(p, i));
     const Matrix in_plane =
         r.transpose() * (moment + moment.transpose()) * r / (2 * packing_.volume[i]);
     const double zz =
-        is_plane_strain()
-            ? work_.pressure[i] - 2 * materials_.base().shear_modulus() * plastic_->tensor(i)[2]
-            : 0;
+        is_plane_strain() ? work_.pressure[i] - twice_shear * plastic_->tensor(i)[2] : 0;
     stress.push_back(to_tensor(in_plane, zz));
   }
 }
@@ -173,13 +209,25 @@ void ManyBodyForce<dim>::flow(Particles &p)
     return;
   flowed_at_ = time_;
   if (pressure_share_ > 0)
-    for (int i = 0; i < packing_.size(); ++i)
-      if (std::abs(work_.pressure[i]) >= pressure_share_ * yield_traction_)
-        work_.marks[i / TractionScreen::block] = 1;
+    for (int b = 0; b < plastic_->n_blocks(); ++b) {
+      const int begin = b * TractionScreen::block,
+                end = std::min(begin + TractionScreen::block, packing_.size());
+      int found = 0; // without a branch, so that it is done in vectors
+      for (int i = begin; i < end; ++i)
+        found |= std::abs(work_.pressure[i]) >= pressure_share_ * yield_traction_;
+      work_.marks[b] |= std::uint8_t(found);
+    }
   std::vector<std::pair<int, Tensor>> increments;
   std::vector<Tensor> stress, increment(TractionScreen::block);
-  for (const RowRange &range : plastic_->suspects(work_.marks)) {
-    particle_stresses(p, range, stress);
+  const auto suspects = plastic_->suspects(work_.marks);
+  PlasticRows<dim> rows = plastic_rows(p, work_);
+  std::vector<double> sums(PlasticRows<dim>::n_stresses * TractionScreen::block, 0.);
+  rows.sums = sums.data();
+  if (bonds_.n_directions() > 0)
+    for (const RowRange &range : plastic_->and_neighbours(suspects))
+      turn_plastic(rows, range);
+  for (const RowRange &range : suspects) {
+    particle_stresses(p, rows, range, stress);
     plastic_->law().flow(range.end - range.begin, stress.data(), plastic_->history() + range.begin,
                          increment.data());
     for (int i = range.begin; i < range.end; ++i)
@@ -216,10 +264,10 @@ template std::array<Vector<2>, 2>
 ManyBodyForce<2>::plastic_stretch(const Bond<2> &, const Turn<2> &, const Turn<2> &) const;
 template std::array<Vector<3>, 2>
 ManyBodyForce<3>::plastic_stretch(const Bond<3> &, const Turn<3> &, const Turn<3> &) const;
-template void ManyBodyForce<2>::add_plastic_forces(Particles &) const;
-template void ManyBodyForce<3>::add_plastic_forces(Particles &) const;
-template double ManyBodyForce<2>::plastic_energy(const Particles &) const;
-template double ManyBodyForce<3>::plastic_energy(const Particles &) const;
+template void ManyBodyForce<2>::add_plastic_forces(Particles &, Workspace &) const;
+template void ManyBodyForce<3>::add_plastic_forces(Particles &, Workspace &) const;
+template double ManyBodyForce<2>::plastic_energy(const Particles &, Workspace &) const;
+template double ManyBodyForce<3>::plastic_energy(const Particles &, Workspace &) const;
 template double ManyBodyForce<2>::flowed_volume(const Bond<2> &, int) const;
 template double ManyBodyForce<3>::flowed_volume(const Bond<3> &, int) const;
 template void ManyBodyForce<2>::update_flowed_volume(int);

@@ -15,7 +15,8 @@ PlasticBlocks<dim>::PlasticBlocks(const BondNetwork<dim> &bonds,
                                   std::unique_ptr<const YieldLaw> law, std::vector<int> always)
     : n_(bonds.n_particles()), law_(std::move(law)), always_(std::move(always)),
       plastic_((n_ + block - 1) / block, 0), always_blocks_(plastic_.size(), 0),
-      neighbours_(plastic_.size()), numbers_(n_numbers * std::size_t(n_), false)
+      neighbours_(plastic_.size()), numbers_(n_numbers * std::size_t(n_), false),
+      turned_(2 * dim * dim * std::size_t(n_), false)
 {
   std::sort(always_.begin(), always_.end());
   always_.erase(std::unique(always_.begin(), always_.end()), always_.end());
@@ -58,6 +59,25 @@ template <int dim>
 std::vector<RowRange> PlasticBlocks<dim>::around_plastic() const
 {
   return with_neighbours(plastic_);
+}
+
+template <int dim>
+std::vector<RowRange> PlasticBlocks<dim>::plastic() const
+{
+  std::vector<RowRange> found;
+  for (int b = 0; b < n_blocks(); ++b)
+    if (plastic_[b])
+      found.push_back({b * block, std::min((b + 1) * block, n_)});
+  return found;
+}
+
+template <int dim>
+std::vector<RowRange> PlasticBlocks<dim>::and_neighbours(const std::vector<RowRange> &blocks) const
+{
+  std::vector<std::uint8_t> chosen(plastic_.size(), 0);
+  for (const RowRange &range : blocks)
+    chosen[range.begin / block] = 1;
+  return with_neighbours(chosen);
 }
 
 template <int dim>

@@ -32,6 +32,11 @@ public:
   /// Blocks with plastic strains and their neighbours: whose forces they change.
   std::vector<RowRange> around_plastic() const;
 
+  /// Blocks with plastic strains.
+  std::vector<RowRange> plastic() const;
+  /// The blocks and their neighbours.
+  std::vector<RowRange> and_neighbours(const std::vector<RowRange> &blocks) const;
+
   bool is_plastic(int i) const { return plastic_[i / TractionScreen::block]; }
   int n_plastic_blocks() const;
   /// Plastic strain of a particle, in its own axes.
@@ -44,6 +49,13 @@ public:
   /// V M : strain of a particle (m^3), theory.md eq. (D20): what its dilatation does not feel.
   const double *flowed_volume() const { return number(7); }
   double &flowed_volume(int i) { return number(7)[i]; }
+  /// Plastic strains of all particles, one stream per component.
+  std::array<const double *, 6> strains() const
+  {
+    return {number(0), number(1), number(2), number(3), number(4), number(5)};
+  }
+  /// Scratch: 2 dim^2 streams of one number per particle.
+  double *turned() { return turned_.data(); }
   /// The law's number of each particle.
   double *history() { return number(6); }
 
@@ -58,5 +70,6 @@ private:
   std::vector<std::uint8_t> plastic_, always_blocks_; // of the blocks
   std::vector<std::vector<int>> neighbours_;          // of the blocks
   core::LargeArray numbers_; // strain, history, flowed volume: one stream per number
+  core::LargeArray turned_;
 };
 } // namespace ligament::dem
