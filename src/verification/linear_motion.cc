@@ -160,18 +160,27 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
 }
 
 template <int dim>
-Eigen::VectorXd LinearMotion<dim>::conjugate_gradients(Eigen::VectorXd right, double tolerance)
+Eigen::VectorXd LinearMotion<dim>::conjugate_gradients(const Eigen::VectorXd &right,
+                                                       double tolerance)
 {
-  for (const auto &motion : free_motions_) // round-off that nothing can balance
-    right -= inner(motion, right) * motion;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), r = right, p = right;
+  const auto balance = [&](Eigen::VectorXd &r) { // round-off that nothing can balance
+    r = admissible<dim>(body_, r);
+    for (const auto &motion : free_motions_)
+      r -= inner(motion, r) * motion;
+  };
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), r = right;
+  balance(r);
+  Eigen::VectorXd p = r;
   double square = inner(r, r);
   const double stop = tolerance * tolerance * square;
   for (int k = 0; k < 20000 && square > stop; ++k) {
-    const Eigen::VectorXd ap = -accelerations(p, false);
+    // Of one amplitude: accelerations by dead loads would drown those of smaller ones in round-off.
+    const double scale = amplitude / std::sqrt(inner(p, p));
+    const Eigen::VectorXd ap = -accelerations(scale * p, false) / scale;
     const double step = square / inner(p, ap);
     x += step * p;
     r -= step * ap;
+    balance(r);
     const double next = inner(r, r);
     p = r + next / square * p;
     square = next;
@@ -252,7 +261,7 @@ Eigen::VectorXd LinearMotion<dim>::affine(const Eigen::Matrix<double, dim, dim> 
 }
 
 template <int dim>
-double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x) const
+double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x, const Place &counts) const
 {
   constexpr int n_rigid = dim + n_spins<dim>;
   Eigen::Matrix<double, n_rigid, n_rigid> matrix;
@@ -274,6 +283,8 @@ double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x) const
   double largest = 0;
   const auto compare = [&](const Vector<dim> &from, const Vector<dim> &to,
                            const Vector<dim> &relative) {
+    if (counts && !counts((from + to) / 2))
+      return;
     const Vector<dim> rest =
         relative - (rigid_motions<dim>(to) - rigid_motions<dim>(from)) * motion;
     const double strain = rest.norm() / (to - from).norm();

@@ -4,6 +4,7 @@
 #include "src/simulation/coupled_body.h"
 
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace ligament::program
@@ -46,9 +47,12 @@ public:
   Eigen::VectorXd affine(const Eigen::Matrix<double, dim, dim> &gradient,
                          const Vector<dim> &translation = Vector<dim>::Zero()) const;
 
+  using Place = std::function<bool(const Vector<dim> &)>;
+
   /// Largest |relative displacement| of neighbours (bonded particles, ends of cell edges) over
-  /// their distance, after the best rigid motion is taken out of x.
-  double largest_strain(const Eigen::VectorXd &x) const;
+  /// their distance, after the best rigid motion is taken out of x; where `counts` is given only of
+  /// those whose middle it accepts.
+  double largest_strain(const Eigen::VectorXd &x, const Place &counts = {}) const;
 
   /// The body's present velocities and spins.
   Eigen::VectorXd velocities() const;
@@ -61,7 +65,7 @@ private:
   Vector<dim> particle(const Eigen::VectorXd &x, int i) const;
   Vector<dim> node(const Eigen::VectorXd &x, int i) const;
   void find_free_motions();
-  Eigen::VectorXd conjugate_gradients(Eigen::VectorXd right, double tolerance);
+  Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd &right, double tolerance);
 
   CoupledBody<dim> &body_;
   int n_particles_, n_particle_values_, n_nodes_ = 0;
