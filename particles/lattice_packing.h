@@ -1,7 +1,6 @@
 // Packings on a lattice: cells, faces and initial cracks of a box specimen or of a zone in it.
 #pragma once
 
-#include "core/box_union.h"
 #include "particles/packing.h"
 #include "particles/specimen.h"
 
@@ -35,7 +34,6 @@ struct LatticeParameters : SpecimenParameters<dim>
 {
   LatticeKind kind = dim == 2 ? LatticeKind::hexagonal : LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero(); // rad; 2D angle, 3D rotation vector
-  core::BoxUnion<dim> zone_parts; // what of the zone is packed; empty: all of it
 };
 
 /// Packs the zone of the specimen.

@@ -64,7 +64,8 @@ private:
 
   const SpecimenShape<dim> shape_;
   const double spacing_, thickness_;
-  Vector<dim> zone_lower_, zone_upper_; // infinite where the side is not coupled
+  Vector<dim> zone_lower_, zone_upper_;     // infinite where the side is not coupled
+  const core::BoxUnion<dim> parts_of_zone_; // empty: all of it
   Seeds<dim> seeds_;
   const std::vector<double> given_radius_; // before healing
   const PowerDiagram<dim> diagram_;
@@ -85,7 +86,8 @@ double bin_size(double spacing)
 template <int dim>
 Packer<dim>::Packer(const SpecimenParameters<dim> &p, Seeds<dim> seeds)
     : shape_(p), spacing_(p.spacing), thickness_(dim == 2 ? p.thickness : 1),
-      seeds_(sorted_by_id(seeds)), given_radius_(healed(seeds_, bin_size<dim>(p.spacing))),
+      parts_of_zone_(p.zone_parts), seeds_(sorted_by_id(seeds)),
+      given_radius_(healed(seeds_, bin_size<dim>(p.spacing))),
       diagram_(seeds_, bin_size<dim>(p.spacing)), particle_of_(seeds_.size(), -1)
 {
   for (int a = 0; a < dim; ++a) {
@@ -111,7 +113,8 @@ bool Packer<dim>::is_in_zone(const Vector<dim> &lower, const Vector<dim> &upper)
 {
   const double tolerance = 1e-9 * spacing_;
   return ((lower - zone_lower_).array() >= -tolerance).all() &&
-         ((zone_upper_ - upper).array() >= -tolerance).all();
+         ((zone_upper_ - upper).array() >= -tolerance).all() &&
+         (parts_of_zone_.boxes.empty() || parts_of_zone_.covers(lower, upper, tolerance));
 }
 
 template <int dim>

@@ -1,7 +1,7 @@
 // What a packing fills: a box with holes, notches and cracks, or a zone of it.
 #pragma once
 
-#include "core/types.h"
+#include "core/box_union.h"
 
 #include <vector>
 
@@ -39,5 +39,6 @@ struct SpecimenParameters
   std::vector<CrackPoints<dim>> cracks;
   Vector<dim> zone_lower = Vector<dim>::Constant(-1e300); // m, what is packed
   Vector<dim> zone_upper = Vector<dim>::Constant(1e300);
+  core::BoxUnion<dim> zone_parts; // what of that; empty: all of it
 };
 } // namespace ligament::particles

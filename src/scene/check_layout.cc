@@ -132,12 +132,6 @@ void check_widths(const Scene &scene, const Layout &layout, Findings &f)
 bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
 {
   layout.boxes = zone_shape<3>(scene);
-  if (scene.zone.is_irregular()) {
-    f.error(boxes_key, "\"boxes\" in /discrete_zone with an irregular packing",
-            "only lattice packings can fill a zone of several boxes yet",
-            "choose a lattice packing, or one \"region\"");
-    return false;
-  }
   const Vector<3> lower(layout.specimen.lower.data()), upper(layout.specimen.upper.data());
   if (layout.boxes.covers(lower, upper, 1e-9 * scene.specimen.size[0])) {
     f.error(boxes_key,

@@ -45,6 +45,8 @@ void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
     p.zone_lower = p.zone_lower.cwiseMin(box.lower).cwiseMax(-through);
     p.zone_upper = p.zone_upper.cwiseMax(box.upper).cwiseMin(through);
   }
+  if (scene.zone.boxes.size() > 1)
+    p.zone_parts = zone_shape<dim>(scene);
 }
 
 template <int dim>
@@ -52,8 +54,6 @@ particles::LatticeParameters<dim> lattice_of(const Scene &scene)
 {
   particles::LatticeParameters<dim> p;
   set_specimen<dim>(scene, p);
-  if (scene.zone.extent == DiscreteZone::Extent::box && scene.zone.boxes.size() > 1)
-    p.zone_parts = zone_shape<dim>(scene);
   p.kind = particles::lattice_kind(scene.zone.packing);
   for (int c = 0; c < n_spins<dim>; ++c)
     p.orientation[c] = scene.zone.orientation[c];

@@ -109,21 +109,26 @@ std::vector<Result> ring_2d(const std::string &name, double cell_size, const Arr
 }
 
 /// Zone of several boxes in a closed overlap; a stress with all components.
-std::vector<Result> boxes_2d(const std::string &name, Scene (*body)(double poissons_ratio))
+std::vector<Result> boxes_2d(const std::string &name, Scene (*body)(double poissons_ratio),
+                             const Arrangement &packing)
 {
   Deviation worst;
-  for (const double nu : {0., 0.3, 0.45})
-    load<2>(body(nu), {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
+  for (const double nu : {0., 0.3, 0.45}) {
+    Scene scene = body(nu);
+    packing.apply(scene);
+    load<2>(scene, {0, 1, 2, 3}, {0.8, -0.5, 0.4}, worst);
+  }
   return report(name, worst);
 }
 
 std::vector<Result> boxes_3d(const std::string &name, const Point &size,
-                             const std::vector<ZoneBox> &boxes)
+                             const std::vector<ZoneBox> &boxes, const Arrangement &packing)
 {
   Deviation worst;
   Scene scene = unit_scene(3, size, 0.3);
   add_far_field(scene, {23, 22, 24}, 3.07);
   set_boxes(scene, boxes);
+  packing.apply(scene);
   scene.coupling.overlap_cells = 2;
   scene.coupling.transition_cells = 1;
   load<3>(scene, {0, 1, 2, 3, 4, 5}, {0.8, -0.5, 0.6, 0.3, -0.2, 0.4}, worst);
@@ -187,18 +192,29 @@ std::vector<Case> patch_cases()
           {"patch_ring_2d_growing", ring + ", growing cells, hexagonal, h/d 3.07", false,
            [=] { return ring_2d("patch_ring_2d_growing", 3.07, growing); }},
           {"patch_l_shape_2d", "zone of two boxes with a re-entrant corner, hexagonal", false,
-           [] { return boxes_2d("patch_l_shape_2d", l_shape_2d); }},
+           [] { return boxes_2d("patch_l_shape_2d", l_shape_2d, {}); }},
+          {"patch_l_shape_2d_random", "zone of two boxes with a re-entrant corner, random", false,
+           [=] { return boxes_2d("patch_l_shape_2d_random", l_shape_2d, equal); }},
           {"patch_two_zones_2d", "two zones whose transitions meet, hexagonal", false,
-           [] { return boxes_2d("patch_two_zones_2d", two_zones_2d); }},
+           [] { return boxes_2d("patch_two_zones_2d", two_zones_2d, {}); }},
+          {"patch_two_zones_2d_random", "two zones whose transitions meet, random, radii 1 to 3",
+           false, [=] { return boxes_2d("patch_two_zones_2d_random", two_zones_2d, unequal); }},
           {"patch_l_shape_3d", "zone of two boxes with a re-entrant edge, FCC, h/d 3.07", true,
            [] {
              return boxes_3d("patch_l_shape_3d", {49, 48, 38},
-                             {{{-17, -16, -11}, {17, 6, 11}}, {{-17, -16, -11}, {5, 16, 11}}});
+                             {{{-17, -16, -11}, {17, 6, 11}}, {{-17, -16, -11}, {5, 16, 11}}}, {});
+           }},
+          {"patch_l_shape_3d_random", "zone of two boxes with a re-entrant edge, random, h/d 3.07",
+           true,
+           [=] {
+             return boxes_3d("patch_l_shape_3d_random", {49, 48, 38},
+                             {{{-17, -16, -11}, {17, 6, 11}}, {{-17, -16, -11}, {5, 16, 11}}},
+                             equal);
            }},
           {"patch_two_zones_3d", "two zones, FCC, h/d 3.07", true,
            [] {
              return boxes_3d("patch_two_zones_3d", {72, 37, 37},
-                             {{{-28, -11, -11}, {-6, 11, 11}}, {{6, -11, -11}, {28, 11, 11}}});
+                             {{{-28, -11, -11}, {-6, 11, 11}}, {{6, -11, -11}, {28, 11, 11}}}, {});
            }},
           {"patch_band_3d", band + ", FCC, h/d 3.1", false,
            [] { return band_3d("patch_band_3d", 3.1, {}); }},
