@@ -11,10 +11,12 @@ namespace ligament::coupling
 {
 namespace
 {
+/// No scheme has pads; row sums are those of a lumped mass.
 template <int dim>
-OverlapParameters<dim> without_pads(OverlapParameters<dim> parameters)
+OverlapParameters<dim> adapted(OverlapParameters<dim> parameters, Scheme scheme)
 {
   parameters.has_pads = false;
+  parameters.lumps_mass = scheme == Scheme::xiao_belytschko_lumped;
   return parameters;
 }
 } // namespace
@@ -25,10 +27,13 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
                                     core::Timers &timers)
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(),
-               without_pads(std::move(overlap))),
-      transfer_(overlap_, bodies.zone->state), shares_(weigh(bodies)),
+               adapted(std::move(overlap), parameters.scheme)),
+      transfer_(overlap_, bodies.zone->state),
+      shares_(weigh_members(overlap_, transfer_, bodies.zone->state, *bodies.zone->force)),
       weighted_transfer_(overlap_, bodies.zone->state),
-      projector_(overlap_, weighted_transfer_, bodies.zone->state, parameters.solver),
+      projector_(overlap_,
+                 parameters.damper_form == DamperForm::printed ? transfer_ : weighted_transfer_,
+                 parameters.solver),
       mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
@@ -54,27 +59,6 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
                   [](double e) { return e != 0; }))
     find_dead_load(bodies);
   take_velocities(bodies);
-}
-
-template <int dim>
-std::vector<double> BridgingDomain<dim>::weigh(Bodies<dim> &bodies) const
-{
-  auto &zone = bodies.zone->state;
-  const std::vector<double> weights =
-      parameters_.point_weight_floor > 0
-          ? point_weights(overlap_, zone, parameters_.point_weight_floor)
-          : mean_weights(overlap_, zone, *bodies.zone->force);
-  bodies.zone->force->set_energy_weights(weights);
-  std::vector<double> shares;
-  for (int k = 0; k < transfer_.size(); ++k) {
-    const int i = transfer_.particle(k);
-    shares.push_back(weights[i]);
-    zone.mass[i] *= weights[i];
-    zone.inertia[i] *= weights[i];
-    zone.inverse_mass[i] /= weights[i];
-    zone.inverse_inertia[i] /= weights[i];
-  }
-  return shares;
 }
 
 // The forces and torques that a uniform strain would leave at the members, their neighbours and the
@@ -255,11 +239,6 @@ void BridgingDomain<dim>::push(Bodies<dim> &bodies, double dt)
   write_near_velocities(*bodies.far);
 }
 
-// Of `acceleration` one kick and one projection of all velocities: what is projected is the
-// acceleration, because the velocities before fulfil the constraint. The schemes after Xiao and
-// Belytschko move with the unconstrained acceleration and correct velocities at whole steps. All
-// dampers act at whole steps, on velocities that the scheme carries: there they take energy
-// whatever the step (theory.md section 3.9).
 template <int dim>
 void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
@@ -273,34 +252,58 @@ void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(step.dt, step.time);
   }
-  const bool corrects = corrects_at_whole_steps(), damps = parameters_.fine_damper > 0;
-  if (!corrects && !damps) {
-    push(bodies, step.dt);
-    project(bodies);
+  const bool damps = parameters_.fine_damper > 0;
+  if (damps && parameters_.damper_form == DamperForm::symmetrised) {
+    move_and_damp(bodies, step.dt);
     return;
   }
-  if (!corrects)
+  move(bodies, step.dt);
+  if (damps) {
     read_velocities(bodies.zone->state, before_damper_);
-  push(bodies, step.dt / 2);
-  if (!corrects)
-    project(bodies);
-  else if (damps)
-    read_velocities(bodies.zone->state, before_damper_);
-  if (damps)
     damp(bodies, step.dt);
-  if (corrects) {
-    if (damps)
-      book_damper(bodies);
-    project(bodies);
+    book_damper(bodies);
   }
-  push(bodies, step.dt / 2);
-  if (!corrects) {
+}
+
+// Of `acceleration` one kick and one projection of all velocities: what is projected is the
+// acceleration, because the velocities before fulfil the constraint. The schemes after Xiao and
+// Belytschko move with the unconstrained acceleration and correct velocities at whole steps.
+template <int dim>
+void BridgingDomain<dim>::move(Bodies<dim> &bodies, double dt)
+{
+  const bool corrects = corrects_at_whole_steps();
+  push(bodies, corrects ? dt / 2 : dt);
+  project(bodies);
+  if (corrects)
+    push(bodies, dt / 2);
+}
+
+// The same, with the damper at whole steps, on velocities that the scheme carries: there it takes
+// energy whatever the step (theory.md section 3.9).
+template <int dim>
+void BridgingDomain<dim>::move_and_damp(Bodies<dim> &bodies, double dt)
+{
+  const bool corrects = corrects_at_whole_steps();
+  if (!corrects)
+    read_velocities(bodies.zone->state, before_damper_);
+  push(bodies, dt / 2);
+  if (corrects)
+    read_velocities(bodies.zone->state, before_damper_);
+  else
+    project(bodies);
+  damp(bodies, dt);
+  if (corrects) {
+    book_damper(bodies);
+    project(bodies);
+    push(bodies, dt / 2);
+  } else {
+    push(bodies, dt / 2);
     project(bodies);
     book_damper(bodies);
   }
 }
 
-// v -= Q g Q v, theory.md eq. (B7).
+// v -= Q g Q v, or v -= g Q v as printed (theory.md eq. (B7)).
 template <int dim>
 void BridgingDomain<dim>::damp(Bodies<dim> &bodies, double dt)
 {

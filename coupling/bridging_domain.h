@@ -17,8 +17,6 @@ struct BridgingDomainParameters
   int multiplier_cells = 1;
   /// Normal strains (xx, yy, zz) at which constant forces cancel the ghost forces; 0: none.
   std::array<double, 3> reference_strain = {};
-  /// Above 0: weights are a at the centres, at least this, in place of the means over the cells.
-  double point_weight_floor = 0;
   std::string solver = "eigen";
 };
 
@@ -50,13 +48,14 @@ public:
   int n_multipliers() const { return constraint_->n_multipliers(); }
 
 private:
-  std::vector<double> weigh(Bodies<dim> &bodies) const;
   void find_dead_load(Bodies<dim> &bodies);
   void read_velocities(const particles::Particles<dim> &zone, Components<dim> &v) const;
   void write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const;
   void write_near_velocities(fem::FemSolver<dim> &far) const;
   bool corrects_at_whole_steps() const;
   void push(Bodies<dim> &bodies, double dt);
+  void move(Bodies<dim> &bodies, double dt);
+  void move_and_damp(Bodies<dim> &bodies, double dt);
   void damp(Bodies<dim> &bodies, double dt);
   void book_damper(const Bodies<dim> &bodies);
   void project(Bodies<dim> &bodies);
@@ -67,7 +66,7 @@ private:
   Transfer<dim> transfer_;              // with the unweighted masses, for the constraint
   std::vector<double> shares_;          // a of the members
   Transfer<dim> weighted_transfer_;     // with the weighted masses, for the damper
-  FluctuationProjector<dim> projector_; // orthogonal in the weighted masses
+  FluctuationProjector<dim> projector_; // orthogonal in the weighted masses, unless printed
   std::vector<double> rate_;            // c_f of the members, 1/s
   std::unique_ptr<VelocityConstraint<dim>> constraint_;
 

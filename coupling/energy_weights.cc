@@ -42,21 +42,32 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
 }
 
 template <int dim>
-std::vector<double> point_weights(const Overlap<dim> &overlap,
-                                  const particles::Particles<dim> &particles, double floor)
+std::vector<double> weigh_members(const Overlap<dim> &overlap, const Transfer<dim> &transfer,
+                                  particles::Particles<dim> &particles,
+                                  particles::ParticleForce<dim> &force)
 {
-  std::vector<double> weights(particles.n_owned, 1.);
-  for (const auto &m : overlap.members)
-    weights[m.particle] = std::max(m.weight, floor);
-  return weights;
+  const std::vector<double> weights = mean_weights(overlap, particles, force);
+  force.set_energy_weights(weights);
+  std::vector<double> shares;
+  for (int k = 0; k < transfer.size(); ++k) {
+    const int i = transfer.particle(k);
+    shares.push_back(weights[i]);
+    particles.mass[i] *= weights[i];
+    particles.inertia[i] *= weights[i];
+    particles.inverse_mass[i] /= weights[i];
+    particles.inverse_inertia[i] /= weights[i];
+  }
+  return shares;
 }
 
 template std::vector<double> mean_weights(const Overlap<2> &, const particles::Particles<2> &,
                                           const particles::ParticleForce<2> &);
 template std::vector<double> mean_weights(const Overlap<3> &, const particles::Particles<3> &,
                                           const particles::ParticleForce<3> &);
-template std::vector<double> point_weights(const Overlap<2> &, const particles::Particles<2> &,
-                                           double);
-template std::vector<double> point_weights(const Overlap<3> &, const particles::Particles<3> &,
-                                           double);
+template std::vector<double> weigh_members(const Overlap<2> &, const Transfer<2> &,
+                                           particles::Particles<2> &,
+                                           particles::ParticleForce<2> &);
+template std::vector<double> weigh_members(const Overlap<3> &, const Transfer<3> &,
+                                           particles::Particles<3> &,
+                                           particles::ParticleForce<3> &);
 } // namespace ligament::coupling

@@ -1,7 +1,7 @@
 // How much of each particle belongs to the discrete model where energies and masses are blended.
 #pragma once
 
-#include "coupling/overlap.h"
+#include "coupling/transfer.h"
 
 namespace ligament::coupling
 {
@@ -13,8 +13,10 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
                                  const particles::Particles<dim> &particles,
                                  const particles::ParticleForce<dim> &force);
 
-/// a at the centres, at least `floor`: known to shorten the stable step; for comparison.
+/// Weighs masses, inertias and energies by these. Returns the weights of the members in the
+/// transfer's order.
 template <int dim>
-std::vector<double> point_weights(const Overlap<dim> &overlap,
-                                  const particles::Particles<dim> &particles, double floor);
+std::vector<double> weigh_members(const Overlap<dim> &overlap, const Transfer<dim> &transfer,
+                                  particles::Particles<dim> &particles,
+                                  particles::ParticleForce<dim> &force);
 } // namespace ligament::coupling

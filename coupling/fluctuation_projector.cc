@@ -2,15 +2,29 @@
 
 namespace ligament::coupling
 {
+namespace
+{
+/// Of every particle, in kg; 0 for those that are no free members.
+template <int dim>
+std::vector<double> particle_masses(const Overlap<dim> &overlap, const Transfer<dim> &transfer)
+{
+  std::vector<double> mass(overlap.member_of_particle.size());
+  for (int k = 0; k < transfer.size(); ++k)
+    mass[transfer.particle(k)] = transfer.mass(k);
+  return mass;
+}
+} // namespace
+
 template <int dim>
 FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
                                                 const Transfer<dim> &transfer,
-                                                const particles::Particles<dim> &particles,
                                                 const std::string &solver)
     : transfer_(transfer),
       carried_(
           overlap,
-          [&](const typename Overlap<dim>::Member &m) { return particles.mass[m.particle]; },
+          [mass = particle_masses(overlap, transfer)](const typename Overlap<dim>::Member &m) {
+            return mass[m.particle];
+          },
           solver),
       nodal_(overlap.n_nodes(), dim)
 {

@@ -6,13 +6,14 @@
 
 namespace ligament::coupling
 {
-/// Q = 1 - Phi (Phi^T M Phi)^-1 Phi^T M over the members that are not pad (theory.md eq. (C1)).
+/// Q = 1 - Phi (Phi^T M Phi)^-1 Phi^T M over the members that are not pad, M the transfer's masses
+/// (theory.md eq. (C4)).
 template <int dim>
 class FluctuationProjector
 {
 public:
   FluctuationProjector(const Overlap<dim> &overlap, const Transfer<dim> &transfer,
-                       const particles::Particles<dim> &particles, const std::string &solver);
+                       const std::string &solver);
 
   /// w <- Q w, in place; one array per component in the order of the transfer's members.
   void project(Components<dim> &w) const;

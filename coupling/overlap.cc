@@ -52,7 +52,7 @@ double Overlap<dim>::weight(const Vector<dim> &x) const
   case WeightShape::cosine:
     return (1 - std::cos(M_PI * s)) / 2;
   case WeightShape::constant:
-    return s < 1 ? 0.5 : 1;
+    return s <= 0 ? 0 : s < 1 ? 0.5 : 1; // no particle lies beyond s = 0
   case WeightShape::cubic:
     break;
   }
@@ -198,8 +198,10 @@ void Overlap<dim>::find_cells()
       cell.size = mesh.cell_size[c].minCoeff();
       const bool is_fine = cell.size < fine_cell * parameters.spacing;
       cell.consistent_share =
-          std::min(is_fine ? fine_cell_share : 1.,
-                   layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells);
+          parameters.lumps_mass
+              ? 0.
+              : std::min(is_fine ? fine_cell_share : 1.,
+                         layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells);
       cell.shape = condense(c);
       for (int a = 0; a < n_cell_nodes; ++a)
         cell.nodes[a] = near[cell.shape.nodes[a]];

@@ -27,6 +27,7 @@ struct OverlapParameters
   /// Particles at the edge of the packing, whose cells are not closed, move with the mesh. Without
   /// pads `depth` lies half a spacing outside the outermost centre.
   bool has_pads = true;
+  bool lumps_mass = false; // of all near cells: mu = 0
 };
 
 /// The overlap of the discrete zone, in one or several pieces, with the mesh (theory.md, "Overlap

@@ -16,7 +16,8 @@ class VelocityConstraint
 {
 public:
   /// shares: a of the members in the transfer's order, which holds the unweighted masses m; their
-  /// present masses are a m. mass: of the near nodes, kg. multiplier_cells: edge of the
+  /// present masses are a m. mass: of the near nodes, kg, diagonal for `xiao_belytschko_lumped`.
+  /// multiplier_cells: edge of the
   /// multipliers' hats in cells, 1 for the shape functions of the mesh.
   VelocityConstraint(Scheme scheme, const Overlap<dim> &overlap, const Transfer<dim> &transfer,
                      const std::vector<double> &shares, const Eigen::SparseMatrix<double> &mass,

@@ -50,8 +50,9 @@ double noise_left(const Scene &scene, long n_steps)
   return series.back() / series.front();
 }
 
-/// Largest error of strain between neighbours over the applied uniaxial strain, static solve.
-double patch_error(Scene scene)
+/// Largest error of strain between neighbours over the applied uniaxial strain, static solve; of
+/// those farther than this from the free sides.
+double patch_error(Scene scene, double from_sides = 0)
 {
   scene.coupling.transition_cells = 2;
   const Strain<2> stress = tiny * Strain<2>(0, 1, 0);
@@ -62,7 +63,9 @@ double patch_error(Scene scene)
   Eigen::Matrix2d gradient;
   gradient << strain[0], strain[2] / 2, strain[2] / 2, strain[1];
   const Eigen::VectorXd error = motion.solve() - motion.affine(gradient);
-  return motion.largest_strain(error) / gradient.norm();
+  const double inside = scene.specimen.size[0] / 2 - from_sides;
+  const auto counts = [inside](const Vector<2> &x) { return std::abs(x[0]) <= inside; };
+  return motion.largest_strain(error, counts) / gradient.norm();
 }
 
 /// Step that the set-up calls stable over that of the plain discrete body.
@@ -150,8 +153,8 @@ std::vector<Result> wave_weaknesses()
   const auto half = measure_wave<2>(p);
   // theory.md eq. (B9), cubic; the multipliers see part of what it counts.
   const double formula = 1 - std::exp(-9 * std::log(3.) * half.courant / 2);
-  p = wave(Scheme::xiao_belytschko_lumped, 4);
-  p.fine_damper = 0;
+  p.scheme = Scheme::xiao_belytschko_lumped;
+  p.wave_length = 4;
   const double lumped = measure_wave<2>(p).missing;
   const double pointwise = measure_wave<2>(wave(Scheme::pointwise, 1)).reflected;
   p = wave(Scheme::acceleration, 4);
@@ -192,7 +195,7 @@ std::vector<Result> patch_weaknesses()
   Scene scene = band(Scheme::acceleration);
   const double plain = patch_error(scene);
   scene.coupling.weight = WeightShape::constant;
-  const double constant = patch_error(scene);
+  const double constant = patch_error(scene, 4);
   scene.coupling.weight = WeightShape::cubic;
   // The loads' uniaxial stress along y, and half of it.
   const double nu = scene.material.poissons_ratio, strain = tiny * (1 - nu * nu);
@@ -201,7 +204,7 @@ std::vector<Result> patch_weaknesses()
     return patch_error(scene) / plain;
   };
   return {{name + "constant_weight_strain", constant, 0.17, {}, Bound::at_least},
-          {name + "ghost_correction_at_its_state", corrected(1), no_bound, {}},
+          {name + "ghost_correction_at_its_state", corrected(1), 1e-12, {}},
           {name + "ghost_correction_at_twice_its_state", corrected(0.5), 0.4, {}, Bound::at_least}};
 }
 } // namespace

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace ligament
 {
 namespace
@@ -260,6 +263,100 @@ TEST(BridgingDomain, WeightedForcesBalance)
     zone.displacement[1][i] += step;
     EXPECT_NEAR(-(above - below) / (2 * step), force[1][i], 1e-6 * size / zone.n_owned);
   }
+}
+
+// theory.md eq. (B5): with a lumped mass all entries of the multipliers' matrix are positive.
+TEST(BridgingDomain, RowSumsAreThoseOfALumpedMass)
+{
+  const auto body = make_coupled_bodies(weighted_band<2>(Scheme::xiao_belytschko_lumped));
+  const Eigen::MatrixXd mass = body.bridging->near_mass();
+  EXPECT_EQ((mass - Eigen::MatrixXd(mass.diagonal().asDiagonal())).norm(), 0);
+}
+
+// theory.md eq. (B6): at the state of reference, here of stress along y only, nothing moves in the
+// overlap; far from it the specimen's ends do.
+TEST(BridgingDomain, TheGhostForceCorrectionIsExactAtItsState)
+{
+  const auto largest_velocity = [](bool corrected) {
+    auto p = weighted_band<2>(Scheme::acceleration);
+    const double nu = p.material.poissons_ratio;
+    const std::array<double, 3> strain = {-1e-12 * nu / (1 - nu), 1e-12, 0};
+    if (corrected)
+      p.bridging->reference_strain = strain;
+    auto body = make_coupled_bodies(p);
+    auto &zone = body.zone->state;
+    for (int c = 0; c < 2; ++c) {
+      for (int i = 0; i < zone.n_owned; ++i)
+        zone.displacement[c][i] = strain[c] * zone.reference[c][i];
+      for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
+        body.far->displacement[c][i] = strain[c] * body.far->mesh().nodes[i][c];
+    }
+    auto bodies = body.bodies();
+    body.bridging->take_velocities(bodies);
+    coupling::StepTime time;
+    time.dt = body.dt;
+    body.bridging->compute_forces(bodies, time);
+    body.bridging->kick(bodies, time);
+    double largest = 0;
+    for (int i = 0; i < zone.n_owned; ++i)
+      largest = std::max({largest, get(zone.velocity, i).norm(), std::abs(zone.spin[0][i])});
+    for (const int node : body.bridging->overlap()->near_nodes)
+      largest = std::max(largest, get(body.far->velocity, node).norm());
+    return largest;
+  };
+  EXPECT_LT(largest_velocity(true), 1e-11 * largest_velocity(false));
+}
+
+// theory.md eq. (B7): what the printed form takes, over g, is Q v, whose unweighted nodal momentum
+// is none.
+TEST(BridgingDomain, ThePrintedDamperActsOnTheLiteraturesFluctuation)
+{
+  auto p = weighted_band<2>(Scheme::acceleration);
+  p.bridging->fine_damper = 8;
+  p.bridging->damper_form = coupling::DamperForm::printed;
+  auto body = make_coupled_bodies(p);
+  start_noise(body, 1e-9);
+  const auto &zone = body.zone->state;
+  const auto before = zone.velocity;
+  coupling::StepTime time;
+  time.dt = body.dt;
+  auto bodies = body.bodies();
+  body.bridging->compute_forces(bodies, time); // at rest: none
+  body.bridging->kick(bodies, time);
+  const auto &overlap = *body.bridging->overlap();
+  const double rate = 8 * body.zone->force->elastic_constants().wave_speed_p / overlap.cell_size;
+  Eigen::VectorXd momentum = Eigen::VectorXd::Zero(overlap.n_nodes()), size = momentum;
+  for (const auto &m : overlap.members) {
+    const double g = 1 - std::exp(-rate * (1 - m.position) * (1 - m.position) * time.dt);
+    const double taken = before[0][m.particle] - zone.velocity[0][m.particle];
+    for (std::size_t a = 0; a < m.nodes.size(); ++a) {
+      // Beside particles that are not damped the fluctuation is not seen.
+      const double share = g > 1e-6 ? m.value[a] * zone.volume[m.particle] / g
+                                    : std::numeric_limits<double>::quiet_NaN();
+      momentum[m.nodes[a]] += share * taken;
+      size[m.nodes[a]] += std::abs(share * taken);
+    }
+  }
+  int n_compared = 0;
+  for (int i = 0; i < overlap.n_nodes(); ++i)
+    if (overlap.is_overlap_node[i] && std::isfinite(momentum[i]) && size[i] > 0) {
+      EXPECT_LT(std::abs(momentum[i]), 1e-9 * size[i]);
+      ++n_compared;
+    }
+  EXPECT_GT(n_compared, 10);
+}
+
+// Of a constant weight too no more belongs to the discrete model than there are particles.
+TEST(BridgingDomain, ConstantWeightsEndWithThePacking)
+{
+  auto p = weighted_band<2>(Scheme::acceleration);
+  p.weight = coupling::WeightShape::constant;
+  const auto body = make_coupled_bodies(p);
+  const auto &overlap = *body.bridging->overlap();
+  const double edge = p.zone_size[1] / 2 - overlap.depth;
+  EXPECT_EQ(overlap.weight({0, edge - 0.01}), 0.5);
+  EXPECT_EQ(overlap.weight({0, edge + 0.01}), 0);
+  EXPECT_EQ(overlap.weight({0, 0}), 1);
 }
 } // namespace
 } // namespace ligament
