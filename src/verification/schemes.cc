@@ -177,16 +177,16 @@ std::vector<Result> noise_weaknesses()
   const double lumped = noise_left(scene, 20000);
   scene = held(
       StabilitySetting{"hexagonal", 2, 0.22, 0.9, Scheme::acceleration, 1, 4.1, 3, true}.scene(9));
-  const auto growth = [&] {
-    UnitBody<2> unit(scene);
-    return largest_growth(unit.body);
-  };
-  const double symmetrised = growth();
+  UnitBody<2> unit(scene);
+  const double symmetrised = largest_growth(unit.body);
+  // Its states leave the admissible ones, which the step operator is made of: noise instead.
+  scene = band(Scheme::acceleration);
+  scene.coupling.fine_damper = 400;
   scene.coupling.damper_form = coupling::DamperForm::printed;
-  const double printed = growth();
+  const double printed = noise_left(scene, 20000);
   return {{name + "lumped_left", lumped, 0.2, {}, Bound::at_most},
           {name + "symmetrised_damper_growth", symmetrised, 1e-9, {}, Bound::at_most},
-          {name + "printed_damper_growth", printed, 1e-6, {}, Bound::at_least}};
+          {name + "printed_damper_left", printed, 1, {}, Bound::at_least}};
 }
 
 std::vector<Result> patch_weaknesses()

@@ -1,5 +1,6 @@
 // The energy-weighted couplers of the literature on small bodies.
 #include "coupling/energy_weights.h"
+#include "coupling/fine_damper.h"
 #include "tests/support/coupled_bodies.h"
 
 #include <gtest/gtest.h>
@@ -324,10 +325,11 @@ TEST(BridgingDomain, ThePrintedDamperActsOnTheLiteraturesFluctuation)
   body.bridging->compute_forces(bodies, time); // at rest: none
   body.bridging->kick(bodies, time);
   const auto &overlap = *body.bridging->overlap();
-  const double rate = 8 * body.zone->force->elastic_constants().wave_speed_p / overlap.cell_size;
+  const double speed = body.zone->force->elastic_constants().wave_speed_p;
   Eigen::VectorXd momentum = Eigen::VectorXd::Zero(overlap.n_nodes()), size = momentum;
   for (const auto &m : overlap.members) {
-    const double g = 1 - std::exp(-rate * (1 - m.position) * (1 - m.position) * time.dt);
+    const double rate = coupling::fine_damper_rate(8, speed, overlap.cell_size, m.position);
+    const double g = 1 - std::exp(-rate * time.dt);
     const double taken = before[0][m.particle] - zone.velocity[0][m.particle];
     for (std::size_t a = 0; a < m.nodes.size(); ++a) {
       // Beside particles that are not damped the fluctuation is not seen.
