@@ -41,7 +41,20 @@ double power(const std::array<std::vector<double>, n> &velocity,
 }
 } // namespace
 
+/// force -= damping, damping <- 0 in all components of entry i.
+template <std::size_t n>
+void release(int i, std::array<std::vector<double>, n> &force,
+             std::array<std::vector<double>, n> &damping)
+{
+  for (std::size_t c = 0; c < n; ++c) {
+    force[c][i] -= damping[c][i];
+    damping[c][i] = 0;
+  }
+}
+
 // Supports prescribe the motion of held nodes: damping forces there would only falsify reactions.
+// The forces of a pad, and of the far field on nodes that the coupler moves, are parts of a sum:
+// alone they don't vanish at rest, and damping in their proportion would hold the body off balance.
 template <int dim>
 void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts)
 {
@@ -49,6 +62,12 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
     auto &state = body.zone->state;
     oppose(parameters_.local, dt, state.inverse_mass, state.velocity, state.force, zone_force_);
     oppose(parameters_.local, dt, state.inverse_inertia, state.spin, state.torque, zone_torque_);
+    if (const auto *overlap = body.coupler->overlap())
+      for (const auto &member : overlap->members)
+        if (member.pad) {
+          release(member.particle, state.force, zone_force_);
+          release(member.particle, state.torque, zone_torque_);
+        }
   }
   if (body.far) {
     auto &far = *body.far;
@@ -62,6 +81,9 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
         inverse_far_mass_.push_back(mass > 0 ? 1 / mass : 0);
     oppose(parameters_.local, dt * body.coupler->step_ratio(), inverse_far_mass_, far.velocity,
            far.force, far_force_);
+    if (const auto *overlap = body.coupler->overlap())
+      for (const int node : overlap->near_nodes)
+        release(node, far.force, far_force_);
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < far.mesh().n_nodes(); ++i)
         if (far.is_held(i, c)) {
