@@ -126,10 +126,47 @@ void measure(const std::string &name, const Vector<dim> &size, double zone, doub
       compare_solvers<dim>(fmt::format("{}, r = {}", name, ratio), body.split->near_mass());
   }
 }
+
+/// Whole steps of a band in each regime over those in the linear one; what the regime adds, over
+/// the discrete force of the overlap's particles, which the nonlinear one computes a second time.
+template <int dim>
+void compare_regimes(const std::string &name, const Vector<dim> &size, double zone)
+{
+  tests::CoupledBodiesParameters<dim> p;
+  p.size = size;
+  p.zone_size.setConstant(2 * size.maxCoeff());
+  p.zone_size[dim - 1] = zone;
+  p.cell_size = 4.1;
+  p.material.poissons_ratio = 0.25;
+  auto body = tests::make_coupled_bodies<dim>(p);
+  auto bodies = body.bodies();
+  const double share = double(body.split->report().overlap_particles) / body.zone->state.n_owned;
+  const double force = nanoseconds([&] { body.zone->compute_forces(0); }) * share;
+  coupling::StepTime time;
+  time.dt = body.dt;
+  double linear = 0;
+  for (const auto regime :
+       {coupling::Regime::linear, coupling::Regime::corotated, coupling::Regime::nonlinear})
+  {
+    body.split->set_regime(regime, bodies);
+    const double step = nanoseconds([&] { tests::advance(body, time); });
+    if (regime == coupling::Regime::linear)
+      linear = step;
+    const std::string what = fmt::format("{}, {} regime, {:.0f} % of the particles in the overlap",
+                                         name, name_of(regime), 100 * share);
+    print(what + "; reference: step of the linear one", step / 1e3, "us per step", linear / 1e3);
+    print(what + "; more than the linear one; reference: discrete force of the overlap",
+          (step - linear) / 1e3, "us per step", force / 1e3);
+  }
+}
 } // namespace
 
-int main()
+int main(int argc, char **argv)
 {
+  compare_regimes<2>("hexagonal", {200, 280}, 170);
+  compare_regimes<3>("fcc", {30, 30, 190}, 120);
+  if (argc > 1 && argv[1] == std::string("regimes"))
+    return 0;
   dem::DemMaterial material;
   material.poissons_ratio = 0.25;
   const double hexagonal = particle_time<2>(material), fcc = particle_time<3>(material);

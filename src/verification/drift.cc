@@ -97,7 +97,41 @@ std::vector<Result> undamped_ratio(const std::string &name, int step_ratio, doub
           {name + "/drift_over_error", c.drift / c.error, 4, {}}};
 }
 
-/// Largest rise of the energy between two samples, over the energy at the start; and what is left.
+/// Largest rise of the energy from one sample to the next, over that at the start.
+double largest_rise(const std::vector<double> &series)
+{
+  double rise = -1;
+  for (std::size_t k = 1; k < series.size(); ++k)
+    keep_worst(rise, (series[k] - series[k - 1]) / series[0]);
+  return rise;
+}
+
+/// Energy-weighted schemes on cells that change their size: those with an invariant keep it, the
+/// others only lose.
+std::vector<Result> weighted_graded()
+{
+  using coupling::Scheme;
+  std::vector<Result> results;
+  for (const auto &[cells, grading] :
+       {std::pair{"hanging", hanging_cells}, std::pair{"growing", growing_cells}})
+    for (const Scheme scheme : {Scheme::acceleration, Scheme::pointwise, Scheme::xiao_belytschko,
+                                Scheme::xiao_belytschko_lumped})
+    {
+      const std::string name =
+          std::string("drift_graded_schemes/") + cells + "/" + coupling::scheme_names[int(scheme)];
+      Scene scene = graded<2>(grading);
+      scene.coupling.scheme = scheme;
+      if (scheme == Scheme::acceleration || scheme == Scheme::pointwise)
+        report<2>(name, scene, 1e-8, 5000, results);
+      else {
+        UnitBody<2> unit(scene);
+        const auto series = run_noise(unit.body, 1e-9, 2000, 1, 0).leap_frog;
+        results.push_back({name + "/rise", largest_rise(series), 1e-12, 0});
+      }
+    }
+  return results;
+}
+
 template <int dim>
 std::vector<Result> damped(const std::string &name, Scene scene)
 {
@@ -106,10 +140,8 @@ std::vector<Result> damped(const std::string &name, Scene scene)
   scene.coupling.gap_filter = 4;
   UnitBody<dim> unit(scene);
   const auto series = run_noise(unit.body, 1e-9, dim == 2 ? 4000 : 1000, 1, 0).leap_frog;
-  double rise = -1;
-  for (std::size_t k = 1; k < series.size(); ++k)
-    keep_worst(rise, (series[k] - series[k - 1]) / series[0]);
-  return {{name + "/rise", rise, 1e-12, 0}, {name + "/left", series.back() / series[0], 1, {}}};
+  return {{name + "/rise", largest_rise(series), 1e-12, 0},
+          {name + "/left", series.back() / series[0], 1, {}}};
 }
 } // namespace
 
@@ -138,6 +170,19 @@ std::vector<Case> drift_cases()
        [] { return undamped<2>("drift_graded", graded<2>(hanging_cells), 1e-8, 5000, false); }},
       {"drift_graded_3d", text + "FCC, cells double in the overlap, strain 1e-8, 2e3 steps", true,
        [] { return undamped<3>("drift_graded_3d", graded<3>(hanging_cells), 1e-8, 2000, false); }},
+      {"drift_graded_random", text + "random, cells double in the overlap, strain 1e-8, 5e3 steps",
+       true,
+       [] {
+         return undamped<2>("drift_graded_random", made_random(graded<2>(hanging_cells)), 1e-8,
+                            5000, false);
+       }},
+      {"drift_graded_random_3d", text + "random in 3D, growing cells, strain 1e-8, 2e3 steps", true,
+       [] {
+         return undamped<3>("drift_graded_random_3d", made_random(graded<3>(growing_cells)), 1e-8,
+                            2000, false);
+       }},
+      {"drift_graded_schemes", text + "energy-weighted schemes, cells double or grow", true,
+       weighted_graded},
       {"drift_long_graded", text + "cells double in the overlap, strain 1e-6, 1e5 steps", true,
        [] {
          return undamped<2>("drift_long_graded", graded<2>(hanging_cells), 1e-6, 100000, false);

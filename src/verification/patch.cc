@@ -168,6 +168,7 @@ std::vector<Case> patch_cases()
   constexpr double turned = 15 * M_PI / 180;
   const Arrangement equal{0, 1}, unequal{0, 3};
   const Arrangement hanging{0, 0, hanging_cells}, growing{0, 0, growing_cells};
+  const Arrangement random_hanging{0, 1, hanging_cells}, random_growing{0, 1, growing_cells};
   const std::string band = "overlap that ends at free edges", ring = "closed overlap with corners";
   return {{"patch_band_2d", band + ", hexagonal, h/d 4.1", false,
            [] { return band_2d("patch_band_2d", 4.1, {}); }},
@@ -191,6 +192,12 @@ std::vector<Case> patch_cases()
            [=] { return ring_2d("patch_ring_2d_hanging", 3.07, hanging); }},
           {"patch_ring_2d_growing", ring + ", growing cells, hexagonal, h/d 3.07", false,
            [=] { return ring_2d("patch_ring_2d_growing", 3.07, growing); }},
+          {"patch_band_2d_random_hanging", band + " and doubles its cells, random, h/d 3.07", false,
+           [=] { return band_2d("patch_band_2d_random_hanging", 3.07, random_hanging); }},
+          {"patch_ring_2d_random_growing", ring + ", growing cells, random, h/d 3.07", true,
+           [=] { return ring_2d("patch_ring_2d_random_growing", 3.07, random_growing); }},
+          {"patch_band_3d_random_hanging", band + " and doubles its cells, random, h/d 2.6", true,
+           [=] { return band_3d("patch_band_3d_random_hanging", 2.6, random_hanging); }},
           {"patch_l_shape_2d", "zone of two boxes with a re-entrant corner, hexagonal", false,
            [] { return boxes_2d("patch_l_shape_2d", l_shape_2d, {}); }},
           {"patch_l_shape_2d_random", "zone of two boxes with a re-entrant corner, random", false,

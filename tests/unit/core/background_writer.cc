@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <thread>
 #include <vector>
 
 using namespace ligament::core;
@@ -74,14 +75,25 @@ TEST(BackgroundWriter, ErrorsReachTheCallerOnce)
   EXPECT_TRUE(later);
 }
 
+// One at work and one waiting when the end comes.
 TEST(BackgroundWriter, EndsWithAllJobsDone)
 {
   int done = 0;
+  Gate gate;
+  std::thread opener;
   {
     BackgroundWriter writer;
-    for (int i = 0; i < 10; ++i)
-      writer.submit([&] { ++done; });
+    writer.submit([&] {
+      gate.pass();
+      ++done;
+    });
+    writer.submit([&] { ++done; });
+    opener = std::thread([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      gate.open = true;
+    });
   }
-  EXPECT_EQ(done, 10);
+  opener.join();
+  EXPECT_EQ(done, 2);
 }
 } // namespace
