@@ -15,6 +15,25 @@ namespace
 // slows them down (theory.md eq. (C6)).
 constexpr double fine_cell = 2.5; // h/d
 constexpr double fine_cell_share = 0.75;
+
+/// Last layer of consistent mass, 0 as a rule. A step to larger cells inside the transition
+/// reflects least where the mass is consistent on both its sides, one cell beyond included. Where
+/// that would leave less than half of the transition to pass to lumped mass, the step is left as it
+/// is.
+template <int dim>
+int last_consistent_layer(const fem::Mesh<dim> &mesh, const std::vector<int> &layer,
+                          int transition_cells)
+{
+  int coarsest = 0, last_before_step = 0;
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (layer[c] >= 0)
+      coarsest = std::max(coarsest, mesh.cell_level[c]);
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (layer[c] >= 0 && mesh.cell_level[c] < coarsest)
+      last_before_step = std::max(last_before_step, layer[c]);
+  const int last = last_before_step + 2;
+  return last_before_step > 0 && 2 * last <= transition_cells ? last : 0;
+}
 } // namespace
 
 template <int dim>
@@ -190,6 +209,7 @@ void Overlap<dim>::find_cells()
       is_overlap_node.push_back(node_layer[node] == 0);
     }
   cell_size = std::numeric_limits<double>::max();
+  const int carried = last_consistent_layer(mesh, layer, parameters.transition_cells);
   for (int c = 0; c < mesh.n_cells(); ++c)
     if (layer[c] >= 0) {
       Cell cell;
@@ -201,7 +221,9 @@ void Overlap<dim>::find_cells()
           parameters.lumps_mass
               ? 0.
               : std::min(is_fine ? fine_cell_share : 1.,
-                         layer[c] == 0 ? 1. : 1 - (layer[c] - 0.5) / parameters.transition_cells);
+                         layer[c] <= carried ? 1.
+                                             : 1 - (layer[c] - carried - 0.5) /
+                                                       (parameters.transition_cells - carried));
       cell.shape = condense(c);
       for (int a = 0; a < n_cell_nodes; ++a)
         cell.nodes[a] = near[cell.shape.nodes[a]];

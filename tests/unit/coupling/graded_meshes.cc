@@ -156,6 +156,35 @@ TEST(GradedMeshes, MassIsKept)
   EXPECT_NEAR(body.split->near_mass().sum(), mass, 1e-4 * mass);
 }
 
+// Cells double inside the transition: the mass is consistent up to the second cell beyond the last
+// fine one, where that leaves half of the transition to pass to lumped; else nothing changes.
+TEST(GradedMeshes, MassIsConsistentThroughAStepInTheTransition)
+{
+  auto p = band<2>();
+  p.overlap_cells = 3;
+  p.fine_cells = 5;
+  p.size[1] = 240;
+  const auto check = [&](int transition_cells, int carried) {
+    p.transition_cells = transition_cells;
+    const auto body = make_coupled_bodies(p);
+    const auto &overlap = *body.split->overlap();
+    int last_fine = 0;
+    for (const auto &cell : overlap.cells) {
+      if (overlap.mesh.cell_level[cell.cell] == 0)
+        last_fine = std::max(last_fine, cell.layer);
+      EXPECT_DOUBLE_EQ(cell.consistent_share,
+                       cell.layer <= carried
+                           ? 1
+                           : 1 - (cell.layer - carried - 0.5) / (transition_cells - carried));
+    }
+    return last_fine;
+  };
+  const int last_fine = check(3, 0);
+  ASSERT_GT(last_fine, 0);
+  check(2 * (last_fine + 2), last_fine + 2);
+  check(2 * (last_fine + 2) - 1, 0);
+}
+
 TEST(GradedMeshes, TurningIsFree)
 {
   const auto body = make_coupled_bodies(ring<2>());
