@@ -1,7 +1,7 @@
 #!/bin/sh
 # What `ligament check` predicts against the run itself, for the examples: time of the whole run
-# (per step and set-up, scaled to the steps that the run took before it broke) and memory. One JSON
-# line per figure: value = predicted, reference = measured.
+# (per step, output and set-up, scaled to the steps that the run took before it broke) and memory. One
+# JSON line per figure: value = predicted, reference = measured.
 # usage: bench/check_prediction.sh [directory of the programs] [keys of all runs, such as --set ...]
 set -eu
 cd "$(dirname "$0")/.."
@@ -22,7 +22,8 @@ for example in cracked_plate inclined_crack plate_with_hole notched_bar_3d; do
   "$programs/ligament" run $scene --output "$work/run" --json "$@" 2>/dev/null | tail -n 1 >"$work/json"
   rm -rf "$work/run"
   line "time, $example" s \
-    "$(field setup_seconds check) + $(field seconds_per_step check) * $(field steps json)" \
+    "$(field setup_seconds check) + $(field steps json) * ($(field seconds_per_step check) +
+      $(field output_seconds check) / $(field steps check))" \
     "$(field setup_seconds json) + $(field wall_seconds json)"
   line "memory, $example" B "$(field memory_bytes check)" "$(field peak_memory_bytes json)"
 done

@@ -5,7 +5,8 @@
 #include "src/output/picture.h"
 #include "src/output/run_folder.h"
 #include "src/scene/geometry.h"
-#include "src/simulation/body_fields.h"
+#include "src/simulation/damping.h"
+#include "src/simulation/recorder.h"
 
 #include <fmt/format.h>
 
@@ -25,16 +26,19 @@ struct Prediction
 
 /// Steps the body at rest for a moment: the same work per step as in the run.
 template <int dim>
-Prediction time_steps(CoupledBody<dim> &body, core::Timers &timers)
+Prediction time_steps(const Scene &scene, CoupledBody<dim> &body, core::Timers &timers)
 {
   using Clock = std::chrono::steady_clock;
   auto bodies = body.bodies();
+  BodyDamping<dim> damping(scene.damping);
   coupling::StepTime step;
   step.dt = body.dt;
   const auto advance = [&](int n) {
     for (int i = 0; i < n; ++i, ++step.step) {
       body.coupler->compute_forces(bodies, step);
+      damping.before_kick(body, step);
       body.coupler->kick(bodies, step);
+      damping.after_kick(body, step);
       body.coupler->drift(bodies, step);
     }
   };
@@ -165,10 +169,11 @@ int check(const CommandLine &line, const ReadResult &input)
       fmt::print("packing: {}\n", packing);
     }
   }
-  const auto prediction = time_steps(body, timers);
+  const auto prediction = time_steps(scene, body, timers);
   const double memory = peak_memory();
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
-  const double seconds = setup_seconds + steps * prediction.seconds_per_step;
+  const double output = output_seconds(scene, body, steps);
+  const double seconds = setup_seconds + steps * prediction.seconds_per_step + output;
   const int particles = body.zone ? body.zone->state.n_owned : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const auto *joined = body.coupler->overlap();
@@ -210,6 +215,7 @@ int check(const CommandLine &line, const ReadResult &input)
                                    {"memory_bytes", memory},
                                    {"predicted_seconds", seconds},
                                    {"seconds_per_step", prediction.seconds_per_step},
+                                   {"output_seconds", output},
                                    {"setup_seconds", setup_seconds},
                                    {"predicted_saving", saving},
                                    {"errors", nlohmann::json::array()}};

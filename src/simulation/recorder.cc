@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace ligament::program
@@ -19,7 +20,72 @@ constexpr long guard_interval = 50;
 
 // Overlap bonds must not break: the run is trusted up to half their strength.
 constexpr double guarded_share = 0.5;
+
+// Fields are copied when the load has grown by this factor.
+constexpr double copied_growth = 1.02;
+
+double history_interval_of(const Scene &scene)
+{
+  return scene.output.history_interval > 0 ? scene.output.history_interval
+                                           : scene.time.duration / 2000;
+}
+
+/// Particles of bonds that must not break.
+template <int dim>
+std::vector<int> guarded_particles(const CoupledBody<dim> &body)
+{
+  std::vector<int> guarded;
+  if (body.coupler->overlap() &&
+      body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
+    for (const auto &m : body.coupler->overlap()->members)
+      guarded.push_back(m.particle);
+  return guarded;
+}
+
+/// Seconds of the faster one of two calls.
+template <typename Look>
+double seconds_of(Look &&look)
+{
+  using Clock = std::chrono::steady_clock;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 2; ++k) {
+    const auto start = Clock::now();
+    look();
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return least;
+}
 } // namespace
+
+template <int dim>
+double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_steps)
+{
+  const double far_steps = double(n_steps) / body.coupler->step_ratio();
+  const double readings = std::min(far_steps, scene.time.duration / history_interval_of(scene));
+  coupling::StepTime step;
+  step.dt = body.dt;
+  const TestMachine<dim> machine(body);
+  double reading = 0; // keeps the compiler from leaving them out
+  const double read = seconds_of([&] {
+    reading += machine.read(body, 0).load + read_ledger(body, step, 0).residual() +
+               crack_length(body, machine.axis());
+  });
+  const auto guarded = guarded_particles(body);
+  const double guard = guarded.empty() ? 0 : seconds_of([&] {
+    reading += body.force->max_tension(body.zone->state, guarded);
+  });
+  const double copy = seconds_of([&] {
+    const auto particles = particle_fields(body);
+    const auto cells = cell_fields(body);
+  });
+  // A load that grows in proportion to time: first each reading is a copy, then each growth.
+  const double first = std::min(readings, 1 / (copied_growth - 1)),
+               copies = first + std::log(std::max(readings / first, 1.)) / std::log(copied_growth) +
+                        scene.time.duration / scene.output.field_interval;
+  return std::isfinite(reading)
+             ? readings * read + far_steps / guard_interval * guard + copies * copy
+             : 0;
+}
 
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
@@ -28,14 +94,9 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps),
-      history_interval_(scene.output.history_interval > 0 ? scene.output.history_interval
-                                                          : scene.time.duration / 2000)
+      n_steps_(n_steps), history_interval_(history_interval_of(scene)),
+      guarded_(guarded_particles(body))
 {
-  if (body.coupler->overlap() &&
-      body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
-    for (const auto &m : body.coupler->overlap()->members)
-      guarded_.push_back(m.particle);
 }
 
 template <int dim>
@@ -110,7 +171,7 @@ void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, doubl
     std::rotate(snapshots_.begin(), snapshots_.end() - 1, snapshots_.end());
     snapshots_[0] = snapshot(body, time);
   }
-  if (std::abs(load) > 1.02 * std::abs(fields_copied_at_)) {
+  if (std::abs(load) > copied_growth * std::abs(fields_copied_at_)) {
     fields_copied_at_ = load;
     peak_particles_ = particle_fields(body);
     peak_cells_ = cell_fields(body);
@@ -261,6 +322,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   writer_.wait();
 }
 
+template double output_seconds(const Scene &, const CoupledBody<2> &, long);
+template double output_seconds(const Scene &, const CoupledBody<3> &, long);
 template class Recorder<2>;
 template class Recorder<3>;
 } // namespace ligament::program

@@ -24,6 +24,11 @@ struct Stop
   std::string reason;
 };
 
+/// What the looks of a whole run of so many steps take in its loop, in s: readings, guards, copies
+/// of fields; each kind is timed once. For a prediction; the body is at rest.
+template <int dim>
+double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_steps);
+
 /// Everything that looks at the body between forces and kick, each part with its own trigger. Only
 /// called in steps in which both models stand at the same time.
 template <int dim>
