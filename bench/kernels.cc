@@ -135,7 +135,8 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
   const dem::BondNetwork<dim> bonds(packing, material);
   const dem::LatticeKernel<dim> kernel(bonds.directions(), bonds.segments(), n,
                                        material.shear_modulus(), true);
-  const std::vector<double> lambda(n, 1.), other(n, 0.);
+  const std::vector<double> lambda(n, 1.);
+  const std::vector<int> none;
   std::vector<double> pressure(n);
   dem::LatticeArrays<dim> a{};
   for (int c = 0; c < dim; ++c) {
@@ -148,7 +149,7 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
     a.torque[c] = p.torque[c].data();
   a.mask = bonds.mask().data();
   a.lambda_per_volume = lambda.data();
-  a.other_pressure = other.data();
+  a.other_particles = &none;
   a.pressure = pressure.data();
   dem::RowWindow window;
   std::vector<dem::RowRange> exceeded;

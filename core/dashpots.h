@@ -20,8 +20,10 @@ public:
   Dashpots() = default;
   explicit Dashpots(const Coefficients &coefficients);
 
-  /// From velocities after the kick v += dt force inverse_mass to those that the dashpots leave.
-  void act(double dt, const std::vector<double> &inverse_mass, const Components<dim> &force,
+  /// From velocities after the kick v += dt force / mass to those that the dashpots leave;
+  /// inverse_mass(index) in 1/kg, 0 for what is held.
+  template <typename InverseMass>
+  void act(double dt, const InverseMass &inverse_mass, const Components<dim> &force,
            Components<dim> &velocity);
 
   /// Taken so far, in J.
@@ -36,6 +38,21 @@ private:
   std::vector<Dashpot> dashpots_;
   double energy_ = 0;
 };
+
+template <int dim>
+template <typename InverseMass>
+void Dashpots<dim>::act(double dt, const InverseMass &inverse_mass, const Components<dim> &force,
+                        Components<dim> &velocity)
+{
+  for (const Dashpot &d : dashpots_) {
+    double &v = velocity[d.component][d.index];
+    const double w = inverse_mass(d.index), ratio = 0.5 * dt * d.coefficient * w;
+    // v(+) + v(-) = (v* + v(-))/(1 + ratio), v* the velocity that the kick has left.
+    const double twice_mean = (2 * v - dt * force[d.component][d.index] * w) / (1 + ratio);
+    v -= ratio * twice_mean;
+    energy_ += dt * d.coefficient * twice_mean * twice_mean / 4;
+  }
+}
 
 /// Damping rate of an absorbing layer in 1/s, `depth` m inside its inner border: rises with the
 /// square of the depth (theory.md eq. (A4)). Waves of `speed` m/s are those along its normal.

@@ -231,16 +231,17 @@ void add_normal(std::vector<Vector<dim>> &normals, const Vector<dim> &normal)
 // forces, or when it lies on the surface itself.
 template <int dim>
 std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &overlap,
+                                                        const particles::Particles<dim> &particles,
                                                         const particles::ParticleForce<dim> &force)
 {
   const int n_particles = int(overlap.member_of_particle.size());
   std::vector<std::vector<Vector<dim>>> on_surface(n_particles), felt(n_particles);
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
+  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     if (face.j < 0)
       add_normal<dim>(on_surface[face.i], face.normal);
   });
   felt = on_surface;
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
+  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     if (face.j >= 0)
       for (const auto &normal : on_surface[face.j])
         add_normal<dim>(felt[face.i], normal);
@@ -310,7 +311,8 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   Assembly<dim> assembly(overlap, particles, force, body, coarse_mass);
   assembly.add_cells();
   assembly.add_masses();
-  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });
+  force.add_tangent(particles,
+                    [&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });
 
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;
@@ -319,7 +321,7 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   result.mass.setFromTriplets(assembly.mass.begin(), assembly.mass.end());
   result.mass_bound = assembly.mass_bound;
   result.residual = assembly.residual;
-  result.free_normals = find_free_normals(overlap, force);
+  result.free_normals = find_free_normals(overlap, particles, force);
   return result;
 }
 
@@ -328,7 +330,7 @@ BlendedOperators<dim>
 make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
 {
-  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+  force.add_tangent(particles, [&](const particles::QuadraticTerm<dim> &term) {
     for (const int i : term.members)
       require(overlap.member_of_particle[i] < 0 ||
                   term.kind != particles::QuadraticTerm<dim>::Kind::wall,

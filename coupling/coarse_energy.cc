@@ -88,15 +88,15 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
   std::vector<int> members;
   for (const auto &m : overlap.members)
     members.push_back(m.particle);
-  discrete_ = force.part(members, [&](const Vector<dim> &location, const std::vector<int> &of) {
-    return overlap.subtracted_share(location, of);
-  });
+  discrete_ =
+      force.part(particles, members, [&](const Vector<dim> &location, const std::vector<int> &of) {
+        return overlap.subtracted_share(location, of);
+      });
   state_->resize(int(members.size()));
   for (std::size_t k = 0; k < members.size(); ++k) {
     set(state_->reference, int(k), get(particles.reference, members[k]));
     set(state_->rotation, int(k), get(particles.rotation, members[k]));
     state_->volume[k] = particles.volume[members[k]];
-    state_->material[k] = particles.material[members[k]];
   }
 }
 

@@ -16,7 +16,7 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
   // Sums over pyramids of volume times 1 - a: particles beyond the overlap get exactly 0.
   std::vector<double> rest(n, 0.), volume(n, 0.);
   std::vector<Vector<dim>> open(n, Vector<dim>::Zero()); // minus the area vector of all faces
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
+  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     const int i = face.i;
     const Vector<dim> x = get(particles.reference, i);
     const Vector<dim> lever = overlap.offset(x, face.centroid);
@@ -53,9 +53,6 @@ std::vector<double> weigh_members(const Overlap<dim> &overlap, const Transfer<di
     const int i = transfer.particle(k);
     shares.push_back(weights[i]);
     particles.mass[i] *= weights[i];
-    particles.inertia[i] *= weights[i];
-    particles.inverse_mass[i] /= weights[i];
-    particles.inverse_inertia[i] /= weights[i];
   }
   return shares;
 }

@@ -222,7 +222,7 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
         sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
     if (index < 0 || !overlap_.members[index].pad)
       for (int c = 0; c < n_spins<dim>; ++c)
-        sum += zone.spin[c][i] * (zone.inertia[i] * zone.spin[c][i] + dt * zone.torque[c][i]);
+        sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
   }
   return fine_.kinetic_energy(zone, dt) + sum / 2;
 }

@@ -40,7 +40,7 @@ std::vector<InterpolatedMotion<dim>> interpolate_motions(const Overlap<dim> &ove
   using Matrix = Eigen::Matrix<double, dim, dim>;
   const int n_members = int(overlap.members.size());
   std::vector<std::vector<int>> neighbours(n_members);
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
+  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     if (face.j < 0 || !face.bonded)
       return;
     const int i = overlap.member_of_particle[face.i], j = overlap.member_of_particle[face.j];

@@ -113,7 +113,7 @@ std::vector<char> Overlap<dim>::find_pads(const particles::Particles<dim> &parti
   std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
   std::vector<double> surface(n, 0.);
   std::vector<std::vector<int>> neighbours(n);
-  force.for_each_face([&](const particles::FaceView<dim> &face) {
+  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     closure[face.i] += face.area * face.normal;
     surface[face.i] += face.area;
     if (face.j >= 0)

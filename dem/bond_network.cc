@@ -105,14 +105,19 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Mate
 template <int dim>
 void BondNetwork<dim>::index_table()
 {
-  const int n = n_particles();
-  first_irregular_.assign(n + 1, 0);
+  std::vector<int> n_bonds_of(n_particles(), 0);
   for (const auto &b : irregular_)
-    ++first_irregular_[b.i + 1], ++first_irregular_[b.j + 1];
-  for (int i = 0; i < n; ++i)
-    first_irregular_[i + 1] += first_irregular_[i];
-  irregular_of_.resize(first_irregular_[n]);
-  std::vector<int> next(first_irregular_.begin(), first_irregular_.end() - 1);
+    ++n_bonds_of[b.i], ++n_bonds_of[b.j];
+  at_table_.clear();
+  first_irregular_ = {0};
+  std::vector<int> next(n_particles());
+  for (int i = 0; i < n_particles(); ++i)
+    if (n_bonds_of[i] > 0) {
+      at_table_.push_back(i);
+      next[i] = first_irregular_.back();
+      first_irregular_.push_back(next[i] + n_bonds_of[i]);
+    }
+  irregular_of_.resize(first_irregular_.back());
   for (std::size_t b = 0; b < irregular_.size(); ++b)
     irregular_of_[next[irregular_[b].i]++] = irregular_of_[next[irregular_[b].j]++] = int(b);
 }
@@ -143,15 +148,12 @@ template <int dim>
 void BondNetwork<dim>::find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset)
 {
   const int n = n_particles(), n_slots = 2 * n_directions();
-  segment_of_.resize(n);
   std::array<int, 2 * max_directions> run{}; // offsets of the present run, 0 while not needed
   int begin = 0;
   const auto close = [&](int end) {
     RowSegment s{begin, end, {}, {}};
     for (int k = 0; k < n_directions(); ++k)
       s.forward[k] = run[k], s.backward[k] = run[n_directions() + k];
-    for (int i = begin; i < end; ++i)
-      segment_of_[i] = int(segments_.size());
     segments_.push_back(s);
   };
   for (int i = 0; i < n; ++i) {
@@ -173,6 +175,14 @@ void BondNetwork<dim>::find_segments(const std::vector<std::array<int, 2 * max_d
   }
   if (n > 0)
     close(n);
+}
+
+template <int dim>
+const RowSegment &BondNetwork<dim>::segment_of(int particle) const
+{
+  return *(std::upper_bound(segments_.begin(), segments_.end(), particle,
+                            [](int i, const RowSegment &s) { return i < s.begin; }) -
+           1);
 }
 
 template <int dim>
@@ -199,7 +209,7 @@ Bond<dim> BondNetwork<dim>::bond(const BondId &id) const
 {
   if (id.direction < 0)
     return irregular_[id.index];
-  const RowSegment &s = segments_[segment_of_[id.index]];
+  const RowSegment &s = segment_of(id.index);
   return lattice_bond(id.index, id.index + s.forward[id.direction], id.direction);
 }
 

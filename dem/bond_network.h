@@ -6,6 +6,7 @@
 #include "dem/materials.h"
 #include "particles/packing.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace ligament::dem
@@ -90,17 +91,18 @@ public:
 private:
   void find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset);
   void index_table();
+  const RowSegment &segment_of(int particle) const;
   Bond<dim> lattice_bond(int i, int j, int direction) const;
 
   std::vector<DirectionData<dim>> directions_;
   double lattice_shear_modulus_; // Pa
   std::vector<std::uint32_t> mask_;
   std::vector<RowSegment> segments_;
-  std::vector<int> segment_of_;
   std::vector<Bond<dim>> irregular_;
   std::vector<char> intact_;
-  std::vector<int> between_materials_;              // entries of the table
-  std::vector<int> first_irregular_, irregular_of_; // rows of table entries per particle
+  std::vector<int> between_materials_; // entries of the table
+  // Particles with entries in the table, ascending, and the rows of their entries.
+  std::vector<int> at_table_, first_irregular_, irregular_of_;
   long n_bonds_ = 0;
 };
 
@@ -141,8 +143,8 @@ template <typename Visit>
 void BondNetwork<dim>::for_each_bond_of(int particle, Visit &&visit) const
 {
   const int n_dir = n_directions(), i = particle;
+  const RowSegment &s = segment_of(i);
   for (int k = 0; k < n_dir; ++k) {
-    const RowSegment &s = segments_[segment_of_[i]];
     if (mask_[i] >> k & 1)
       visit(BondId{i, k}, lattice_bond(i, i + s.forward[k], k));
     if (mask_[i] >> (n_dir + k) & 1)
@@ -155,7 +157,10 @@ template <int dim>
 template <typename Visit>
 void BondNetwork<dim>::for_each_entry_of(int i, Visit &&visit) const
 {
-  for (int b = first_irregular_[i]; b < first_irregular_[i + 1]; ++b)
+  const auto row = std::lower_bound(at_table_.begin(), at_table_.end(), i) - at_table_.begin();
+  if (row == std::ptrdiff_t(at_table_.size()) || at_table_[row] != i)
+    return;
+  for (int b = first_irregular_[row]; b < first_irregular_[row + 1]; ++b)
     if (intact_[irregular_of_[b]])
       visit(BondId{irregular_of_[b], -1}, irregular_[irregular_of_[b]]);
 }

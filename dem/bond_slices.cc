@@ -144,12 +144,11 @@ void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &r
 }
 
 template <int dim>
-void BondSlices<dim>::add_pressures(LatticeArrays<dim> arrays, double *pressure,
-                                    core::LargeArray &records, const SliceNearness *nearness) const
+void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                                    const SliceNearness *nearness) const
 {
   if (empty())
     return;
-  arrays.pressure = pressure;
   ligament::dem::add_pressures({table_, arrays, records.data(), 0, false, nullptr, nearness});
 }
 

@@ -51,7 +51,7 @@ template <int dim>
 struct SliceSweep
 {
   const SliceTable<dim> &table;
-  const LatticeArrays<dim> &arrays; // other_pressure and mask are not read
+  const LatticeArrays<dim> &arrays; // the mask is not read
   double *records;
   double limit2 = 0; // (strength / 2G)^2, of the weakest bond
   bool replace;      // forces and torques are overwritten, not added to
@@ -99,8 +99,8 @@ public:
   void load(const LatticeArrays<dim> &arrays, core::LargeArray &records,
             const SliceNearness *nearness = nullptr) const;
 
-  /// Adds lambda theta of the bonds to `pressure`, in Pa.
-  void add_pressures(LatticeArrays<dim> arrays, double *pressure, core::LargeArray &records,
+  /// Adds lambda theta of the bonds to arrays.pressure.
+  void add_pressures(const LatticeArrays<dim> &arrays, core::LargeArray &records,
                      const SliceNearness *nearness = nullptr) const;
 
   /// Adds the forces at arrays.pressure. With a strength above 0 (Pa) replaces `exceeded` by

@@ -33,7 +33,7 @@ private:
 
   double spacing_, skin_, face_area_, largest_;
   std::vector<double> diameter_;
-  std::vector<char> on_surface_;
+  std::vector<bool> on_surface_;
   std::vector<int> surface_;             // particles on surfaces
   std::vector<Vector<dim>> searched_at_; // their displacements at the last search
 };

@@ -85,9 +85,7 @@ void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
                                     const std::vector<RowSegment> &segments,
                                     RowWindow &window) const
 {
-  if (constants_.n_directions == 0)
-    std::copy_n(arrays.other_pressure, n_particles_, arrays.pressure);
-  else
+  if (constants_.n_directions > 0)
     sweep_rows(sweep(arrays, segments, window));
 }
 
@@ -99,12 +97,8 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const particles::AwakeRanges *ranges) const
 {
   exceeded.clear();
-  if (constants_.n_directions == 0) {
-    for (const auto &[begin, end] : (ranges ? *ranges : everything_).pressed)
-      std::copy(arrays.other_pressure + begin, arrays.other_pressure + end,
-                arrays.pressure + begin);
+  if (constants_.n_directions == 0)
     return;
-  }
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
   if (ranges)
@@ -125,10 +119,8 @@ void LatticeKernel<dim>::energies(const LatticeArrays<dim> &arrays,
                                   const std::vector<RowSegment> &segments, RowWindow &window,
                                   double *energy) const
 {
-  if (constants_.n_directions == 0) {
-    dilatation(arrays, segments, window);
+  if (constants_.n_directions == 0)
     return;
-  }
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
   s.energy = energy;

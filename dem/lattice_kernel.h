@@ -17,8 +17,9 @@ struct LatticeArrays
   std::array<const double *, n_rotations> rotation; // angle, or unit quaternion
   const std::uint32_t *mask;
   const double *lambda_per_volume;
-  const double *other_pressure; // lambda_i theta_i of what is no lattice bond, Pa
-  double *pressure;             // lambda_i theta_i, Pa
+  /// Ascending: their pressures come in with the parts of what is no lattice bond.
+  const std::vector<int> *other_particles;
+  double *pressure; // lambda_i theta_i, Pa
   std::array<double *, dim> force;
   std::array<double *, n_spins<dim>> torque;
 };
@@ -121,7 +122,8 @@ public:
 
   const LatticeConstants<dim> &constants() const { return constants_; }
 
-  /// pressure = lambda_i theta_i of the lattice bonds + other_pressure.
+  /// pressure = lambda_i theta_i of the lattice bonds, on top of what other particles have; left
+  /// alone where there is no lattice.
   void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
                   RowWindow &window) const;
 

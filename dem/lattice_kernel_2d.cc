@@ -22,7 +22,7 @@ class Bonds2d
 {
 public:
   static constexpr long stride = stride_;
-  static constexpr int n_streams = 8;
+  static constexpr int n_streams = 9;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds2d(const RowSweep<2> &sweep)
@@ -45,18 +45,21 @@ public:
     hn::Vec<D> c, s;
     cosine_minus_1_and_sine(d, angle, c, s);
     store(d, {c, s}, at + h_ * stride);
-    if (!volumetric_) {
+    if (volumetric_)
+      hn::StoreU(hn::Zero(d), d, at + other_ * stride);
+    else {
       const auto factor = hn::Set(d, -c_.shear * c_.half);
       store(d, {hn::Mul(factor, c), hn::Mul(factor, s)}, at + g_ * stride);
     }
   }
 
+  /// After turn() of the particle.
+  HWY_INLINE void take_other_pressure(int i) const { w_[other_ * stride + i] = a_.pressure[i]; }
+
   template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
-    prefetch(std::array{a_.lambda_per_volume, a_.other_pressure,
-                        static_cast<const double *>(a_.pressure)},
-             i);
+    prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
     const BondMask<D> mask(d, a_.mask, i);
     auto theta = hn::Zero(d), moment = hn::Zero(d);
     double *const at = w_ + i;
@@ -75,7 +78,7 @@ public:
     });
     const double volumetric = c_.area_r * c_.half;
     const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
-    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
+    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, at + other_ * stride));
     hn::StoreU(p, d, a_.pressure + i);
     hn::StoreU(moment, d, at + moment_ * stride);
     const auto vp = hn::Mul(hn::Set(d, volumetric), p);
@@ -222,8 +225,9 @@ private:
     return {mask(v.x, k), mask(v.y, k)};
   }
 
-  // First streams: displacement, angle, h and g, sum of a x Du.
-  static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7;
+  // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the
+  // lattice's.
+  static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7, other_ = 8;
 
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;

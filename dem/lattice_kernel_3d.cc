@@ -38,7 +38,7 @@ class Bonds3d
 {
 public:
   static constexpr long stride = stride_;
-  static constexpr int n_streams = 28;
+  static constexpr int n_streams = 29;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds3d(const RowSweep<3> &sweep)
@@ -60,6 +60,8 @@ public:
       hn::StoreU(hn::LoadU(d, a_.rotation[c] + i), d, at + (q_ + c) * stride);
     const auto q = quaternion(d, at);
     const auto &v = q.v;
+    if (volumetric_)
+      hn::StoreU(hn::Zero(d), d, at + other_ * stride);
     const Triple<hn::Vec<D>> two = v + v;
     const auto xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
     const auto xy = hn::Mul(two.x, v.y), xz = hn::Mul(two.x, v.z), yz = hn::Mul(two.y, v.z);
@@ -77,12 +79,13 @@ public:
     }
   }
 
+  /// After turn() of the particle.
+  HWY_INLINE void take_other_pressure(int i) const { w_[other_ * stride + i] = a_.pressure[i]; }
+
   template <typename D>
   HWY_INLINE void dilatation(D d, long i, const Offsets &offsets) const
   {
-    prefetch(std::array{a_.lambda_per_volume, a_.other_pressure,
-                        static_cast<const double *>(a_.pressure)},
-             i);
+    prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
     const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
     auto theta = zero;
@@ -103,7 +106,7 @@ public:
     });
     const double volumetric = c_.area_r * c_.half;
     const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
-    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, a_.other_pressure + i));
+    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, at + other_ * stride));
     hn::StoreU(p, d, a_.pressure + i);
     store(d, moment, at + moment_ * stride);
     const auto vp = hn::Mul(hn::Set(d, volumetric), p);
@@ -287,8 +290,9 @@ private:
     return {mask(v.x, k), mask(v.y, k), mask(v.z, k)};
   }
 
-  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du.
-  static constexpr int u_ = 0, q_ = 3, h_ = 7, g_ = 16, moment_ = 25;
+  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du, pressure
+  // beside the lattice's.
+  static constexpr int u_ = 0, q_ = 3, h_ = 7, g_ = 16, moment_ = 25, other_ = 28;
 
   LatticeArrays<3> a_;
   LatticeConstants<3> c_;

@@ -181,11 +181,22 @@ private:
         bonds_.set_window(sweep_.window->origin());
         // Overlapping vectors stay within this piece: what lies before may have left the window.
         for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
+        if (sweep_.volumetric)
+          take_other_pressures(turned_, end);
         turned_ = end;
       }
       if (ranges[turning_].end > target)
         return;
     }
+  }
+
+  /// Into the window, of those in [begin, end); each piece comes after the last.
+  HWY_INLINE void take_other_pressures(int begin, int end)
+  {
+    const std::vector<int> &others = *sweep_.arrays.other_particles;
+    for (; other_ < others.size() && others[other_] < end; ++other_)
+      if (others[other_] >= begin)
+        bonds_.take_other_pressure(others[other_]);
   }
 
   HWY_INLINE void dilatation(const PieceCursor &piece)
@@ -232,6 +243,7 @@ private:
   PieceCursor dilated_;
   std::size_t turning_ = 0;        // range of the stage turn
   int turned_ = 0, forces_at_ = 0; // fronts of the stages
+  std::size_t other_ = 0;          // next of the other particles
 };
 
 /// Indices of the neighbours against those of the particles.

@@ -1,7 +1,6 @@
 #include "dem/many_body_force.h"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace ligament::dem
 {
@@ -27,31 +26,31 @@ template <int dim>
 ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
-    : packing_(std::move(packing)), materials_(materials), fracture_(fracture),
-      bonds_(packing_, materials),
-      kernel_(bonds_.directions(), bonds_.segments(), packing_.size(),
+    : spacing_(packing.spacing), materials_(materials), fracture_(fracture),
+      bonds_(packing, materials),
+      kernel_(bonds_.directions(), bonds_.segments(), packing.size(),
               materials.base().shear_modulus(), !materials.has_no_dilatation()),
       slices_(bonds_, materials.base().shear_modulus(), false), interfaces_(bonds_),
-      surface_(packing_, materials, std::move(loads)), contacts_(materials),
-      search_(packing_, mean_face_area(packing_)), wall_share_(packing_.size(), 0.),
-      lambda_per_volume_(packing_.size())
+      surface_(packing, materials, std::move(loads)), contacts_(materials),
+      search_(packing, mean_face_area(packing)), lambda_per_volume_(packing.size())
 {
   materials_.base().check();
   for (const auto &wall : surface_.walls())
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
-                           packing_.volume[wall.i];
+                           packing.volume[wall.i];
   lay_out_slices();
-  for (int i = 0; i < packing_.size(); ++i)
-    update_volumetric_stiffness(i);
-  for (const auto &face : packing_.faces)
+  for (int i = 0; i < packing.size(); ++i) {
+    update_volumetric_stiffness(i, packing.volume[i]);
+    double levers = 0;
+    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+      levers += b.area * (i == b.i ? b.lever_i : b.lever_j).norm();
+    });
+    largest_lever_share_ = std::max(largest_lever_share_, levers / packing.volume[i]);
+  }
+  for (const auto &face : packing.faces)
     if (face.cracked)
-      contacts_.add(BondNetwork<dim>::make_bond(face, materials_, packing_.thickness), true);
-  // The bonds hold what is needed of these: most of the memory of a packing.
-  const auto drop = [](auto &array) { std::decay_t<decltype(array)>().swap(array); };
-  drop(packing_.faces);
-  drop(packing_.global_id);
-  drop(packing_.diameter);
-  drop(packing_.material);
+      contacts_.add(BondNetwork<dim>::make_bond(face, materials_, packing.thickness), true);
+  boundary_faces_ = std::move(packing.boundary_faces);
 }
 
 template <int dim>
@@ -59,29 +58,40 @@ void ManyBodyForce<dim>::lay_out_slices()
 {
   slices_ = BondSlices<dim>(bonds_, materials_.base().shear_modulus(), bonds_.n_directions() == 0);
   records_ = {};
+  find_other_particles();
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_other_particles()
+{
   other_particles_ = slices_.particles();
   const auto loaded = surface_.particles();
   other_particles_.insert(other_particles_.end(), loaded.begin(), loaded.end());
   const auto &joined = interfaces_.members();
   other_particles_.insert(other_particles_.end(), joined.begin(), joined.end());
+  for_each_plastic([&](int i) { other_particles_.push_back(i); });
+  std::sort(other_particles_.begin(), other_particles_.end());
+  other_particles_.erase(std::unique(other_particles_.begin(), other_particles_.end()),
+                         other_particles_.end());
 }
 
 template <int dim>
-void ManyBodyForce<dim>::update_volumetric_stiffness(int i)
+void ManyBodyForce<dim>::update_volumetric_stiffness(int i, double volume)
 {
-  double phi = wall_share_[i];
+  const auto wall_share = wall_share_.find(i);
+  double phi = wall_share == wall_share_.end() ? 0 : wall_share->second;
   bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
     const double q = i == b.i ? b.lever_i.dot(b.normal) : -b.lever_j.dot(b.normal);
-    phi += b.area * q / packing_.volume[i];
+    phi += b.area * q / volume;
   });
   lambda_per_volume_[i] =
-      energy_weight(i) * materials_.of(i).volumetric_stiffness<dim>(phi) / packing_.volume[i];
+      energy_weight(i) * materials_.of(i).volumetric_stiffness<dim>(phi) / volume;
 }
 
 template <int dim>
 void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 {
-  core::require(energy_weights_.empty() && int(weights.size()) == packing_.size() &&
+  core::require(energy_weights_.empty() && int(weights.size()) == bonds_.n_particles() &&
                     broken_.empty() && !plastic_,
                 "energy weights are set once, for every particle of an intact body");
   bonds_.for_each_interface([&](BondId, const Bond<dim> &b) {
@@ -91,8 +101,8 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
   energy_weights_ = weights;
   bonds_.set_weights(weights);
   lay_out_slices();
-  for (int i = 0; i < packing_.size(); ++i)
-    update_volumetric_stiffness(i);
+  for (int i = 0; i < bonds_.n_particles(); ++i)
+    lambda_per_volume_[i] *= weights[i];
 }
 
 template <int dim>
@@ -105,7 +115,7 @@ LatticeArrays<dim> ManyBodyForce<dim>::arrays(const Particles &p, Workspace &wor
     a.rotation[c] = p.rotation[c].data();
   a.mask = bonds_.mask().data();
   a.lambda_per_volume = lambda_per_volume_.data();
-  a.other_pressure = work.other_pressure.data();
+  a.other_particles = &other_particles_;
   a.pressure = work.pressure.data();
   return a;
 }
@@ -114,10 +124,10 @@ template <int dim>
 void ManyBodyForce<dim>::find_turns(const Particles &p, Workspace &work) const
 {
   if constexpr (dim == 2) {
-    work.cosine_minus_1.resize(packing_.size());
-    work.sine.resize(packing_.size());
+    work.cosine_minus_1.resize(bonds_.n_particles());
+    work.sine.resize(bonds_.n_particles());
     cosine_minus_1_and_sine(p.rotation[0].data(), work.cosine_minus_1.data(), work.sine.data(),
-                            packing_.size());
+                            bonds_.n_particles());
   }
 }
 
@@ -177,23 +187,20 @@ template <int dim>
 void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLoads<dim> &surface,
                                              Workspace &work) const
 {
-  work.pressure.resize(packing_.size());
-  work.other_pressure.resize(packing_.size(), 0.);
+  work.pressure.resize(bonds_.n_particles());
   const LatticeArrays<dim> a = arrays(p, work);
   const SliceNearness *const slices = awake_slices(work);
   slices_.load(a, records_, slices);
   if (materials_.has_no_dilatation())
     return;
   for (const int i : other_particles_)
-    work.other_pressure[i] = 0;
-  for_each_plastic([&](int i) { work.other_pressure[i] = 0; });
-  slices_.add_pressures(a, work.other_pressure.data(), records_, slices);
-  surface.add_dilatation(p, lambda_per_volume_, work.other_pressure);
+    work.pressure[i] = 0;
+  slices_.add_pressures(a, records_, slices);
+  surface.add_dilatation(p, lambda_per_volume_, work.pressure);
   if (!interfaces_.empty())
-    interfaces_.add_own_part(p, lambda_per_volume_, work.other_pressure);
-  for_each_plastic([&](int i) {
-    work.other_pressure[i] -= lambda_per_volume_[i] * plastic_->flowed_volume()[i];
-  });
+    interfaces_.add_own_part(p, lambda_per_volume_, work.pressure);
+  for_each_plastic(
+      [&](int i) { work.pressure[i] -= lambda_per_volume_[i] * plastic_->flowed_volume()[i]; });
 }
 
 template <int dim>
@@ -247,7 +254,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     flow(p);
   }
   if (!contacts_.all().empty()) {
-    searching_ = searching_ || contacts_.has_slid(p, packing_.spacing / 4);
+    searching_ = searching_ || contacts_.has_slid(p, spacing_ / 4);
     if (searching_)
       search_.update(p, bonds_, contacts_);
     if (searching_ && rest_ && !rest_->all_awake())
@@ -266,13 +273,13 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   Workspace work;
   find_other_pressure(p, surface_, work);
   const LatticeArrays<dim> a = arrays(p, work);
-  std::vector<double> energy(packing_.size(), 0.);
+  std::vector<double> energy(bonds_.n_particles(), 0.);
   kernel_.energies(a, bonds_.segments(), rows_, energy.data());
   slices_.add_energies(a, records_, energy.data());
   double sum = surface_.energy(p) + contacts_.energy(p) + interfaces_.energy(p, work.pressure);
   if (plastic_)
     sum += plastic_energy(p, work);
-  for (int i = 0; i < packing_.size(); ++i) {
+  for (int i = 0; i < bonds_.n_particles(); ++i) {
     sum += energy[i];
     if (lambda_per_volume_[i] != 0) // 1/2 lambda V theta^2 = 1/2 (lambda theta)^2 / (lambda / V)
       sum += 0.5 * work.pressure[i] * work.pressure[i] / lambda_per_volume_[i];

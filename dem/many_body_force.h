@@ -14,7 +14,7 @@
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
 
-#include <optional>
+#include <map>
 
 namespace ligament::dem
 {
@@ -60,16 +60,18 @@ public:
 
   /// Without the bonds between materials and the volumes that they enter.
   void
-  add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
+  add_tangent(const Particles &particles,
+              const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
 
   void set_energy_weights(const std::vector<double> &weights) override;
 
   void
-  for_each_face(const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
+  for_each_face(const Particles &particles,
+                const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
 
   /// Of the bonds that are intact now.
   std::unique_ptr<particles::PartialForce<dim>>
-  part(const std::vector<int> &members,
+  part(const Particles &particles, const std::vector<int> &members,
        const typename particles::ParticleForce<dim>::TermShare &share) const override;
 
   /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10);
@@ -117,7 +119,6 @@ private:
   struct Workspace
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
-    std::vector<double> other_pressure;       // the part that isn't from lattice bonds
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
     std::vector<RowRange> exceeded_rows;
     std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
@@ -144,7 +145,8 @@ private:
   double tension(const Bond<dim> &bond, const Particles &particles,
                  const std::vector<double> &pressure) const;
 
-  /// The pressures from irregular bonds and loaded faces, and the slices' records.
+  /// The pressures of other_particles_ from irregular bonds and loaded faces, and the slices'
+  /// records.
   void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
                            Workspace &work) const;
   /// What a step with this workspace passes over; null: everything.
@@ -188,7 +190,7 @@ private:
   void particle_stresses(const Particles &particles, const PlasticRows<dim> &rows,
                          const RowRange &range, std::vector<Tensor> &stress) const;
   /// V M : ep of a particle, and the share of one of its bonds, in m^3.
-  void update_flowed_volume(int i);
+  void update_flowed_volume(int i, double volume);
   double flowed_volume(const Bond<dim> &bond, int i) const;
   /// Yields where the stress asks for it; forces and pressures follow.
   void flow(Particles &particles);
@@ -215,10 +217,13 @@ private:
   /// counts it.
   double remove_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
   void lay_out_slices();
-  void update_volumetric_stiffness(int i);
+  void find_other_particles();
+  /// For a cell of so many m^3.
+  void update_volumetric_stiffness(int i, double volume);
   double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
-  particles::Packing<dim> packing_;
+  double spacing_; // m
+  std::vector<particles::BoundaryFace<dim>> boundary_faces_;
   Materials materials_;
   FractureLaw fracture_;
   BondNetwork<dim> bonds_;
@@ -229,8 +234,10 @@ private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   bool searching_ = false;
-  std::vector<int> other_particles_;      // those whose pressure has parts beside the lattice's
-  std::vector<double> wall_share_;        // sum of S q / V over faces held along their normal
+  double largest_lever_share_ = 0; // of all particles: sum of S |a| / V over the bonds
+  // Particles whose pressure has parts beside the lattice's, ascending.
+  std::vector<int> other_particles_;
+  std::map<int, double> wall_share_;      // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
   std::vector<double> energy_weights_;    // of the particles; empty: all 1
   particles::RestBlocks<dim> *rest_ = nullptr;

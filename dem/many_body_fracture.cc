@@ -120,11 +120,11 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   if (plastic_)
     for (const int i : {b.i, b.j})
       if (plastic_->is_plastic(i))
-        update_flowed_volume(i);
+        update_flowed_volume(i, p.volume[i]);
   for (const auto &[i, share] : shares)
     if (lambda_per_volume_[i] != 0) {
       const double rest = pressure[i] / lambda_per_volume_[i] - share;
-      update_volumetric_stiffness(i);
+      update_volumetric_stiffness(i, p.volume[i]);
       pressure[i] = lambda_per_volume_[i] * rest;
     }
   if (at_interface)
@@ -147,8 +147,7 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     search_.add_surface_particle(b.j);
     fracture_energy_ += released;
     broken_.push_back({b.i, b.j, p.global_id[b.i], p.global_id[b.j], time,
-                       Vector<dim>(get(packing_.centre, b.i) + b.lever_i), b.normal, b.area,
-                       released});
+                       Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, released});
   }
   searching_ = true;
   elastic_forces(p, surface_, 0., work_);
@@ -157,16 +156,16 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
   // the mean force leaves as it is.
   const double dt = time_ - last_time_;
-  const auto mean = [&](auto &now, const auto &before, const std::vector<double> &inverse) {
+  const auto mean = [&](auto &now, const auto &before, double moment) {
     for (std::size_t c = 0; c < now.size(); ++c)
       for (std::size_t i = 0; i < now[c].size(); ++i) {
-        breaking_step_error_ +=
-            dt * dt / 8 * inverse[i] * (now[c][i] - before[c][i]) * (now[c][i] + before[c][i]);
+        breaking_step_error_ += dt * dt / (8 * moment * p.mass[i]) * (now[c][i] - before[c][i]) *
+                                (now[c][i] + before[c][i]);
         now[c][i] = 0.5 * (now[c][i] + before[c][i]);
       }
   };
-  mean(p.force, force_before, p.inverse_mass);
-  mean(p.torque, torque_before, p.inverse_inertia);
+  mean(p.force, force_before, 1.);
+  mean(p.torque, torque_before, p.gyration);
 }
 
 template void ManyBodyForce<2>::set_strength(double);

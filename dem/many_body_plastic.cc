@@ -38,15 +38,10 @@ void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
 {
   core::require(interfaces_.empty() && energy_weights_.empty(),
                 "plastic flow needs a body of one elastic material with its whole energy");
-  std::vector<double> load(packing_.size(), 0.);
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    load[b.i] += b.area * b.lever_i.norm() / packing_.volume[b.i];
-    load[b.j] += b.area * b.lever_j.norm() / packing_.volume[b.j];
-  });
-  const double most = *std::max_element(load.begin(), load.end());
   pressure_share_ = is_plane_strain() ? 2 * std::abs(materials_.base().poissons_ratio) : 0;
   constexpr double round_off = 1e-9;
-  yield_traction_ = (1 - round_off) * law->elastic_limit() / (most + pressure_share_);
+  yield_traction_ =
+      (1 - round_off) * law->elastic_limit() / (largest_lever_share_ + pressure_share_);
   core::require(yield_traction_ > 0, "the elastic limit must be positive");
   flowed_at_.reset();
   plastic_ = std::make_unique<PlasticBlocks<dim>>(bonds_, std::move(law), surface_.particles());
@@ -73,7 +68,7 @@ template <int dim>
 PlasticRows<dim> ManyBodyForce<dim>::plastic_rows(const Particles &p, Workspace &work) const
 {
   return {arrays(p, work),     kernel_.constants(), &bonds_.segments(),
-          plastic_->strains(), plastic_->turned(),  packing_.size()};
+          plastic_->strains(), plastic_->turned(),  bonds_.n_particles()};
 }
 
 template <int dim>
@@ -148,7 +143,7 @@ template <int dim>
 double ManyBodyForce<dim>::flowing_energy(const Particles &p) const
 {
   double sum = work_.plastic_energy + surface_.energy(p);
-  for (int i = 0; i < packing_.size(); ++i)
+  for (int i = 0; i < bonds_.n_particles(); ++i)
     if (lambda_per_volume_[i] != 0)
       sum += 0.5 * work_.pressure[i] * work_.pressure[i] / lambda_per_volume_[i];
   return sum;
@@ -179,8 +174,7 @@ void ManyBodyForce<dim>::particle_stresses(const Particles &p, const PlasticRows
                                    moment += f * a.transpose();
                                });
     const Matrix r = matrix_of(Turn<dim>::of(p, i));
-    const Matrix in_plane =
-        r.transpose() * (moment + moment.transpose()) * r / (2 * packing_.volume[i]);
+    const Matrix in_plane = r.transpose() * (moment + moment.transpose()) * r / (2 * p.volume[i]);
     const double zz =
         is_plane_strain() ? work_.pressure[i] - twice_shear * plastic_->tensor(i)[2] : 0;
     stress.push_back(to_tensor(in_plane, zz));
@@ -188,9 +182,9 @@ void ManyBodyForce<dim>::particle_stresses(const Particles &p, const PlasticRows
 }
 
 template <int dim>
-void ManyBodyForce<dim>::update_flowed_volume(int i)
+void ManyBodyForce<dim>::update_flowed_volume(int i, double volume)
 {
-  double sum = is_plane_strain() ? packing_.volume[i] * plastic_->strain_zz(i) : 0;
+  double sum = is_plane_strain() ? volume * plastic_->strain_zz(i) : 0;
   bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { sum += flowed_volume(b, i); });
   plastic_->flowed_volume(i) = sum;
 }
@@ -211,7 +205,7 @@ void ManyBodyForce<dim>::flow(Particles &p)
   if (pressure_share_ > 0)
     for (int b = 0; b < plastic_->n_blocks(); ++b) {
       const int begin = b * TractionScreen::block,
-                end = std::min(begin + TractionScreen::block, packing_.size());
+                end = std::min(begin + TractionScreen::block, bonds_.n_particles());
       int found = 0; // without a branch, so that it is done in vectors
       for (int i = begin; i < end; ++i)
         found |= std::abs(work_.pressure[i]) >= pressure_share_ * yield_traction_;
@@ -241,15 +235,18 @@ void ManyBodyForce<dim>::flow(Particles &p)
   // the force in it, so that of the force's change belongs to the balance.
   const auto power = [&] {
     double sum = 0;
-    for (int i = 0; i < packing_.size(); ++i)
+    for (int i = 0; i < bonds_.n_particles(); ++i)
       sum += get(p.velocity, i).dot(get(p.force, i)) + get(p.spin, i).dot(get(p.torque, i));
     return sum;
   };
   double taken = flowing_energy(p) + 0.5 * (time_ - last_time_) * power();
+  const int n_before = plastic_->n_plastic_blocks();
   for (const auto &[i, tensor] : increments)
     plastic_->add(i, tensor);
+  if (plastic_->n_plastic_blocks() > n_before)
+    find_other_particles();
   for (const auto &[i, tensor] : increments)
-    update_flowed_volume(i);
+    update_flowed_volume(i, p.volume[i]);
   surface_.set_plastic([&](int i) { return plastic_->strain(i); });
   elastic_forces(p, surface_, strength(), work_);
   taken -= flowing_energy(p) + 0.5 * (time_ - last_time_) * power();
@@ -270,8 +267,8 @@ template double ManyBodyForce<2>::plastic_energy(const Particles &, Workspace &)
 template double ManyBodyForce<3>::plastic_energy(const Particles &, Workspace &) const;
 template double ManyBodyForce<2>::flowed_volume(const Bond<2> &, int) const;
 template double ManyBodyForce<3>::flowed_volume(const Bond<3> &, int) const;
-template void ManyBodyForce<2>::update_flowed_volume(int);
-template void ManyBodyForce<3>::update_flowed_volume(int);
+template void ManyBodyForce<2>::update_flowed_volume(int, double);
+template void ManyBodyForce<3>::update_flowed_volume(int, double);
 template void ManyBodyForce<2>::flow(Particles &);
 template void ManyBodyForce<3>::flow(Particles &);
 } // namespace ligament::dem

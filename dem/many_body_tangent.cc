@@ -54,12 +54,13 @@ Spin<3> bending_stiffness(const Bond<3> &b)
 
 template <int dim>
 void ManyBodyForce<dim>::add_tangent(
+    const Particles &particles,
     const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const
 {
   using Term = particles::QuadraticTerm<dim>;
   constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
   const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
-    return get(packing_.centre, i) + lever;
+    return get(particles.reference, i) + lever;
   };
 
   Term term;
@@ -91,10 +92,10 @@ void ManyBodyForce<dim>::add_tangent(
 
   if (materials_.has_no_dilatation())
     return;
-  std::vector<std::vector<int>> walls_of(packing_.size());
+  std::vector<std::vector<int>> walls_of(bonds_.n_particles());
   for (std::size_t w = 0; w < surface_.walls().size(); ++w)
     walls_of[surface_.walls()[w].i].push_back(int(w));
-  for (int i = 0; i < packing_.size(); ++i) {
+  for (int i = 0; i < bonds_.n_particles(); ++i) {
     if (interfaces_.is_member(i))
       continue;
     term.kind = Term::Kind::volumetric;
@@ -107,28 +108,30 @@ void ManyBodyForce<dim>::add_tangent(
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
       const bool first = b.i == i;
       const Vector<dim> own = first ? b.lever_i : b.lever_j, other = first ? b.lever_j : b.lever_i;
-      const auto weight = (b.area / b.distance / packing_.volume[i] * own.transpose()).eval();
+      const auto weight = (b.area / b.distance / particles.volume[i] * own.transpose()).eval();
       term.rows.template middleCols<dofs>(0) += weight * block<dim>(own, -1);
       term.rows.template middleCols<dofs>(member++ * dofs) += weight * block<dim>(other, 1);
     });
     for (const int w : walls_of[i]) {
       const auto &wall = surface_.walls()[w];
       const auto weight =
-          (wall.area / packing_.volume[i] * wall.prescribed.cwiseProduct(wall.normal).transpose())
+          (wall.area / particles.volume[i] * wall.prescribed.cwiseProduct(wall.normal).transpose())
               .eval();
       term.rows.template middleCols<dofs>(0) += weight * block<dim>(wall.lever, -1);
     }
-    term.stiffness.setConstant(1, lambda_per_volume_[i] * packing_.volume[i] * packing_.volume[i]);
+    term.stiffness.setConstant(1,
+                               lambda_per_volume_[i] * particles.volume[i] * particles.volume[i]);
     add(term);
   }
 }
 
 template <int dim>
 void ManyBodyForce<dim>::for_each_face(
+    const Particles &particles,
     const std::function<void(const particles::FaceView<dim> &)> &visit) const
 {
   const auto both_sides = [&](const Bond<dim> &b, bool bonded) {
-    const Vector<dim> centroid = get(packing_.centre, b.i) + b.lever_i;
+    const Vector<dim> centroid = get(particles.reference, b.i) + b.lever_i;
     visit({b.i, b.j, b.normal, b.area, centroid, bonded});
     visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
   };
@@ -136,17 +139,17 @@ void ManyBodyForce<dim>::for_each_face(
   for (const auto &contact : contacts_.all())
     if (contact.from_face)
       both_sides(contact.face, false);
-  for (const auto &face : packing_.boundary_faces)
+  for (const auto &face : boundary_faces_)
     visit({face.i, -1, face.normal, face.area,
-           Vector<dim>(get(packing_.centre, face.i) + face.lever), false});
+           Vector<dim>(get(particles.reference, face.i) + face.lever), false});
 }
 
 template <int dim>
 std::unique_ptr<particles::PartialForce<dim>>
-ManyBodyForce<dim>::part(const std::vector<int> &members,
+ManyBodyForce<dim>::part(const Particles &particles, const std::vector<int> &members,
                          const typename particles::ParticleForce<dim>::TermShare &share) const
 {
-  std::vector<int> index(packing_.size(), -1);
+  std::vector<int> index(bonds_.n_particles(), -1);
   for (std::size_t k = 0; k < members.size(); ++k)
     index[members[k]] = int(k);
   std::vector<double> volume_share(members.size(), 0.), lambda_per_volume(members.size(), 0.);
@@ -156,7 +159,7 @@ ManyBodyForce<dim>::part(const std::vector<int> &members,
       std::vector<int> of = {i};
       bonds_.for_each_bond_of(
           i, [&](BondId, const Bond<dim> &b) { of.push_back(b.i == i ? b.j : b.i); });
-      volume_share[k] = share(get(packing_.centre, i), of);
+      volume_share[k] = share(get(particles.reference, i), of);
       lambda_per_volume[k] = lambda_per_volume_[i];
     }
   std::vector<typename PartialManyBody<dim>::SharedBond> bonds;
@@ -166,7 +169,7 @@ ManyBodyForce<dim>::part(const std::vector<int> &members,
     Bond<dim> renumbered = b;
     renumbered.i = index[b.i];
     renumbered.j = index[b.j];
-    const double s = share(Vector<dim>(get(packing_.centre, b.i) + b.lever_i), {b.i, b.j});
+    const double s = share(Vector<dim>(get(particles.reference, b.i) + b.lever_i), {b.i, b.j});
     if (s != 0 || volume_share[renumbered.i] != 0 || volume_share[renumbered.j] != 0)
       bonds.push_back({renumbered, s});
   });
@@ -181,7 +184,7 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
   Workspace work;
   find_pressure(particles, work);
   for (auto &a : stress)
-    a.assign(packing_.size(), 0.);
+    a.assign(bonds_.n_particles(), 0.);
   bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
     const BondMotion<dim> m = motion(b, particles, work);
     const Vector<dim> f = bond_force(b, m, work.pressure);
@@ -191,8 +194,8 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
   surface_.add_moments(particles, work.pressure, stress);
   contacts_.add_moments(particles, stress);
   for (auto &a : stress)
-    for (int i = 0; i < packing_.size(); ++i)
-      a[i] /= energy_weight(i) * packing_.volume[i];
+    for (int i = 0; i < bonds_.n_particles(); ++i)
+      a[i] /= energy_weight(i) * particles.volume[i];
 }
 
 template <int dim>
@@ -216,18 +219,20 @@ double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::ve
 
 // The virtual members are instantiated here, the rest of the class in its own file.
 template void ManyBodyForce<2>::add_tangent(
-    const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
+    const Particles &, const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
 template void ManyBodyForce<3>::add_tangent(
-    const std::function<void(const particles::QuadraticTerm<3> &)> &) const;
+    const Particles &, const std::function<void(const particles::QuadraticTerm<3> &)> &) const;
 template void
-ManyBodyForce<2>::for_each_face(const std::function<void(const particles::FaceView<2> &)> &) const;
+ManyBodyForce<2>::for_each_face(const Particles &,
+                                const std::function<void(const particles::FaceView<2> &)> &) const;
 template void
-ManyBodyForce<3>::for_each_face(const std::function<void(const particles::FaceView<3> &)> &) const;
+ManyBodyForce<3>::for_each_face(const Particles &,
+                                const std::function<void(const particles::FaceView<3> &)> &) const;
 template std::unique_ptr<particles::PartialForce<2>>
-ManyBodyForce<2>::part(const std::vector<int> &,
+ManyBodyForce<2>::part(const Particles &, const std::vector<int> &,
                        const particles::ParticleForce<2>::TermShare &) const;
 template std::unique_ptr<particles::PartialForce<3>>
-ManyBodyForce<3>::part(const std::vector<int> &,
+ManyBodyForce<3>::part(const Particles &, const std::vector<int> &,
                        const particles::ParticleForce<3>::TermShare &) const;
 template void ManyBodyForce<2>::stresses(const Particles &, Components<3> &) const;
 template void ManyBodyForce<3>::stresses(const Particles &, Components<6> &) const;

@@ -13,8 +13,8 @@ void set_motion(particles::Particles<dim> &p, const Eigen::VectorXd &x, double a
 {
   const int n = p.size();
   for (int i = 0; i < n; ++i) {
-    const double a = amplitude * std::sqrt(p.inverse_mass[i]),
-                 b = amplitude * std::sqrt(p.inverse_inertia[i]);
+    const double a = amplitude * std::sqrt(p.inverse_mass(i)),
+                 b = amplitude * std::sqrt(p.inverse_inertia(i));
     for (int c = 0; c < dim; ++c)
       p.displacement[c][i] = a * x[c * n + i];
     for (int c = 0; c < n_spins<dim>; ++c)
@@ -30,8 +30,8 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
 {
   const int n = p.size();
   for (int i = 0; i < n; ++i) {
-    const double a = -std::sqrt(p.inverse_mass[i]) / amplitude,
-                 b = -std::sqrt(p.inverse_inertia[i]) / amplitude;
+    const double a = -std::sqrt(p.inverse_mass(i)) / amplitude,
+                 b = -std::sqrt(p.inverse_inertia(i)) / amplitude;
     for (int c = 0; c < dim; ++c)
       y[c * n + i] = a * p.force[c][i];
     for (int c = 0; c < n_spins<dim>; ++c)
@@ -52,10 +52,10 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
   const int size = n_particle_dofs<dim> * p.size();
   // Scaled so that the largest displacement stays far below the spacing, whatever the units.
   double largest = 0;
-  for (const double m : p.inverse_mass)
-    largest = std::max(largest, m);
+  for (int i = 0; i < p.size(); ++i)
+    largest = std::max(largest, p.inverse_mass(i));
   core::require(largest > 0, "no particle is free to move");
-  const double amplitude = 1e-9 * packing_.spacing / std::sqrt(largest);
+  const double amplitude = 1e-9 * spacing_ / std::sqrt(largest);
 
   Eigen::VectorXd v(size), previous = Eigen::VectorXd::Zero(size), y(size);
   std::uint64_t state = 88172645463325252ull; // xorshift: the same start vector everywhere

@@ -123,10 +123,10 @@ double solve_tip(const particles::Packing<dim> &packing, const DemMaterial &mate
       motion[dofs * i + dofs - 1] = u[2];
     }
   }
-  particles::solve_equilibrium(force, is_free, motion);
-
   particles::Particles<dim> state;
   particles::fill_particles(packing, scaled.density, state);
+  particles::solve_equilibrium(state, force, is_free, motion);
+
   std::vector<int> near;
   for (int i = 0; i < n; ++i) {
     set(state.displacement, i, Vector<dim>(motion.segment<dim>(dofs * i)));

@@ -316,7 +316,8 @@ void FemSolver<dim>::kick(double dt, double time)
     for (int i = 0; i < mesh_.n_nodes(); ++i)
       v[i] += dt * f[i] * w[i];
   }
-  dashpots_.act(dt, inverse_mass_, force, velocity);
+  dashpots_.act(
+      dt, [this](int i) { return inverse_mass_[i]; }, force, velocity);
   for (const LoadedComponent &h : held_components_)
     if (!released_node_[h.node])
       velocity[h.component][h.node] = (loads_[h.load].displacement(h.component, time + dt) -

@@ -7,8 +7,8 @@
 namespace ligament::particles
 {
 template <int dim>
-void solve_equilibrium(const ParticleForce<dim> &force, const std::vector<char> &is_free,
-                       Eigen::VectorXd &motion)
+void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim> &force,
+                       const std::vector<char> &is_free, Eigen::VectorXd &motion)
 {
   constexpr int dofs = n_particle_dofs<dim>;
   std::vector<int> unknown(is_free.size(), -1);
@@ -19,7 +19,7 @@ void solve_equilibrium(const ParticleForce<dim> &force, const std::vector<char> 
 
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
-  force.add_tangent([&](const QuadraticTerm<dim> &term) {
+  force.add_tangent(particles, [&](const QuadraticTerm<dim> &term) {
     if (std::none_of(term.members.begin(), term.members.end(),
                      [&](int i) { return unknown[i] >= 0; }))
       return;
@@ -52,8 +52,8 @@ void solve_equilibrium(const ParticleForce<dim> &force, const std::vector<char> 
       motion.segment<dofs>(dofs * i) = solution.segment<dofs>(dofs * unknown[i]);
 }
 
-template void solve_equilibrium(const ParticleForce<2> &, const std::vector<char> &,
-                                Eigen::VectorXd &);
-template void solve_equilibrium(const ParticleForce<3> &, const std::vector<char> &,
-                                Eigen::VectorXd &);
+template void solve_equilibrium(const Particles<2> &, const ParticleForce<2> &,
+                                const std::vector<char> &, Eigen::VectorXd &);
+template void solve_equilibrium(const Particles<3> &, const ParticleForce<3> &,
+                                const std::vector<char> &, Eigen::VectorXd &);
 } // namespace ligament::particles

@@ -12,6 +12,6 @@ namespace ligament::particles
 /// are taken as they are, those of free ones overwritten. Throws core::EnvironmentError when the
 /// stiffness cannot be factorised.
 template <int dim>
-void solve_equilibrium(const ParticleForce<dim> &force, const std::vector<char> &is_free,
-                       Eigen::VectorXd &motion);
+void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim> &force,
+                       const std::vector<char> &is_free, Eigen::VectorXd &motion);
 } // namespace ligament::particles

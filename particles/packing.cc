@@ -14,14 +14,11 @@ void fill_particles(const Packing<dim> &packing, const std::vector<double> &dens
   particles.resize(n);
   particles.reference = packing.centre;
   particles.volume = packing.volume;
-  particles.global_id = packing.global_id;
-  const double gyration = packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
+  particles.global_id = GlobalIds(packing.global_id);
+  particles.gyration = packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
   for (int i = 0; i < n; ++i) {
     const double density = densities[packing.material.empty() ? 0 : packing.material[i]];
     particles.mass[i] = density * packing.volume[i];
-    particles.inverse_mass[i] = 1 / particles.mass[i];
-    particles.inertia[i] = gyration * particles.mass[i];
-    particles.inverse_inertia[i] = 1 / particles.inertia[i];
   }
 }
 

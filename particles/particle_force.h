@@ -95,7 +95,8 @@ public:
   virtual void set_energy_weights(const std::vector<double> &weights) = 0;
 
   /// Every quadratic term of the linearised energy of the present bonds, once.
-  virtual void add_tangent(const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
+  virtual void add_tangent(const Particles<dim> &particles,
+                           const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
 
   /// Share of the energy of a term at `location` (m, reference) that `particles` enter.
   using TermShare =
@@ -104,16 +105,18 @@ public:
   /// The intact law with each term's energy times its share, on the particles `members` alone, in
   /// this order; a history starts anew. Terms that reach other particles must have the share 0.
   /// Throws core::InputError from a force that has no such part.
-  virtual std::unique_ptr<PartialForce<dim>> part(const std::vector<int> &members,
+  virtual std::unique_ptr<PartialForce<dim>> part(const Particles<dim> &particles,
+                                                  const std::vector<int> &members,
                                                   const TermShare &share) const;
 
   /// Every face of every cell, once per side (i, j), then the faces on the surface (j = -1).
-  virtual void for_each_face(const std::function<void(const FaceView<dim> &)> &visit) const = 0;
+  virtual void for_each_face(const Particles<dim> &particles,
+                             const std::function<void(const FaceView<dim> &)> &visit) const = 0;
 };
 
 template <int dim>
-std::unique_ptr<PartialForce<dim>> ParticleForce<dim>::part(const std::vector<int> &,
-                                                            const TermShare &) const
+std::unique_ptr<PartialForce<dim>>
+ParticleForce<dim>::part(const Particles<dim> &, const std::vector<int> &, const TermShare &) const
 {
   throw core::InputError("/coupling/regime: this force cannot be evaluated on the motion of the "
                          "mesh; choose \"linear\" or \"corotated\"");

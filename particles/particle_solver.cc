@@ -1,6 +1,9 @@
 #include "particles/particle_solver.h"
 
+#include "particles/kick_velocities.h"
 #include "particles/turn_orientations.h"
+
+#include <cmath>
 
 namespace ligament::particles
 {
@@ -15,7 +18,7 @@ template <int dim>
 void ParticleSolver<dim>::let_rest(const RestLimits &limits)
 {
   const auto for_each_pair = [&](const typename RestBlocks<dim>::VisitPair &visit) {
-    force->for_each_face([&](const FaceView<dim> &face) {
+    force->for_each_face(state, [&](const FaceView<dim> &face) {
       if (face.j >= 0)
         visit(face.i, face.j);
     });
@@ -38,25 +41,17 @@ void ParticleSolver<dim>::for_each_awake(Visit &&visit) const
 template <int dim>
 void ParticleSolver<dim>::kick(double dt)
 {
-  for (int c = 0; c < dim; ++c) {
-    double *__restrict v = state.velocity[c].data();
-    const double *__restrict f = state.force[c].data();
-    const double *__restrict m = state.inverse_mass.data();
-    for_each_awake([&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        v[i] += dt * f[i] * m[i];
-    });
-  }
-  for (int c = 0; c < n_spins<dim>; ++c) {
-    double *__restrict w = state.spin[c].data();
-    const double *__restrict t = state.torque[c].data();
-    const double *__restrict j = state.inverse_inertia.data();
-    for_each_awake([&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        w[i] += dt * t[i] * j[i];
-    });
-  }
-  dashpots.act(dt, state.inverse_mass, state.force, state.velocity);
+  const auto kick = [&](auto &velocity, const auto &force, double by) {
+    for (std::size_t c = 0; c < velocity.size(); ++c)
+      for_each_awake([&](int begin, int end) {
+        kick_velocities(velocity[c].data() + begin, force[c].data() + begin,
+                        state.mass.data() + begin, by, end - begin);
+      });
+  };
+  kick(state.velocity, state.force, dt);
+  kick(state.spin, state.torque, dt / state.gyration);
+  dashpots.act(
+      dt, [this](int i) { return state.inverse_mass(i); }, state.force, state.velocity);
 }
 
 template <int dim>
@@ -95,13 +90,15 @@ double ParticleSolver<dim>::kinetic_energy(double dt) const
 {
   double sum = 0;
   for (int i = 0; i < state.n_owned; ++i) {
+    if (std::isinf(state.mass[i])) // held
+      continue;
     for (int c = 0; c < dim; ++c) {
       const double v = state.velocity[c][i];
-      sum += state.mass[i] * v * (v + dt * state.force[c][i] * state.inverse_mass[i]);
+      sum += v * (state.mass[i] * v + dt * state.force[c][i]);
     }
     for (int c = 0; c < n_spins<dim>; ++c) {
       const double w = state.spin[c][i];
-      sum += state.inertia[i] * w * (w + dt * state.torque[c][i] * state.inverse_inertia[i]);
+      sum += w * (state.inertia(i) * w + dt * state.torque[c][i]);
     }
   }
   return sum / 2;

@@ -2,15 +2,15 @@
 #pragma once
 
 #include "core/types.h"
+#include "particles/global_ids.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace ligament::particles
 {
 /// Owned particles first, ghosts after. Total Lagrangian: reference centres, displacements and
 /// orientations against the reference. Orientation: 2D one angle (rad, unwrapped); 3D a unit
-/// quaternion (w, x, y, z). Held particles have inverse mass and inverse inertia 0.
+/// quaternion (w, x, y, z). Held particles have infinite mass.
 template <int dim>
 struct Particles
 {
@@ -28,19 +28,20 @@ struct Particles
   Components<n_spins<dim>> torque;  // N m, in space axes
   std::vector<double> volume;       // m^3 (2D: area times thickness)
   std::vector<double> mass;         // kg
-  std::vector<double> inverse_mass; // 1/kg, 0 for held particles
-  std::vector<double> inertia;      // kg m^2
-  std::vector<double> inverse_inertia;
-  std::vector<std::uint8_t> material;
-  std::vector<std::int64_t> global_id;
+  double gyration = 1;              // m^2, inertia per mass, of all
+  GlobalIds global_id;
 
   int size() const { return n_owned + n_ghosts; }
+
+  double inverse_mass(int i) const { return 1 / mass[i]; }       // 1/kg
+  double inertia(int i) const { return gyration * mass[i]; }     // kg m^2
+  double inverse_inertia(int i) const { return 1 / inertia(i); } // 1/(kg m^2)
 
   /// Calls visit(name, array) for every array; halo, output and checkpoint read this list.
   template <typename Visit>
   void for_each_array(Visit &&visit);
 
-  /// n owned particles at rest, in the reference orientation, with zero mass.
+  /// n owned particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
   void resize(int n);
 };
 
@@ -61,11 +62,6 @@ void Particles<dim>::for_each_array(Visit &&visit)
   components("torque", torque);
   visit("volume", volume);
   visit("mass", mass);
-  visit("inverse_mass", inverse_mass);
-  visit("inertia", inertia);
-  visit("inverse_inertia", inverse_inertia);
-  visit("material", material);
-  visit("global_id", global_id);
 }
 
 template <int dim>
@@ -76,5 +72,6 @@ void Particles<dim>::resize(int n)
   for_each_array([&](const char *, auto &array) { array.assign(n, 0); });
   if (dim == 3)
     rotation[0].assign(n, 1.);
+  global_id = GlobalIds(n);
 }
 } // namespace ligament::particles

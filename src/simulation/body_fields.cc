@@ -119,7 +119,7 @@ Snapshot snapshot(const CoupledBody<dim> &body, double time)
   if (!body.zone)
     return s;
   const auto &state = body.zone->state;
-  s.global_id = state.global_id;
+  s.global_id = state.global_id.list();
   for (int i = 0; i < state.n_owned; ++i)
     for (int c = 0; c < dim; ++c) {
       s.reference.push_back(state.reference[c][i]);

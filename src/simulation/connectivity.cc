@@ -33,7 +33,7 @@ bool is_broken_across(const CoupledBody<dim> &body, int axis)
   const int low = n_particles + n_nodes, high = low + 1;
   Sets sets(high + 1);
   if (body.zone) {
-    body.zone->force->for_each_face([&](const particles::FaceView<dim> &face) {
+    body.zone->force->for_each_face(body.zone->state, [&](const particles::FaceView<dim> &face) {
       if (face.j >= 0) {
         if (face.bonded)
           sets.join(face.i, face.j);

@@ -12,15 +12,15 @@ namespace
 /// damping <- -min(fraction |force|, what stops it) sign(velocity); force += damping. The velocity
 /// is the one half-way through the kick: at large steps stiff modes change sign in every step, and
 /// a force against the old velocity would drive them.
-template <std::size_t n>
-void oppose(double fraction, double dt, const std::vector<double> &inverse_mass,
+template <std::size_t n, typename InverseMass>
+void oppose(double fraction, double dt, const InverseMass &inverse_mass,
             const std::array<std::vector<double>, n> &velocity,
             std::array<std::vector<double>, n> &force, std::array<std::vector<double>, n> &damping)
 {
   for (std::size_t c = 0; c < n; ++c) {
     damping[c].resize(force[c].size());
     for (std::size_t i = 0; i < force[c].size(); ++i) {
-      const double half = 0.5 * dt * inverse_mass[i];
+      const double half = 0.5 * dt * inverse_mass(i);
       const double v = velocity[c][i] + half * force[c][i];
       const double f = fraction * std::abs(force[c][i]);
       damping[c][i] = -std::copysign(half > 0 ? std::min(f, std::abs(v) / half) : 0, v);
@@ -60,8 +60,12 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
 {
   if (body.zone) {
     auto &state = body.zone->state;
-    oppose(parameters_.local, dt, state.inverse_mass, state.velocity, state.force, zone_force_);
-    oppose(parameters_.local, dt, state.inverse_inertia, state.spin, state.torque, zone_torque_);
+    oppose(
+        parameters_.local, dt, [&](int i) { return state.inverse_mass(i); }, state.velocity,
+        state.force, zone_force_);
+    oppose(
+        parameters_.local, dt, [&](int i) { return state.inverse_inertia(i); }, state.spin,
+        state.torque, zone_torque_);
     if (const auto *overlap = body.coupler->overlap())
       for (const auto &member : overlap->members)
         if (member.pad) {
@@ -79,8 +83,9 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
     if (inverse_far_mass_.empty())
       for (const double mass : far.lumped_mass())
         inverse_far_mass_.push_back(mass > 0 ? 1 / mass : 0);
-    oppose(parameters_.local, dt * body.coupler->step_ratio(), inverse_far_mass_, far.velocity,
-           far.force, far_force_);
+    oppose(
+        parameters_.local, dt * body.coupler->step_ratio(),
+        [&](int i) { return inverse_far_mass_[i]; }, far.velocity, far.force, far_force_);
     if (const auto *overlap = body.coupler->overlap())
       for (const int node : overlap->near_nodes)
         release(node, far.force, far_force_);

@@ -20,12 +20,14 @@ double moment_ratio(int n, const dem::DemMaterial &material)
   constexpr int period = 8, dofs = n_particle_dofs<2>;
   auto packing = make_periodic_packing<2>(particles::LatticeKind::square, period, n, true);
   const auto centre = packing.centre;
+  particles::Particles<2> state;
+  particles::fill_particles(packing, material.density, state);
   const dem::ManyBodyForce<2> force(std::move(packing), material, {});
 
   // Energy of one column per unit length: 1/2 (repeated, kappa) H (repeated, kappa).
   const int size = dofs * n;
   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(size + 1, size + 1);
-  force.add_tangent([&](const particles::QuadraticTerm<2> &term) {
+  force.add_tangent(state, [&](const particles::QuadraticTerm<2> &term) {
     using Kind = particles::QuadraticTerm<2>::Kind;
     const auto in_column = [&](int i) { return centre[0][i] < 0.5; };
     const double share = term.kind == Kind::bond

@@ -14,7 +14,7 @@ BlochWaves<dim>::BlochWaves(const particles::Particles<dim> &particles,
     : mass_(dofs), axis_(axis)
 {
   using Kind = typename particles::QuadraticTerm<dim>::Kind;
-  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+  force.add_tangent(particles, [&](const particles::QuadraticTerm<dim> &term) {
     // Bonds belong to both ends, the volumetric energy to its particle.
     const bool is_bond = term.kind == Kind::bond;
     const int ends = is_bond ? 2 : 1;
@@ -33,7 +33,7 @@ BlochWaves<dim>::BlochWaves(const particles::Particles<dim> &particles,
   });
   core::require(!terms_.empty(), "no bonds around the centre of the waves");
   mass_.template head<dim>().setConstant(particles.mass[centre]);
-  mass_.template tail<n_spins<dim>>().setConstant(particles.inertia[centre]);
+  mass_.template tail<n_spins<dim>>().setConstant(particles.inertia(centre));
 }
 
 template <int dim>

@@ -46,6 +46,8 @@ double displacement_error(double radius)
   dem::DemMaterial material;
   material.poissons_ratio = 0.3;
   const dem::ManyBodyForce<2> force(packing, material, {});
+  particles::Particles<2> state;
+  particles::fill_particles(packing, material.density, state);
   const KirschField field{radius, material.shear_modulus(), material.poissons_ratio};
 
   const int n = packing.size();
@@ -57,7 +59,7 @@ double displacement_error(double radius)
     is_free[i] = x.cwiseAbs().maxCoeff() < half - 3;
   }
   Eigen::VectorXd motion = exact;
-  particles::solve_equilibrium(force, is_free, motion);
+  particles::solve_equilibrium(state, force, is_free, motion);
 
   double worst = 0;
   for (int i = 0; i < n; ++i)

@@ -148,7 +148,7 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
     sum += zone.mass[i] * u.dot(v);
     for (int c = 0; c < n_spins<dim>; ++c) {
       const int k = (dim + c) * n_particles_ + i;
-      sum += zone.inertia[i] * x[k] * y[k];
+      sum += zone.inertia(i) * x[k] * y[k];
     }
   }
   if (overlap)
@@ -291,7 +291,7 @@ double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x, const Place &
     if (!(strain <= largest))
       largest = strain;
   };
-  body_.force->for_each_face([&](const particles::FaceView<dim> &face) {
+  body_.force->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {
     if (face.j > face.i && face.bonded)
       compare(place(face.i), place(face.j), particle(x, face.j) - particle(x, face.i));
   });

@@ -167,7 +167,7 @@ Spin<dim> angular_momentum(const CoupledBody<dim> &body, const Eigen::SparseMatr
       }
     if (index >= 0 && overlap.members[index].pad)
       continue;
-    sum += zone.mass[i] * core::moment(x, w) + zone.inertia[i] * get(zone.spin, i);
+    sum += zone.mass[i] * core::moment(x, w) + zone.inertia(i) * get(zone.spin, i);
   }
   return sum;
 }

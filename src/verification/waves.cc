@@ -21,7 +21,7 @@ double kinetic_energy(const Strip<dim> &strip)
   for (int i = 0; i < state.n_owned; ++i)
     if (state.reference[dim - 1][i] < strip.mesh_begin)
       sum += state.mass[i] * get(state.velocity, i).squaredNorm() +
-             state.inertia[i] * get(state.spin, i).squaredNorm();
+             state.inertia(i) * get(state.spin, i).squaredNorm();
   return sum / 2;
 }
 

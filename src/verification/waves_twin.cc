@@ -24,7 +24,7 @@ public:
     const auto constants = zone.force->elastic_constants();
     impedance_.fill(constants.density * constants.wave_speed_s);
     impedance_[dim - 1] = constants.density * constants.wave_speed_p;
-    zone.force->for_each_face([&](const particles::FaceView<dim> &face) {
+    zone.force->for_each_face(zone.state, [&](const particles::FaceView<dim> &face) {
       if (face.j < 0 && face.normal[dim - 1] < 0)
         sites_.push_back({face.i, -face.area * face.normal[dim - 1],
                           face.centroid - get(zone.state.reference, face.i)});
@@ -184,7 +184,7 @@ double difference_energy(const particles::Particles<dim> &a, const particles::Pa
       continue;
     const int j = of_id.at(a.global_id[i]);
     sum += a.mass[i] * (get(a.velocity, i) - get(b.velocity, j)).squaredNorm() +
-           a.inertia[i] * (get(a.spin, i) - get(b.spin, j)).squaredNorm();
+           a.inertia(i) * (get(a.spin, i) - get(b.spin, j)).squaredNorm();
   }
   return sum;
 }

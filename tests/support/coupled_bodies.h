@@ -50,7 +50,7 @@ struct CoupledBodiesParameters
   double step_fraction = 0.9;
   /// Puts another law in the place of the many-body law; empty: keeps it.
   std::function<std::unique_ptr<particles::ParticleForce<dim>>(
-      std::unique_ptr<particles::ParticleForce<dim>>)>
+      const particles::Particles<dim> &, std::unique_ptr<particles::ParticleForce<dim>>)>
       replace_law;
 };
 
@@ -97,7 +97,7 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   std::unique_ptr<particles::ParticleForce<dim>> law = std::make_unique<dem::ManyBodyForce<dim>>(
       std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>());
   if (p.replace_law)
-    law = p.replace_law(std::move(law));
+    law = p.replace_law(state, std::move(law));
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(law));
   fem::Body<dim> material;
   material.stiffness = p.material.template elastic_constants<dim>().stiffness;

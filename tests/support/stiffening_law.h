@@ -17,9 +17,10 @@ public:
   using Particles = particles::Particles<dim>;
   using Base = particles::ParticleForce<dim>;
 
-  StiffeningLaw(std::unique_ptr<Base> law, double beta) : law_(std::move(law)), beta_(beta)
+  StiffeningLaw(const Particles &particles, std::unique_ptr<Base> law, double beta)
+      : law_(std::move(law)), beta_(beta)
   {
-    law_->for_each_face([&](const particles::FaceView<dim> &face) {
+    law_->for_each_face(particles, [&](const particles::FaceView<dim> &face) {
       if (face.bonded && face.i < face.j)
         springs_.push_back({face.i, face.j, face.area, 1., face.centroid});
     });
@@ -47,21 +48,24 @@ public:
     law_->set_energy_weights(weights);
   }
   void
-  add_tangent(const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override
+  add_tangent(const Particles &p,
+              const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override
   {
-    law_->add_tangent(add);
+    law_->add_tangent(p, add);
   }
   void
-  for_each_face(const std::function<void(const particles::FaceView<dim> &)> &visit) const override
+  for_each_face(const Particles &p,
+                const std::function<void(const particles::FaceView<dim> &)> &visit) const override
   {
-    law_->for_each_face(visit);
+    law_->for_each_face(p, visit);
   }
 
   std::unique_ptr<particles::PartialForce<dim>>
-  part(const std::vector<int> &members, const typename Base::TermShare &share) const override
+  part(const Particles &p, const std::vector<int> &members,
+       const typename Base::TermShare &share) const override
   {
     auto part = std::make_unique<Part>();
-    part->law = law_->part(members, share);
+    part->law = law_->part(p, members, share);
     part->beta = beta_;
     for (const Spring &s : springs_) {
       const auto i = std::find(members.begin(), members.end(), s.i);

@@ -23,7 +23,8 @@ TEST(Dashpots, ActOnTheMeanVelocity)
     force[1][1] = f;
     velocity[1][1] = before + dt * f / m;
     Dashpots<2> dashpots({{{1, 1}, c}, {{0, 0}, c}});
-    dashpots.act(dt, inverse_mass, force, velocity);
+    dashpots.act(
+        dt, [&](int i) { return inverse_mass[i]; }, force, velocity);
     const double after = velocity[1][1];
     EXPECT_NEAR(after, (before * (1 - g) + dt * f / m) / (1 + g), 1e-14);
     const double work = f * dt * (before + after) / 2;

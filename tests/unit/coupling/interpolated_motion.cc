@@ -111,7 +111,7 @@ template <int dim>
 std::vector<std::vector<int>> bonded_members(const Body<dim> &body)
 {
   std::vector<std::vector<int>> neighbours(body.overlap.members.size());
-  body.force.for_each_face([&](const particles::FaceView<dim> &face) {
+  body.force.for_each_face(body.state, [&](const particles::FaceView<dim> &face) {
     if (face.j < 0)
       return;
     const int i = body.overlap.member_of_particle[face.i],
@@ -202,7 +202,7 @@ void test_energy()
 
   const auto u = noise(body);
   double subtracted = 0;
-  body.force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+  body.force.add_tangent(body.state, [&](const particles::QuadraticTerm<dim> &term) {
     const double share = overlap.subtracted_share(term.location, term.members);
     if (share == 0)
       return;

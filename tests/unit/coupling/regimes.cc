@@ -123,8 +123,8 @@ void expect_gradient(Regime regime, double stiffening = 0, bool has_hanging_node
 {
   auto p = small_body<dim>(0.3, has_hanging_nodes);
   if (stiffening > 0)
-    p.replace_law = [&](auto law) {
-      return std::make_unique<StiffeningLaw<dim>>(std::move(law), stiffening);
+    p.replace_law = [&](const auto &state, auto law) {
+      return std::make_unique<StiffeningLaw<dim>>(state, std::move(law), stiffening);
     };
   auto body = make_coupled_bodies(p);
   auto bodies = body.bodies();
@@ -172,7 +172,9 @@ TEST(Regimes, FiniteNoiseOfAStronglyNonlinearLawKeepsItsEnergy)
   p.zone_size = {32, 28};
   p.cell_size = 3.1;
   p.step_fraction = 0.1;
-  p.replace_law = [](auto law) { return std::make_unique<StiffeningLaw<2>>(std::move(law), 2000); };
+  p.replace_law = [](const auto &state, auto law) {
+    return std::make_unique<StiffeningLaw<2>>(state, std::move(law), 2000);
+  };
   auto body = make_coupled_bodies(p);
   auto bodies = body.bodies();
   body.split->set_regime(Regime::nonlinear, bodies);

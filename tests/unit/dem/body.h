@@ -106,13 +106,9 @@ Particles<dim> at_rest(const Packing<dim> &packing, const DemMaterial &material)
   p.resize(n);
   p.reference = packing.centre;
   p.volume = packing.volume;
-  for (int i = 0; i < n; ++i) {
+  p.gyration = packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
+  for (int i = 0; i < n; ++i)
     p.mass[i] = material.density * packing.volume[i];
-    p.inertia[i] = p.mass[i] * packing.spacing * packing.spacing / (dim == 2 ? 8 : 10);
-    p.inverse_mass[i] = 1 / p.mass[i];
-    p.inverse_inertia[i] = 1 / p.inertia[i];
-    p.global_id[i] = i;
-  }
   return p;
 }
 

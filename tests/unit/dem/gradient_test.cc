@@ -191,7 +191,7 @@ TYPED_TEST(Gradient, TangentIsTheDerivativeOfTheForce)
     for (int c = 0; c < n_spins<dim>; ++c)
       q[dofs * i + dim + c] = dim == 2 ? p.rotation[0][i] : 2 * p.rotation[dim == 2 ? 0 : c + 1][i];
   }
-  force.add_tangent([&](const particles::QuadraticTerm<dim> &term) {
+  force.add_tangent(p, [&](const particles::QuadraticTerm<dim> &term) {
     Eigen::VectorXd local(term.rows.cols());
     for (std::size_t m = 0; m < term.members.size(); ++m)
       local.segment<dofs>(dofs * m) = q.segment<dofs>(dofs * term.members[m]);

@@ -99,7 +99,7 @@ struct SliceKernel : ::testing::Test
     core::LargeArray records;
     std::vector<int> exceeded;
     slices.load(a, records);
-    slices.add_pressures(a, pressure.data(), records);
+    slices.add_pressures(a, records);
     slices.forces(a, 0., {}, records, exceeded);
     return p;
   }

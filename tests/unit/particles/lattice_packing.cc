@@ -277,9 +277,9 @@ TEST(LatticePacking, FillsParticles)
   for (int i = 0; i < packing.size(); ++i) {
     const double m = 2450 * packing.volume[i];
     EXPECT_DOUBLE_EQ(particles.mass[i], m);
-    EXPECT_DOUBLE_EQ(particles.inertia[i], m * 0.01 * 0.01 / 10);
-    EXPECT_DOUBLE_EQ(particles.inverse_mass[i] * particles.mass[i], 1);
-    EXPECT_DOUBLE_EQ(particles.inverse_inertia[i] * particles.inertia[i], 1);
+    EXPECT_DOUBLE_EQ(particles.inertia(i), m * 0.01 * 0.01 / 10);
+    EXPECT_DOUBLE_EQ(particles.inverse_mass(i) * particles.mass[i], 1);
+    EXPECT_DOUBLE_EQ(particles.inverse_inertia(i) * particles.inertia(i), 1);
     EXPECT_EQ(particles.rotation[0][i], 1);
     EXPECT_EQ((get(particles.reference, i) - get(packing.centre, i)).norm(), 0);
   }

@@ -60,7 +60,7 @@ TEST(BlochWaves, ModeIsAnEigenvectorOfTheForce)
   const int middle = 4; // two layers from the ends feel nothing of them
   EXPECT_NEAR(state.force[0][middle], -state.mass[middle] * w2 * state.displacement[0][middle],
               1e-15);
-  EXPECT_NEAR(state.torque[0][middle], -state.inertia[middle] * w2 * state.rotation[0][middle],
+  EXPECT_NEAR(state.torque[0][middle], -state.inertia(middle) * w2 * state.rotation[0][middle],
               1e-15);
 }
 

@@ -1,0 +1,73 @@
+// The state of particles: names, masses, and what a kick makes of them.
+#include "particles/particle_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ligament::particles
+{
+namespace
+{
+TEST(GlobalIds, ReadLikeTheArrayTheyWereMadeOf)
+{
+  const std::vector<std::int64_t> ids = {7, 8, 9, 3, 5, 6, 4, std::int64_t(1) << 60};
+  const GlobalIds names(ids);
+  EXPECT_EQ(names.list(), ids);
+  for (int i = 0; i < names.size(); ++i)
+    EXPECT_EQ(names[i], ids[i]);
+  EXPECT_EQ(GlobalIds(3).list(), (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(GlobalIds(std::vector<std::int64_t>()).size(), 0);
+}
+
+/// A force that is given.
+template <int dim>
+struct GivenForce : ParticleForce<dim>
+{
+  void compute(Particles<dim> &, double) override {}
+  double potential_energy(const Particles<dim> &) const override { return 0; }
+  double stable_step(const Particles<dim> &) const override { return 1; }
+  ElasticConstants<dim> elastic_constants() const override { return {}; }
+  void set_energy_weights(const std::vector<double> &) override {}
+  void add_tangent(const Particles<dim> &,
+                   const std::function<void(const QuadraticTerm<dim> &)> &) const override
+  {
+  }
+  void for_each_face(const Particles<dim> &,
+                     const std::function<void(const FaceView<dim> &)> &) const override
+  {
+  }
+};
+
+template <int dim>
+void check_kick()
+{
+  Particles<dim> p;
+  p.resize(2);
+  p.gyration = 0.1;
+  p.mass = {4, std::numeric_limits<double>::infinity()}; // the second one is held
+  for (int i = 0; i < 2; ++i) {
+    p.force[1][i] = 3;
+    p.torque[0][i] = 2;
+  }
+  p.velocity[1][0] = 0.5;
+  ParticleSolver<dim> solver(std::move(p), std::make_unique<GivenForce<dim>>());
+  const auto &s = solver.state;
+  const double dt = 0.25;
+  EXPECT_DOUBLE_EQ(solver.kinetic_energy(dt), (4 * 0.5 * (0.5 + dt * 3 / 4)) / 2);
+  solver.kick(dt);
+  EXPECT_DOUBLE_EQ(s.velocity[1][0], 0.5 + dt * 3 / 4);
+  EXPECT_DOUBLE_EQ(s.spin[0][0], dt * 2 / (0.1 * 4));
+  EXPECT_EQ(s.velocity[0][0], 0);
+  EXPECT_EQ(s.velocity[1][1], 0);
+  EXPECT_EQ(s.spin[0][1], 0);
+  EXPECT_EQ(s.inverse_inertia(1), 0);
+}
+
+TEST(ParticleSolver, KicksByForceOverMassAndLeavesHeldParticles)
+{
+  check_kick<2>();
+  check_kick<3>();
+}
+} // namespace
+} // namespace ligament::particles
