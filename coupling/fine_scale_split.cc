@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ligament::coupling
@@ -112,6 +113,49 @@ void FineScaleSplit<dim>::write_far_velocities(fem::FemSolver<dim> &far) const
 }
 
 template <int dim>
+void FineScaleSplit<dim>::let_rest(const Bodies<dim> &bodies, double strain)
+{
+  const auto &far = *bodies.far;
+  const auto is_zero = [](const std::vector<double> &values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+  };
+  const auto &body = far.body();
+  waking_force_ = strain * body.stiffness(0, 0) * std::pow(overlap_.cell_size, dim - 1) *
+                  (dim == 2 ? body.thickness : 1);
+  rests_ = displacement_.isZero(0) && velocity_.isZero(0);
+  far_rests_ = rests_;
+  for (int c = 0; c < dim; ++c)
+    far_rests_ = far_rests_ && is_zero(far.displacement[c]) && is_zero(far.velocity[c]);
+}
+
+template <int dim>
+bool FineScaleSplit<dim>::far_rests(const Bodies<dim> &bodies, const StepTime &step)
+{
+  far_rests_ =
+      far_rests_ && rests_ && !bodies.far->is_loaded(step.time + parameters_.step_ratio * step.dt);
+  return far_rests_;
+}
+
+template <int dim>
+void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
+{
+  const auto *const rest = bodies.zone->rest();
+  bool wakes = std::any_of(overlap_.members.begin(), overlap_.members.end(),
+                           [&](const auto &m) { return rest->is_awake(m.particle); });
+  if (is_far_step(step) && !far_rests_)
+    for (const auto &force : bodies.far->force)
+      for (const int node : overlap_.near_nodes)
+        wakes = wakes || std::abs(force[node]) > waking_force_;
+  if (!wakes)
+    return;
+  rests_ = far_rests_ = false;
+  std::vector<int> particles;
+  for (const auto &m : overlap_.members)
+    particles.push_back(m.particle);
+  bodies.zone->wake(particles);
+}
+
+template <int dim>
 void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
   {
@@ -119,11 +163,12 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
     bodies.zone->drift(step.dt);
     bodies.zone->update_ghosts();
   }
-  displacement_ += step.dt * velocity_;
+  if (!rests_)
+    displacement_ += step.dt * velocity_;
   if (regime_ != Regime::linear)
     fine_.turn_pads(displacement_, bodies.zone->state);
   // The far field moves in one go, just before it acts again: it is needed nowhere in between.
-  if ((step.step + 1) % parameters_.step_ratio == 0) {
+  if ((step.step + 1) % parameters_.step_ratio == 0 && !far_rests_) {
     const auto timing = this->timers_.scope(this->far_);
     auto &far = *bodies.far;
     for (int c = 0; c < dim; ++c)
@@ -140,7 +185,7 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
     const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
   }
-  if (is_far_step(step)) {
+  if (is_far_step(step) && !far_rests(bodies, step)) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
   }
@@ -163,6 +208,11 @@ auto FineScaleSplit<dim>::halfway(const Bodies<dim> &bodies, const StepTime &ste
 {
   const int m = parameters_.step_ratio;
   Halfway near;
+  if (rests_) { // held: what pulls at it moves nothing
+    near.velocity = near.force = near.acceleration = near.far_force = near.far_acceleration =
+        Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+    return near;
+  }
   compute_mesh_force(bodies, step, near.force);
   fine_.add_forces(bodies.zone->state, near.force);
   near.acceleration = near.force;
@@ -230,7 +280,15 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 template <int dim>
 void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (is_far_step(step)) {
+  if (rests_) {
+    if (is_far_step(step))
+      far_rests(bodies, step); // in the first step no force has asked
+    look(bodies, step);
+  }
+  ++kicks_;
+  rested_ += rests_;
+  far_rested_ += far_rests_;
+  if (is_far_step(step) && !far_rests_) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->kick(parameters_.step_ratio * step.dt, step.time);
   }
@@ -238,6 +296,8 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
     const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->kick(step.dt);
   }
+  if (rests_)
+    return;
   const auto timing = this->timers_.scope(this->coupling_);
   compute_mesh_force(bodies, step, force_);
   fine_.begin_kick(bodies.zone->state, step.dt, force_);
@@ -305,6 +365,8 @@ template <int dim>
 double FineScaleSplit<dim>::damp_coarse(const Bodies<dim> &bodies, const StepTime &step,
                                         double factor)
 {
+  if (rests_)
+    return 0;
   const int m = parameters_.step_ratio;
   Nodal<dim> force = force_; // near forces and the far field's, without its factor m
   Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);

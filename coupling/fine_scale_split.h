@@ -66,6 +66,15 @@ public:
     return parts_.largest_motion(displacement_);
   }
 
+  /// From now on overlap and mesh wait for a wave: the near nodes stand still until the far field
+  /// pulls at one of them, or particles within two bonds of the overlap are awake, and the far
+  /// field does until then unless a load acts on it. `strain` is that of the pull that wakes, 0:
+  /// any. To be called with all at rest but for loads, after the zone's let_rest.
+  void let_rest(const Bodies<dim> &bodies, double strain);
+  /// Shares of the steps so far that the overlap, and the far field, were left out of.
+  double share_at_rest() const { return share_of(rested_); }
+  double far_share_at_rest() const { return share_of(far_rested_); }
+
   const SplitReport &report() const { return report_; }
   const Overlap<dim> *overlap() const override { return &overlap_; }
   /// Coarse stiffness K_near including the patch fit, N/m.
@@ -76,6 +85,10 @@ public:
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
   void kick_coarse(const StepTime &step);
+  bool far_rests(const Bodies<dim> &bodies, const StepTime &step);
+  /// Whether a wave has come; then particles and nodes of the overlap move from now on.
+  void look(Bodies<dim> &bodies, const StepTime &step);
+  double share_of(long rested) const { return kicks_ > 0 ? double(rested) / double(kicks_) : 0; }
   /// Mass damping of V; returns the energy in J that it takes.
   double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, double factor);
   void write_velocities(Bodies<dim> &bodies);
@@ -116,5 +129,9 @@ private:
   Nodal<dim> change_;                  // of V
   Nodal<dim> middle_, lost_;           // V half-way through it, and what the filter takes there
   double gap_filter_energy_ = 0;
+
+  bool rests_ = false, far_rests_ = false;
+  double waking_force_ = 0; // N, on a component of a near node
+  long kicks_ = 0, rested_ = 0, far_rested_ = 0;
 };
 } // namespace ligament::coupling

@@ -296,6 +296,19 @@ void FemSolver<dim>::book_work()
 }
 
 template <int dim>
+bool FemSolver<dim>::is_loaded(double time) const
+{
+  const auto acts = [&](const LoadedComponent &c) {
+    const core::BoundaryLoad<dim> &load = loads_[c.load];
+    return (load.kind == core::BoundaryLoad<dim>::Kind::traction
+                ? load.traction(time)[c.component]
+                : load.displacement(c.component, time)) != 0;
+  };
+  return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
+         std::any_of(traction_components_.begin(), traction_components_.end(), acts);
+}
+
+template <int dim>
 Vector<dim> FemSolver<dim>::reaction(int load) const
 {
   Vector<dim> sum = Vector<dim>::Zero();

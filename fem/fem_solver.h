@@ -109,6 +109,9 @@ public:
   /// masters).
   const std::vector<double> &lumped_mass() const { return mass_; }
 
+  /// Whether a load moves or pulls any of the nodes at a time in s.
+  bool is_loaded(double time) const;
+
   /// Sum over the nodes that the load holds of the force the support exerts on the body, in N;
   /// for traction loads the sum of applied forces. Index as in the list given to the constructor.
   Vector<dim> reaction(int load) const;

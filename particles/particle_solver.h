@@ -38,6 +38,9 @@ public:
   /// afterwards particles that are not awake must not be moved from outside.
   void let_rest(const RestLimits &limits = {});
 
+  /// Wakes the blocks of these particles: something is about to move them from outside.
+  void wake(const std::vector<int> &particles) { rest_->wake(particles); }
+
   /// Null: all particles take every step.
   const RestBlocks<dim> *rest() const { return rest_.get(); }
 

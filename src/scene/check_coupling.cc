@@ -82,6 +82,9 @@ void check_scheme(const Scene &scene, Findings &f)
     if (f.given("/coupling/" + key))
       f.warning("/coupling/" + key, fmt::format("\"{}\" in /coupling is not used", key),
                 fmt::format("the scheme is \"{}\"", name), "");
+  if (weighted && f.given("/time/rest_threshold"))
+    f.warning("/time/rest_threshold", "\"rest_threshold\" in /time is not used",
+              fmt::format("\"{}\" joins all velocities of the overlap in every step", name), "");
 }
 
 /// Two models that lie over each other and are not joined.

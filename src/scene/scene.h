@@ -157,6 +157,7 @@ struct TimeParameters
   double step_fraction = 0.9;
   std::optional<double> step;    // s; refused above the stable one
   std::string stop_when = "end"; // end, specimen_broken
+  double rest_threshold = 0;     // strain from which on a wave wakes what is at rest
 };
 
 struct OutputParameters

@@ -136,6 +136,7 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("duration", t.duration, "simulated time").in("s").above(0).required();
   s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
   s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").above(0);
+  s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
   s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as it carries no load").one_of({"end", "specimen_broken"});
 }
 

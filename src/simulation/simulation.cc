@@ -34,25 +34,36 @@ Clock Simulation<dim>::clock_of() const
   return clock;
 }
 
-// An overlap moves all its particles at once.
+// Energy-weighted couplers join all velocities of the overlap in every step.
 template <int dim>
 void Simulation<dim>::let_rest()
 {
-  if (body_.zone && !body_.far)
-    body_.zone->let_rest();
+  if (!body_.zone || (body_.coupler->overlap() && !body_.split))
+    return;
+  const double strain = scene_.time.rest_threshold;
+  body_.zone->let_rest(particles::RestLimits::of_strain(
+      strain, body_.spacing, body_.force->elastic_constants().wave_speed_p));
+  if (body_.split)
+    body_.split->let_rest(body_.bodies(), strain);
 }
 
 template <int dim>
 void Simulation<dim>::report_rest(RunRecord &record)
 {
+  const auto report = [&](const char *name, double share, const std::string &steps) {
+    record.figures[name] = {share, ""};
+    const std::string what = fmt::format("{:.1f} % of the {}", 100 * share, steps);
+    log_.info("not needed: {} (at rest until a wave arrived)", what);
+    if (share > 0)
+      record.skipped.push_back({what, "at rest until a wave arrived"});
+  };
   if (!body_.zone || !body_.zone->rest())
     return;
-  const double share = body_.zone->rest()->share_at_rest();
-  record.figures["share_at_rest"] = {share, ""};
-  const std::string what = fmt::format("{:.1f} % of the particle-steps", 100 * share);
-  log_.info("not needed: {} (at rest until a wave arrived)", what);
-  if (share > 0)
-    record.skipped.push_back({what, "at rest until a wave arrived"});
+  report("share_at_rest", body_.zone->rest()->share_at_rest(), "particle-steps");
+  if (body_.split) {
+    report("overlap_at_rest", body_.split->share_at_rest(), "overlap's steps");
+    report("far_field_at_rest", body_.split->far_share_at_rest(), "far field's steps");
+  }
 }
 
 template <int dim>
