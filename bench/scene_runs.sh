@@ -8,9 +8,13 @@ scene=examples/cracked_plate/scene.json
 # key: its number in the JSON object on the standard input
 field() { sed -n "s/.*\"$1\":\([-+0-9.e]*\).*/\1/p"; }
 
+# an expression: its value
+number() { awk "BEGIN {printf \"%.4g\", $1}"; }
+
 # name, value, unit, reference, ratio: one line; numbers may be expressions
 json_line() {
-  awk "BEGIN {printf \"{\\\"name\\\": \\\"$1\\\", \\\"value\\\": %.4g, \\\"unit\\\": \\\"$3\\\", \\\"reference\\\": %.4g, \\\"ratio\\\": %.4g}\n\", $2, $4, $5}"
+  printf '{"name": "%s", "value": %s, "unit": "%s", "reference": %s, "ratio": %s}\n' \
+    "$1" "$(number "$2")" "$3" "$(number "$4")" "$(number "$5")"
 }
 
 # steps (keys that follow): runs that many steps and prints the seconds of one, set-up left out. Without output on
