@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace ligament::coupling
@@ -110,49 +109,6 @@ void FineScaleSplit<dim>::write_far_velocities(fem::FemSolver<dim> &far) const
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
       far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
-}
-
-template <int dim>
-void FineScaleSplit<dim>::let_rest(const Bodies<dim> &bodies, double strain)
-{
-  const auto &far = *bodies.far;
-  const auto is_zero = [](const std::vector<double> &values) {
-    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
-  };
-  const auto &body = far.body();
-  waking_force_ = strain * body.stiffness(0, 0) * std::pow(overlap_.cell_size, dim - 1) *
-                  (dim == 2 ? body.thickness : 1);
-  rests_ = displacement_.isZero(0) && velocity_.isZero(0);
-  far_rests_ = rests_;
-  for (int c = 0; c < dim; ++c)
-    far_rests_ = far_rests_ && is_zero(far.displacement[c]) && is_zero(far.velocity[c]);
-}
-
-template <int dim>
-bool FineScaleSplit<dim>::far_rests(const Bodies<dim> &bodies, const StepTime &step)
-{
-  far_rests_ =
-      far_rests_ && rests_ && !bodies.far->is_loaded(step.time + parameters_.step_ratio * step.dt);
-  return far_rests_;
-}
-
-template <int dim>
-void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
-{
-  const auto *const rest = bodies.zone->rest();
-  bool wakes = std::any_of(overlap_.members.begin(), overlap_.members.end(),
-                           [&](const auto &m) { return rest->is_awake(m.particle); });
-  if (is_far_step(step) && !far_rests_)
-    for (const auto &force : bodies.far->force)
-      for (const int node : overlap_.near_nodes)
-        wakes = wakes || std::abs(force[node]) > waking_force_;
-  if (!wakes)
-    return;
-  rests_ = far_rests_ = false;
-  std::vector<int> particles;
-  for (const auto &m : overlap_.members)
-    particles.push_back(m.particle);
-  bodies.zone->wake(particles);
 }
 
 template <int dim>
