@@ -12,6 +12,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$programs/ligament" sweep bench/time_to_error.json --output "$work/sweep" >&2
 awk -F, '
+  { gsub(/"([^"]|"")*"/, "quoted") }
   NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i }
   NR <= 2 { next }
   $3 != "done" { print "error: " $1 ": " $3 > "/dev/stderr"; exit 1 }
