@@ -104,6 +104,9 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
   reverse(dead_torque_);
   zone.displacement = zone_before;
   far.displacement = far_before;
+  // What the loads do is counted from the last forces on: let them be those of the body as it is.
+  bodies.zone->compute_forces(0);
+  far.compute_forces(0);
 }
 
 template <int dim>

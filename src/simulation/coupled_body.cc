@@ -139,6 +139,11 @@ void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log 
   p.solver = scene.coupling.solver;
   auto bodies = body.bodies();
   auto coupler = std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, p, timers);
+  require(
+      body.force->broken_bonds().empty(),
+      "/coupling/ghost_force_correction: bonds break at this reference strain; give a smaller one");
+  body.force->reset_work(); // of the way to the reference strain and back
+  body.far->reset_work();
   const double plain = body.dt_zone;
   body.dt_zone = std::min(body.force->stable_step(body.zone->state), coupler->near_stable_step());
   log.info("overlap: {} particles, {} nodes, {} multipliers; stable step {:.4g} s with energy "

@@ -190,4 +190,25 @@ TEST(EnergyLedger, LocalDampingEndsInEquilibrium)
     EXPECT_LT(motion_left(small), 1e-9);
   }
 }
+/// An energy-weighted coupler whose ghost forces are taken off at a strain of 1e-3.
+const std::vector<std::string> corrected = {
+    "/coupling/scheme=acceleration", "/coupling/ghost_force_correction=[0, 1e-3]",
+    R"(/loads=[{"boundary": "top", "velocity": [null, 0.001]}, {"boundary": "bottom", "velocity": [null, 0]}])"};
+
+// The set-up strains the body to measure them and lets it go again.
+TEST(GhostForceCorrection, DoesNoWorkBeforeTheFirstStep)
+{
+  SmallBody small(small_scene(corrected));
+  coupling::StepTime step{0, 0, small.body.dt};
+  auto bodies = small.body.bodies();
+  small.body.coupler->compute_forces(bodies, step);
+  EXPECT_EQ(read_ledger(small.body, step, 0).external_work, 0);
+}
+
+TEST(GhostForceCorrection, IsRefusedWhereItsStrainBreaksBonds)
+{
+  const std::vector<std::string> weak = {
+      R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-4})"};
+  EXPECT_THROW(SmallBody(small_scene(corrected + weak)), core::InputError);
+}
 } // namespace
