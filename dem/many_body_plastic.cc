@@ -38,6 +38,7 @@ void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
 {
   core::require(interfaces_.empty() && energy_weights_.empty(),
                 "plastic flow needs a body of one elastic material with its whole energy");
+  core::require(!rest_ || rest_->is_exact(), "what is held at rest by a threshold could yield");
   pressure_share_ = is_plane_strain() ? 2 * std::abs(materials_.base().poissons_ratio) : 0;
   constexpr double round_off = 1e-9;
   yield_traction_ =

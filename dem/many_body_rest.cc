@@ -8,6 +8,8 @@ namespace ligament::dem
 template <int dim>
 void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 {
+  core::require(!rest || !plastic_ || rest->is_exact(),
+                "what is held at rest by a threshold could yield");
   rest_ = rest;
   work_.rest = rest;
   work_.nearness_version = -1;
