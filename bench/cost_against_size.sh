@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 . bench/scene_runs.sh
 
-# edge of the square in mm, name, further keys: seconds per step
+# edge of the square in mm, steps, further keys: seconds per step
 square() {
   edge=$1 steps=$2
   shift 2

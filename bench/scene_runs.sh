@@ -17,15 +17,23 @@ json_line() {
     "$1" "$(number "$2")" "$3" "$(number "$4")" "$(number "$5")"
 }
 
+# file, command: keeps the last line of what it says; where it fails, says why and stops
+last_line_of() {
+  file=$1
+  shift
+  "$@" >"$work/said" 2>"$work/errors" || { cat "$work/errors" >&2; exit 4; }
+  tail -n 1 "$work/said" >"$work/$file"
+}
+
 # steps (keys that follow): runs that many steps and prints the seconds of one, set-up left out. Without output on
 # the way: a row of the history reads all energies, which a short run must not do in every step.
 seconds_per_step() {
   steps=$1
   shift
-  "$programs/ligament" check $scene --json "$@" | tail -n 1 >"$work/check"
-  "$programs/ligament" run $scene --output "$work/run" --json "$@" \
+  last_line_of check "$programs/ligament" check $scene --json "$@"
+  last_line_of json "$programs/ligament" run $scene --output "$work/run" --json "$@" \
     --set "/time/duration=$(awk "BEGIN {print $(planned dt) * $steps}")" --set /time/stop_when=end \
-    --set "/output/field_interval=1 s" --set "/output/history_interval=1 s" 2>/dev/null | tail -n 1 >"$work/json"
+    --set "/output/field_interval=1 s" --set "/output/history_interval=1 s"
   rm -rf "$work/run"
   awk "BEGIN {print $(field wall_seconds <"$work/json") / $(field steps <"$work/json")}"
 }
