@@ -48,8 +48,14 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materia
     largest_lever_share_ = std::max(largest_lever_share_, levers / packing.volume[i]);
   }
   for (const auto &face : packing.faces)
-    if (face.cracked)
-      contacts_.add(BondNetwork<dim>::make_bond(face, materials_, packing.thickness), true);
+    if (face.cracked) {
+      Bond<dim> b = BondNetwork<dim>::make_bond(face, materials_, packing.thickness);
+      // Closed faces press with nothing, not even with rounding: that would be a load from the
+      // start.
+      const Vector<dim> between = get(packing.centre, b.j) - get(packing.centre, b.i);
+      b.distance = std::min(b.distance, between.norm());
+      contacts_.add(b, true);
+    }
   boundary_faces_ = std::move(packing.boundary_faces);
 }
 
@@ -259,7 +265,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
       search_.update(p, bonds_, contacts_);
     if (searching_ && rest_ && !rest_->all_awake())
       wake_contacts();
-    contacts_.add_forces(p);
+    add_contact_forces(p);
   }
   surface_.book_work(p, work_.pressure);
   const auto exceeding = exceeding_bonds(p);

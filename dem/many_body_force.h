@@ -154,8 +154,10 @@ private:
   const SliceNearness *awake_slices(Workspace &work) const;
   void wake_loaded();
   void wake_contacts();
-  /// Of particles that are not awake but that bonds of awake ones have pulled.
+  /// Of particles that are not awake but that bonds or contacts of awake ones have pulled.
   void clear_forces_at_rest(Particles &particles) const;
+  /// Of contacts; what a threshold holds at rest stays without forces.
+  void add_contact_forces(Particles &particles);
 
   /// Turns and pressures of all particles.
   void find_pressure(const Particles &particles, Workspace &work) const;

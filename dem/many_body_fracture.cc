@@ -151,7 +151,7 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   }
   searching_ = true;
   elastic_forces(p, surface_, 0., work_);
-  contacts_.add_forces(p);
+  add_contact_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
   // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
   // the mean force leaves as it is.

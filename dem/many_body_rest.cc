@@ -56,13 +56,28 @@ void ManyBodyForce<dim>::wake_contacts()
 template <int dim>
 void ManyBodyForce<dim>::clear_forces_at_rest(Particles &p) const
 {
+  const auto clear = [&](int i) {
+    if (rest_->is_awake(i))
+      return;
+    for (auto &f : p.force)
+      f[i] = 0;
+    for (auto &t : p.torque)
+      t[i] = 0;
+  };
   for (const int i : other_particles_)
-    if (!rest_->is_awake(i)) {
-      for (auto &f : p.force)
-        f[i] = 0;
-      for (auto &t : p.torque)
-        t[i] = 0;
-    }
+    clear(i);
+  for (const auto &contact : contacts_.all()) {
+    clear(contact.face.i);
+    clear(contact.face.j);
+  }
+}
+
+template <int dim>
+void ManyBodyForce<dim>::add_contact_forces(Particles &p)
+{
+  contacts_.add_forces(p);
+  if (rest_ && !rest_->is_exact() && !rest_->all_awake())
+    clear_forces_at_rest(p);
 }
 
 template void ManyBodyForce<2>::set_rest(particles::RestBlocks<2> *);
@@ -77,4 +92,6 @@ template void ManyBodyForce<2>::wake_contacts();
 template void ManyBodyForce<3>::wake_contacts();
 template void ManyBodyForce<2>::clear_forces_at_rest(Particles &) const;
 template void ManyBodyForce<3>::clear_forces_at_rest(Particles &) const;
+template void ManyBodyForce<2>::add_contact_forces(Particles &);
+template void ManyBodyForce<3>::add_contact_forces(Particles &);
 } // namespace ligament::dem
