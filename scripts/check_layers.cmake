@@ -20,7 +20,7 @@ set(may_include_src particles dem md fem coupling core)
 # Which third parties; the vocabulary std, Eigen and fmt is everybody's.
 set(vocabulary std Eigen fmt)
 set(may_use_core ${vocabulary} MPI nlohmann-json zlib xxhash POSIX)
-set(may_use_particles ${vocabulary} MPI Zoltan Voro++ Highway)
+set(may_use_particles ${vocabulary} MPI Highway)
 set(may_use_dem ${vocabulary} Highway)
 set(may_use_md ${vocabulary} Highway)
 set(may_use_fem ${vocabulary} MPI deal.II p4est Trilinos)
