@@ -112,6 +112,12 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 }
 
 template <int dim>
+void ManyBodyForce<dim>::set_coupled_edge(const Particles &p, particles::CoupledEdge<dim> edge)
+{
+  edge_ = EdgeCells<dim>(std::move(edge), boundary_faces_, materials_, p, energy_weights_);
+}
+
+template <int dim>
 LatticeArrays<dim> ManyBodyForce<dim>::arrays(const Particles &p, Workspace &work) const
 {
   LatticeArrays<dim> a{};
@@ -214,8 +220,10 @@ void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) cons
 {
   find_turns(p, work);
   find_other_pressure(p, surface_, work);
-  if (!materials_.has_no_dilatation())
-    kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
+  if (materials_.has_no_dilatation())
+    return;
+  kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
+  edge_.complete_pressures(p, work.pressure);
 }
 
 template <int dim>

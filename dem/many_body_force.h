@@ -6,6 +6,7 @@
 #include "dem/bond_slices.h"
 #include "dem/contact_search.h"
 #include "dem/contacts.h"
+#include "dem/edge_cells.h"
 #include "dem/fracture_law.h"
 #include "dem/interfaces.h"
 #include "dem/lattice_kernel.h"
@@ -64,6 +65,11 @@ public:
               const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
 
   void set_energy_weights(const std::vector<double> &weights) override;
+
+  /// After set_energy_weights(). Stresses, tensions and the search for breaking bonds follow it.
+  void set_coupled_edge(const Particles &particles, particles::CoupledEdge<dim> edge) override;
+  /// Which faces never break, and the pressures of cells that lack faces.
+  const EdgeCells<dim> &edge_cells() const { return edge_; }
 
   void
   for_each_face(const Particles &particles,
@@ -159,7 +165,7 @@ private:
   /// Of contacts; what a threshold holds at rest stays without forces.
   void add_contact_forces(Particles &particles);
 
-  /// Turns and pressures of all particles.
+  /// Turns and pressures of all particles; of open cells at a coupled edge those of whole ones.
   void find_pressure(const Particles &particles, Workspace &work) const;
   /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
   /// strength when it is above 0.
@@ -235,6 +241,7 @@ private:
   SurfaceLoads<dim> surface_;
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
+  EdgeCells<dim> edge_;
   bool searching_ = false;
   double largest_lever_share_ = 0; // of all particles: sum of S |a| / V over the bonds
   // Particles whose pressure has parts beside the lattice's, ascending.

@@ -42,7 +42,7 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   std::vector<BondId> found;
   const auto test = [&](int i, bool lattice) {
     bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i &&
+      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i && edge_.may_break(b) &&
           tension(b, p, work_.pressure) >= strength_of(b))
         found.push_back(id);
     });
