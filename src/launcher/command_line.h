@@ -21,6 +21,7 @@ struct CommandLine
   int jobs = 1;                       // sweep: runs at the same time
   bool dry_run = false;               // sweep: list the cases only
   std::string run, reference;         // compare, report: folders (the reference may be a curve)
+  std::vector<std::string> fields;    // report: of its pictures; empty: those of the run
   std::string key;                    // explain; empty: all keys
   bool markdown = false;              // explain: the page of the manual
   bool schema = false;                // explain: the JSON schema
