@@ -1,0 +1,200 @@
+#include "src/verification/random_scenes_judge.h"
+
+#include "src/scene/geometry.h"
+#include "src/scene/read_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ligament::program
+{
+namespace
+{
+constexpr double stated = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Faces of a coupled run that broke in its overlap before the end of the far field's last step.
+int overlap_breaks(const RandomScene &scene, const SceneRuns &runs)
+{
+  const auto input = parse_scene(scene.json.dump(), "scene");
+  const auto zone = zone_shape<3>(*input.scene);
+  const bool stopped = runs.coupled.record.status == "guard";
+  const double end = runs.coupled.record.simulated_time - (stopped ? 1.5 * runs.far_step : 0);
+  const double depth = runs.overlap - 0.5 * runs.coupled.record.spacing;
+  return int(std::count_if(runs.coupled.broken.begin(), runs.coupled.broken.end(),
+                           [&](const BrokenBond &b) {
+                             return b.time <= end && zone.distance(Vector<3>(b.centroid)) < depth;
+                           }));
+}
+
+/// Whether the first face that breaks in the body of particles lies where the coupled one may
+/// break, too.
+bool breaks_in_zone(const RandomScene &scene, const SceneRuns &runs)
+{
+  if (runs.discrete.broken.empty())
+    return true;
+  const auto input = parse_scene(scene.json.dump(), "scene");
+  return zone_shape<3>(*input.scene).distance(Vector<3>(runs.discrete.broken[0].centroid)) >
+         runs.overlap;
+}
+
+double end_of(const SceneRun &run)
+{
+  return std::min(run.record.simulated_time, run.onset().value_or(stated));
+}
+
+/// Slope of the load over the displacement of the sides, by least squares through the origin.
+double slope(const SceneRun &run, double from, double to)
+{
+  const auto time = run.history.column("time", "s"), load = run.history.column("load", "N"),
+             way = run.history.column("displacement", "m");
+  double sum = 0, squares = 0;
+  for (std::size_t k = 0; k < time.size(); ++k)
+    if (time[k] >= from && time[k] <= to) {
+      sum += load[k] * way[k];
+      squares += way[k] * way[k];
+    }
+  return sum / squares;
+}
+
+// The first wave has come and gone by a third of the way.
+double stiffness_error(const SceneRuns &runs)
+{
+  const double end = 0.95 * std::min(end_of(runs.coupled), end_of(runs.discrete));
+  return std::abs(slope(runs.coupled, end / 3, end) / slope(runs.discrete, end / 3, end) - 1);
+}
+
+/// Relative difference of the times at which the first faces break; 1 where only one run breaks
+/// although the other went on for longer; empty where none does.
+std::optional<double> onset_error(const SceneRun &run, const SceneRun &reference)
+{
+  const auto a = run.onset(), b = reference.onset();
+  if (a && b)
+    return std::abs(*a / *b - 1);
+  if (!a && !b)
+    return {};
+  const double onset = a ? *a : *b, end = (a ? reference : run).record.simulated_time;
+  return end > 1.02 * onset ? std::optional(1.) : std::nullopt;
+}
+
+/// Largest difference between the histories up to `end`, loads over the largest load, energies over
+/// the largest work.
+double history_error(const SceneRun &run, const SceneRun &reference, double end)
+{
+  const auto time = reference.history.column("time", "s");
+  const auto other_time = run.history.column("time", "s");
+  std::size_t n = 0;
+  while (n < time.size() && n < other_time.size() && std::max(time[n], other_time[n]) < end)
+    ++n;
+  double worst = 0;
+  const auto largest = [&](const std::vector<double> &values) {
+    double most = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      most = std::max(most, std::abs(values[k]));
+    return most;
+  };
+  const auto compare = [&](const char *name, const char *unit, const char *scale_name) {
+    const auto a = run.history.column(name, unit), b = reference.history.column(name, unit);
+    const double scale = largest(reference.history.column(scale_name, unit));
+    for (std::size_t k = 0; k < n && scale > 0; ++k)
+      // Sideways loads change their sign in the mirror.
+      worst = std::max(worst, std::abs(std::abs(a[k]) - std::abs(b[k])) / scale);
+  };
+  compare("load", "N", "load");
+  for (const char *energy : {"kinetic_discrete", "potential_discrete", "kinetic_far",
+                             "potential_far", "blended", "external_work"})
+    compare(energy, "J", "external_work");
+  return n > 2 ? worst : nan;
+}
+
+/// 1 where the verdict says more than is so, or leaves out what is.
+double verdict_error(const SceneRuns &runs, int n_overlap_breaks)
+{
+  const RunRecord &r = runs.coupled.record;
+  const bool calm = r.verdict.find("nothing unstable") != std::string::npos;
+  const bool sound = r.status == "done" && r.energy_residual && *r.energy_residual < 1e-2 &&
+                     n_overlap_breaks == 0 && runs.coupled.n_warnings == 0;
+  const bool says_stop = r.verdict.find("stopped") != std::string::npos;
+  return calm != sound || says_stop != (r.status == "guard" || r.status == "failed");
+}
+
+/// K at the peak of the load over K_Ic.
+double toughness_ratio(const RandomScene::Toughness &t, const RunRecord &record)
+{
+  if (!record.peak_stress)
+    return nan;
+  const double stress = *record.peak_stress - t.drag, a = t.half_length;
+  return stress * std::sqrt(M_PI * a / std::cos(M_PI * a / t.width)) / t.toughness;
+}
+
+/// Of the packing, and what a crack of so few spacings leaves open: its tip is known to d/4.
+double toughness_bound(const RandomScene &scene, double spacing)
+{
+  const double packing = scene.packing == "random" ? 0.1 : 0.05;
+  return packing + 0.125 * spacing / scene.toughness->half_length;
+}
+} // namespace
+
+std::vector<SceneFigure> judge(const RandomScene &scene, const SceneRuns &runs)
+{
+  if (!runs.refused.empty())
+    return {};
+  std::vector<SceneFigure> figures;
+  const auto add = [&](const char *name, double value, double must) {
+    figures.push_back({name, value, must});
+  };
+  const auto &coupled = runs.coupled, &discrete = runs.discrete;
+  const bool damped = scene.damping != "none";
+
+  add("residual", coupled.record.energy_residual.value_or(nan), 1e-4);
+  add("residual_discrete", discrete.record.energy_residual.value_or(nan), 1e-4);
+  add("stiffness", stiffness_error(runs), 3e-3);
+  if (breaks_in_zone(scene, runs)) {
+    if (const auto error = onset_error(coupled, discrete))
+      add(damped ? "onset" : "onset_undamped", *error, damped ? 0.01 : stated);
+    if (coupled.record.status == "done" && coupled.record.peak_load && discrete.record.peak_load &&
+        coupled.onset() && discrete.onset())
+      add(damped ? "peak" : "peak_undamped",
+          std::abs(*coupled.record.peak_load / *discrete.record.peak_load - 1),
+          damped ? 0.01 : stated);
+  }
+  add("mirror",
+      !runs.is_mirrored
+          ? nan
+          : history_error(runs.mirror, coupled, std::min(end_of(coupled), end_of(runs.mirror))),
+      1e-9);
+  if (const auto error = runs.is_mirrored ? onset_error(runs.mirror, coupled) : std::nullopt)
+    add("mirror_onset", *error, 1e-9 + coupled.record.dt / *coupled.onset());
+  if (const auto error = onset_error(runs.half_step, coupled))
+    add(damped ? "half_step_onset" : "half_step_onset_undamped", *error, damped ? 1e-3 : stated);
+  if (scene.toughness && coupled.onset() && coupled.record.status == "done") {
+    const double ratio = toughness_ratio(*scene.toughness, coupled.record);
+    add("toughness", ratio, stated);
+    add("toughness_over_bound",
+        std::abs(ratio - 1) / toughness_bound(scene, coupled.record.spacing), 1);
+  }
+  if (scene.must_hold) {
+    add("broken_in_compression", double(coupled.broken.size()), 0);
+    add("broken_in_compression_discrete", double(discrete.broken.size()), 0);
+    add("stopped_in_compression", coupled.record.status != "done", 0);
+  }
+  const int n_overlap_breaks = overlap_breaks(scene, runs);
+  add("unseen_overlap_breaks", n_overlap_breaks, 0);
+  add("verdict", verdict_error(runs, n_overlap_breaks), 0);
+  return figures;
+}
+
+std::string remark(const RandomScene &scene, const SceneRuns &runs)
+{
+  if (!runs.refused.empty())
+    return "refused";
+  if (runs.coupled.record.status != "done")
+    return runs.coupled.record.status;
+  if (!breaks_in_zone(scene, runs))
+    return "breaks elsewhere";
+  if (!scene.must_hold && !runs.coupled.onset())
+    return "nothing broke";
+  return "";
+}
+} // namespace ligament::program
