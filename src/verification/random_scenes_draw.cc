@@ -110,9 +110,11 @@ constexpr double through = std::numeric_limits<double>::infinity();
 void draw_cells(const Draw &draw, const RandomScene &scene, Geometry &g)
 {
   const bool small = scene.dimension == 3 || scene.zone != "band";
-  g.cell = draw.number("cell_size", 2.5, small ? 3 : 5);
-  const int most = std::clamp(int(14 / g.cell), 2, scene.dimension == 3 ? 2 : 4);
-  g.overlap_cells = draw.whole("overlap_cells", 2, most);
+  g.cell = draw.number("cell_size", small ? 2.3 : 2.5, small ? 2.8 : 5);
+  // What closes the packing must fit in.
+  const int least = std::max(2, int(std::ceil(6.6 / g.cell)));
+  g.overlap_cells =
+      draw.whole("overlap_cells", least, std::clamp(int(14 / g.cell), least, small ? 3 : 4));
 }
 
 void draw_crack(const Draw &draw, const RandomScene &scene, Geometry &g)
@@ -137,7 +139,7 @@ void draw_band(const Draw &draw, const RandomScene &scene, Geometry &g)
 {
   const double reach = g.half_length * std::abs(std::sin(g.angle)),
                margin = draw.number("margin", 1, 5);
-  const double cells[2] = {draw.number("far_below", 3, 7), draw.number("far_above", 3, 7)};
+  const double cells[2] = {draw.number("far_below", 3, 6), draw.number("far_above", 3, 6)};
   const double far[2] = {g.cell * cells[0], g.cell * cells[1]};
   g.far = std::min(cells[0], cells[1]);
   const double zone = 2 * (g.keep_off() + reach + margin);
@@ -175,8 +177,8 @@ void draw_inner_zone(const Draw &draw, const RandomScene &scene, Geometry &g)
   double *size[2] = {&g.width, &g.height}, *middle[2] = {&g.x, &g.y};
   for (int c = 0; c < 2; ++c) {
     block[c] = 2 * (g.keep_off() + reach[c] + margin);
-    const double cells[2] = {draw.number(far_names[c][0], 3, 4.2),
-                             draw.number(far_names[c][1], 3, 4.2)};
+    const double cells[2] = {draw.number(far_names[c][0], 3, 3.6),
+                             draw.number(far_names[c][1], 3, 3.6)};
     const double low = g.cell * cells[0], high = g.cell * cells[1];
     g.far = std::min({c == 0 ? cells[0] : g.far, cells[0], cells[1]});
     *size[c] = low + block[c] + arm[c] + high;
@@ -333,7 +335,8 @@ bool cells_grow(const Draw &draw)
 Json coupling_json(const Draw &draw, const Geometry &g)
 {
   // The transition keeps off held sides.
-  Json json = {{"overlap_cells", g.overlap_cells}, {"transition_cells", cells_grow(draw) ? 1 : int(g.far) - 1}};
+  Json json = {{"overlap_cells", g.overlap_cells},
+               {"transition_cells", cells_grow(draw) ? 1 : int(g.far) - 1}};
   if (draw.chance("other_damper", 0.2))
     json["fine_damper"] = draw.chance("no_damper", 0.5) ? 0 : 4;
   if (draw.chance("no_filter", 0.2))

@@ -44,18 +44,18 @@ double end_of(const SceneRun &run)
   return std::min(run.record.simulated_time, run.onset().value_or(stated));
 }
 
-/// Slope of the load over the displacement of the sides, by least squares through the origin.
+/// Slope of the load over the displacement of the sides, by least squares.
 double slope(const SceneRun &run, double from, double to)
 {
   const auto time = run.history.column("time", "s"), load = run.history.column("load", "N"),
              way = run.history.column("displacement", "m");
-  double sum = 0, squares = 0;
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t k = 0; k < time.size(); ++k)
     if (time[k] >= from && time[k] <= to) {
-      sum += load[k] * way[k];
-      squares += way[k] * way[k];
+      n += 1, x += way[k], y += load[k];
+      xx += way[k] * way[k], xy += way[k] * load[k];
     }
-  return sum / squares;
+  return (xy - x * y / n) / (xx - x * x / n);
 }
 
 // The first wave has come and gone by a third of the way.
