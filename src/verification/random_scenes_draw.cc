@@ -110,9 +110,12 @@ constexpr double through = std::numeric_limits<double>::infinity();
 void draw_cells(const Draw &draw, const RandomScene &scene, Geometry &g)
 {
   const bool small = scene.dimension == 3 || scene.zone != "band";
-  g.cell = draw.number("cell_size", small ? 2.3 : 2.5, small ? 2.8 : 5);
+  g.cell = draw.number("cell_size", small ? 2.3 : 2.5,
+                       scene.dimension == 3 ? 2.5
+                       : small              ? 2.8
+                                            : 5);
   // What closes the packing must fit in.
-  const int least = std::max(2, int(std::ceil(6.6 / g.cell)));
+  const int least = std::max(2, int(std::ceil(7 / g.cell)));
   g.overlap_cells =
       draw.whole("overlap_cells", least, std::clamp(int(14 / g.cell), least, small ? 3 : 4));
 }
@@ -127,7 +130,8 @@ void draw_crack(const Draw &draw, const RandomScene &scene, Geometry &g)
     g.angle = M_PI / 2; // its extent across
     return;
   }
-  g.half_length = draw.number("crack_length", 3, scene.dimension == 3 ? 4 : 7);
+  g.half_length = scene.dimension == 3 ? draw.number("crack_length", 1.6, 2.2)
+                                       : draw.number("crack_length", 3, 7);
   if (scene.toughness)
     return;
   const double most = scene.crack == "edge" ? 30 : scene.load == "compression" ? 75 : 60;
@@ -138,15 +142,16 @@ void draw_crack(const Draw &draw, const RandomScene &scene, Geometry &g)
 void draw_band(const Draw &draw, const RandomScene &scene, Geometry &g)
 {
   const double reach = g.half_length * std::abs(std::sin(g.angle)),
-               margin = draw.number("margin", 1, 5);
-  const double cells[2] = {draw.number("far_below", 3, 6), draw.number("far_above", 3, 6)};
+               margin = draw.number("margin", 1, scene.dimension == 3 ? 2.5 : 5);
+  const double most = scene.dimension == 3 ? 3.5 : 6;
+  const double cells[2] = {draw.number("far_below", 3, most), draw.number("far_above", 3, most)};
   const double far[2] = {g.cell * cells[0], g.cell * cells[1]};
   g.far = std::min(cells[0], cells[1]);
   const double zone = 2 * (g.keep_off() + reach + margin);
   g.height = far[0] + zone + far[1];
   if (scene.dimension == 3) {
-    g.width = draw.number("width", 8, 11);
-    g.depth = draw.number("depth", 5.5, 7.5);
+    g.width = draw.number("width", 7, 9);
+    g.depth = draw.number("depth", 5, 6);
   } else {
     const double filled = 0.87 * draw.number("particles", 700, 2000) / g.height;
     g.width = std::max(std::clamp(filled, 18., 44.), 3.5 * g.half_length);
@@ -497,8 +502,8 @@ Loading draw_loading(const Draw &draw, const RandomScene &s, const Geometry &g, 
                                : PlaneStress{0, -1, 0};
   l.stress = m.e * draw.magnitude("strain", 1e-5, 1e-3);
   l.onset =
-      way * (s.dimension == 3 ? draw.number("slowness", 6, 9) : draw.number("slowness", 9, 15));
-  l.duration = l.onset * (s.must_hold ? 1 : s.load == "compression" ? 2 : 1.5);
+      way * (s.dimension == 3 ? draw.number("slowness", 5, 7) : draw.number("slowness", 9, 15));
+  l.duration = l.onset * (s.must_hold ? 1 : s.load == "compression" && s.dimension == 2 ? 2 : 1.5);
   return l;
 }
 

@@ -61,7 +61,7 @@ TEST(RandomScenes, KeepWithinTheirBounds)
     const double ratio = scene.far_field->cell_size / scene.zone.spacing;
     EXPECT_GE(ratio, 2.29);
     EXPECT_LE(ratio, 5.01);
-    EXPECT_GE(ratio * scene.coupling.overlap_cells, 6.5);
+    EXPECT_GE(ratio * scene.coupling.overlap_cells, 6.99);
     EXPECT_EQ(drawn.must_hold, drawn.load == "compression" && scene.specimen.cracks.empty());
     EXPECT_GT(scene.material.fracture.strength.value_or(1), 0);
     EXPECT_EQ(drawn.toughness.has_value(), scene.material.fracture.toughness.has_value());
