@@ -90,6 +90,14 @@ void declare(CLI::App &app, CommandLine &line)
       .add_flag("--stability", line.stability,
                 "stability under stress; with --full 1e5 steps of each setting")
       ->excludes("case");
+  verify
+      .add_option("--seeds,--seed", line.seeds,
+                  "random_scenes: one seed, whose files and runs are kept, or a range; what the "
+                  "folder holds of a range is not computed again")
+      ->type_name("N or FIRST:LAST");
+  verify
+      .add_option("--output,-o", line.output, "random_scenes with --seeds: folder for the results")
+      ->type_name("DIR");
 
   for (CLI::App *command : app.get_subcommands({}))
     command->add_flag("--json", line.json, "ends with one JSON object on the last line");

@@ -29,6 +29,7 @@ struct CommandLine
   std::string verify_case;            // verify; empty: all
   bool full = false;                  // verify: also the slow ones
   bool stability = false;             // verify: those of stability under stress
+  std::string seeds;                  // verify: of random scenes, into `output`; "17" or "1:1000"
 
   /// Set when nothing is left to do: help and version were printed, or a mistake (2).
   std::optional<int> exit_code;

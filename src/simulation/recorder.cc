@@ -89,13 +89,14 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
 
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps)
+                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+                        bool draws_pictures)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), history_interval_(history_interval_of(scene)),
-      guarded_(guarded_particles(body))
+      n_steps_(n_steps), draws_pictures_(draws_pictures),
+      history_interval_(history_interval_of(scene)), guarded_(guarded_particles(body))
 {
 }
 
@@ -289,6 +290,8 @@ template <int dim>
 void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
                                 RunRecord &record)
 {
+  if (!draws_pictures_)
+    return;
   const auto bonds = broken_bonds(body);
   std::vector<const BodyState *> all;
   for (BodyState &state : states) {

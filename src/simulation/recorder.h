@@ -36,7 +36,8 @@ class Recorder
 {
 public:
   Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps);
+           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+           bool draws_pictures);
 
   /// Looks at the present state; empty while the run goes on. `damping` in J so far.
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -75,6 +76,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_;
+  bool draws_pictures_;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   std::size_t broken_before_ = 0;             // at the last check of connectivity
