@@ -43,7 +43,6 @@ private:
   bool is_in_zone(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper) const;
   int particle_at(const Index &k) const;
   bool is_whole(int i) const { return irregular_of_[i] < 0; }
-  bool is_cracked(int i, int j) const;
   void add_lattice_face(int i, int j, int direction);
   void add_irregular_faces(int i, const Index &k);
 
@@ -160,24 +159,12 @@ int Packer<dim>::particle_at(const Index &k) const
 }
 
 template <int dim>
-bool Packer<dim>::is_cracked(int i, int j) const
-{
-  if (shape_.cracks.empty())
-    return false;
-  const Vector<dim> a = get(packing_.centre, i), b = get(packing_.centre, j);
-  for (const CrackPlane<dim> &crack : shape_.cracks)
-    if (crack.is_crossed_by(a, b))
-      return true;
-  return false;
-}
-
-template <int dim>
 void Packer<dim>::add_lattice_face(int i, int j, int direction)
 {
   const LatticeDirection<dim> &n = packing_.directions[direction];
   const double q = n.distance / 2;
   packing_.faces.push_back({i, j, n.normal, n.area, q, q, q * n.normal, -q * n.normal,
-                            is_whole(i) && is_whole(j) ? direction : -1, is_cracked(i, j)});
+                            is_whole(i) && is_whole(j) ? direction : -1, false});
 }
 
 template <int dim>
@@ -196,8 +183,7 @@ void Packer<dim>::add_irregular_faces(int i, const Index &k)
     if (j <= i || is_whole(j)) // those of whole cells are lattice faces
       continue;
     packing_.faces.push_back({i, j, n.direction, part.area * thickness_, n.distance / 2,
-                              n.distance / 2, lever, lever - n.distance * n.direction, -1,
-                              is_cracked(i, j)});
+                              n.distance / 2, lever, lever - n.distance * n.direction, -1, false});
   }
   const auto &forward = layout_->forward();
   for (std::size_t m = 0; m < forward.size(); ++m)
@@ -234,6 +220,7 @@ Packing<dim> Packer<dim>::pack()
   core::require(packing_.size() > 0,
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
+  cut_faces(packing_, shape_.cracks);
   return std::move(packing_);
 }
 } // namespace
