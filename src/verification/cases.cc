@@ -31,6 +31,7 @@ std::vector<Case> all_cases()
   add(contrast_cases());
   add(breaking_cases());
   add(closed_crack_cases());
+  add(random_scene_cases());
   return cases;
 }
 
