@@ -38,6 +38,9 @@ void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 /// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
 
+/// Whether the crack, a sound one, can run straight ahead in the lattice of the zone.
+void check_path(const Scene &scene, const Crack &crack, const std::string &key, Findings &findings);
+
 /// Whether what lies in the box keeps its distance from the overlap: the mesh there is whole and of
 /// one material. `name` begins the message.
 void check_inside_zone(const Box &cut, const std::string &name, const std::string &key,
