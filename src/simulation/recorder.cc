@@ -307,8 +307,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     for (const BodyState &state : states)
       fields_.write(state);
   });
-  record.magnification = scene_.output.magnification > 0 ? scene_.output.magnification
-                                                         : good_magnification(all);
+  record.magnification =
+      scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
   record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification);
   writer_.wait();
 }
