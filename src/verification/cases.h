@@ -51,6 +51,7 @@ std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
 std::vector<Case> stability_cases();
 std::vector<Case> contrast_cases();
+std::vector<Case> toughness_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();
