@@ -52,7 +52,7 @@ void print_comparison(const CommandLine &line)
 
 void print_report(const CommandLine &line)
 {
-  const std::string file = write_report(line.run);
+  const std::string file = write_report(line.run, line.fields);
   fmt::print("{}\n", file);
   if (line.json)
     fmt::print("{}\n", nlohmann::json{{"report", file}}.dump());

@@ -28,8 +28,10 @@ template <int dim>
 class Simulation
 {
 public:
-  /// Builds the body (core::InputError when that can't be done) and opens the output folder.
-  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
+  /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
+  /// scenes take less time than their pictures, which may be left out.
+  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
+             bool draws_pictures = true);
 
   /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
   /// the record (status "guard"), not an exception.

@@ -28,6 +28,7 @@ std::vector<Case> all_cases()
   add(stability_cases());
   add(contrast_cases());
   add(toughness_cases());
+  add(random_scene_cases());
   return cases;
 }
 
