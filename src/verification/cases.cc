@@ -32,6 +32,7 @@ std::vector<Case> all_cases()
   add(compression_cases());
   add(breaking_cases());
   add(closed_crack_cases());
+  add(toughness_cases());
   add(random_scene_cases());
   return cases;
 }
