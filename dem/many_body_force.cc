@@ -235,7 +235,7 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
   }
   kernel_.forces(a, bonds_.segments(), strength, screen, rows_, work.exceeded_rows,
                  awake_ranges(work));
-  slices_.forces(a, strength > 0 ? screening_strength() : 0, screen, records_,
+  slices_.forces(a, strength > 0 ? noted_share_ * screening_strength() : 0, screen, records_,
                  work.exceeded_particles, awake_slices(work));
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
@@ -254,7 +254,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   surface_.set_time(time);
   if (rest_ && !rest_->all_awake())
     wake_loaded();
-  elastic_forces(p, surface_, strength(), work_);
+  elastic_forces(p, surface_, noted_share_ * strength(), work_);
   if (plastic_) {
     surface_.book_work(p, work_.pressure); // with the reactions before the flow
     flow(p);

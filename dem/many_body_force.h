@@ -31,6 +31,23 @@ struct BrokenBond
   double energy;                   // J, released
 };
 
+/// How near the most loaded of some faces is to breaking.
+template <int dim>
+struct Utilisation
+{
+  double share = 0;                        // of the limit at which it breaks
+  Vector<dim> place = Vector<dim>::Zero(); // m, face point in the reference
+};
+
+/// Whether the faces of a particle are watched: those with a watched particle and without an
+/// exempt one.
+enum class Watch : char
+{
+  none,
+  watched,
+  exempt
+};
+
 template <int dim>
 class ManyBodyForce : public particles::ParticleForce<dim>
 {
@@ -81,6 +98,14 @@ public:
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.
   double max_tension(const Particles &particles, const std::vector<int> &of) const;
 
+  /// Every compute() notes the faces that reach this share of their limit (above 0, at most 1, the
+  /// default) for utilisation().
+  void set_noted_share(double share);
+
+  /// The watched face nearest to its limit at the last compute(); one entry per particle. Its share
+  /// is 0 where no face reached the noted share.
+  Utilisation<dim> utilisation(const Particles &particles, const std::vector<Watch> &watch) const;
+
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
   Vector<dim> reaction(int load) const { return surface_.reaction(load); }
@@ -120,8 +145,8 @@ private:
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
-    std::vector<RowRange> exceeded_rows;
-    std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
+    std::vector<RowRange> exceeded_rows; // with bonds that may reach the noted share of the limit
+    std::vector<int> exceeded_particles; // with bonds of the table that may
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
     double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
@@ -203,6 +228,10 @@ private:
   double screening_strength() const;
   /// Of a bond in Pa, which has one.
   double strength_of(const Bond<dim> &bond) const;
+  /// visit(BondId, Bond) for bonds among which are all that reached the noted share of their
+  /// limit; some of them more than once.
+  template <typename Visit>
+  void for_each_noted_bond(Visit &&visit) const;
   /// The bonds that exceed the strength, in the order of global ids.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
@@ -228,6 +257,7 @@ private:
   std::vector<particles::BoundaryFace<dim>> boundary_faces_;
   Materials materials_;
   FractureLaw fracture_;
+  double noted_share_ = 1; // of the limit, see set_noted_share
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
   BondSlices<dim> slices_; // the irregular bonds, but those between materials

@@ -37,32 +37,60 @@ double ManyBodyForce<dim>::screening_strength() const
 }
 
 template <int dim>
-std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
+void ManyBodyForce<dim>::set_noted_share(double share)
 {
-  std::vector<BondId> found;
-  const auto test = [&](int i, bool lattice) {
+  core::require(share > 0 && share <= 1, "the noted share of the limit lies above 0, at most at 1");
+  noted_share_ = share;
+}
+
+template <int dim>
+template <typename Visit>
+void ManyBodyForce<dim>::for_each_noted_bond(Visit &&visit) const
+{
+  const auto visit_of = [&](int i, bool lattice) {
     bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i &&
-          tension(b, p, work_.pressure) >= strength_of(b))
-        found.push_back(id);
+      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i)
+        visit(id, b);
     });
   };
   for (const RowRange &range : work_.exceeded_rows)
     for (int i = range.begin; i < range.end; ++i)
-      test(i, true);
+      visit_of(i, true);
   for (const int i : work_.exceeded_particles)
-    test(i, false);
+    visit_of(i, false);
   if (strength() > 0)
-    bonds_.for_each_interface([&](BondId id, const Bond<dim> &b) {
-      if (tension(b, p, work_.pressure) >= strength_of(b))
-        found.push_back(id);
-    });
+    bonds_.for_each_interface(visit);
   if (plastic_ && strength() > 0) // the kernels don't know plastic strains
     for (const RowRange &range : plastic_->around_plastic())
       for (int i = range.begin; i < range.end; ++i) {
-        test(i, true);
-        test(i, false);
+        visit_of(i, true);
+        visit_of(i, false);
       }
+}
+
+template <int dim>
+Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
+                                                 const std::vector<Watch> &watch) const
+{
+  Utilisation<dim> most;
+  for_each_noted_bond([&](BondId, const Bond<dim> &b) {
+    if (std::max(watch[b.i], watch[b.j]) != Watch::watched)
+      return;
+    const double share = tension(b, p, work_.pressure) / strength_of(b);
+    if (share >= noted_share_ && share > most.share)
+      most = {share, Vector<dim>(get(p.reference, b.i) + b.lever_i)};
+  });
+  return most;
+}
+
+template <int dim>
+std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
+{
+  std::vector<BondId> found;
+  for_each_noted_bond([&](BondId id, const Bond<dim> &b) {
+    if (tension(b, p, work_.pressure) >= strength_of(b))
+      found.push_back(id);
+  });
   const auto ids = [&](const BondId &id) {
     const Bond<dim> b = bonds_.bond(id);
     const auto i = p.global_id[b.i], j = p.global_id[b.j];
@@ -150,7 +178,11 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
                        Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, released});
   }
   searching_ = true;
+  const auto noted_rows = work_.exceeded_rows; // what utilisation() looks at
+  const auto noted_particles = work_.exceeded_particles;
   elastic_forces(p, surface_, 0., work_);
+  work_.exceeded_rows = noted_rows;
+  work_.exceeded_particles = noted_particles;
   add_contact_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
   // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
@@ -170,6 +202,12 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
 
 template void ManyBodyForce<2>::set_strength(double);
 template void ManyBodyForce<3>::set_strength(double);
+template void ManyBodyForce<2>::set_noted_share(double);
+template void ManyBodyForce<3>::set_noted_share(double);
+template Utilisation<2> ManyBodyForce<2>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
+template Utilisation<3> ManyBodyForce<3>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
 template double ManyBodyForce<2>::strength() const;
 template double ManyBodyForce<2>::screening_strength() const;
 template double ManyBodyForce<3>::screening_strength() const;
