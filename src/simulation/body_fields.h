@@ -15,8 +15,10 @@ ParticleFields particle_fields(const CoupledBody<dim> &body);
 template <int dim>
 CellFields cell_fields(const CoupledBody<dim> &body);
 
+/// A motion of the particles at `time` in s: m and m/s.
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time);
+Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
+                  const Components<dim> &velocity);
 
 /// All faces broken so far, in the order of breaking.
 template <int dim>

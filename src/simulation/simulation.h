@@ -31,8 +31,11 @@ public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
 
+  /// A warning about the input, which log and record repeat.
+  void warn(const std::string &text) { log_.warning(text); }
+
   /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
-  /// the record (status "guard"), not an exception.
+  /// the record (status "stopped"), not an exception.
   RunRecord run();
 
 private:
