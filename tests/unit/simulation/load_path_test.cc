@@ -43,7 +43,7 @@ TEST(LoadPath, SectionIsTheIntactWidth)
 // A strip between two cuts that hangs on one half by two bonds, on the other by one.
 TEST(LoadPath, AFragmentBetweenTheHalvesIsAsWideAsItsNarrowestBridge)
 {
-  const SmallBody small(small_scene(cuts({{-12, 10, 4}, {-11, 12, -4}})));
+  const SmallBody small(small_scene(cuts({{-12, 10, 3}, {-11, 12, -3}})));
   EXPECT_NEAR(section(small, 1), 1, 1e-9);
 }
 
