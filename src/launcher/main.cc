@@ -60,7 +60,7 @@ ExitCode print_comparison(const CommandLine &line)
 
 ExitCode print_report(const CommandLine &line)
 {
-  const std::string file = write_report(line.run);
+  const std::string file = write_report(line.run, line.fields);
   const RunRecord record = read_run_record(RunFolder{line.run}.record());
   fmt::print("{}\n", file);
   if (!record.is_complete())

@@ -369,7 +369,7 @@ private:
     const std::string stem = run_.folder->path + "/compare_" + reference_.name;
     r_.svg_file = stem + ".svg";
     r_.html_file = stem + ".html";
-    const std::string drawing = svg(plot);
+    const std::string drawing = draw_plot(plot);
     core::write_file(r_.svg_file, drawing);
 
     std::vector<std::vector<std::string>> rows;

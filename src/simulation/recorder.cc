@@ -3,7 +3,7 @@
 #include "src/output/broken_bonds.h"
 #include "src/output/curve.h"
 #include "src/output/format.h"
-#include "src/output/picture.h"
+#include "src/output/run_pictures.h"
 
 #include <fmt/format.h>
 
@@ -77,13 +77,14 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
 
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps)
+                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+                        bool draws_pictures)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), history_interval_(history_interval_of(scene)), guard_(body),
-      path_(machine_.axis())
+      n_steps_(n_steps), draws_pictures_(draws_pictures),
+      history_interval_(history_interval_of(scene)), guard_(body), path_(machine_.axis())
 {
 }
 
@@ -145,7 +146,7 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   work_.push_back(ledger.external_work);
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
-    keep_copies(body, r.load);
+    keep_copies(body, step.time, r.load);
 }
 
 // A crack that runs moves within microseconds, while the grips still feel a rising load: the states
@@ -158,29 +159,32 @@ bool Recorder<dim>::keeps_copies(const CoupledBody<dim> &body) const
 
 // Which fields are the last before fracture is known only later: they are copied on the way up.
 template <int dim>
-void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double load)
+void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, double load)
 {
   if (std::abs(load) <= copied_growth * std::abs(fields_copied_at_))
     return;
   fields_copied_at_ = load;
-  peak_particles_ = particle_fields(body);
-  peak_cells_ = cell_fields(body);
-  peak_broken_ = n_broken(body);
+  peak_state_ = present_state(body, time);
 }
 
 template <int dim>
 void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
   next_fields_ += scene_.output.field_interval;
-  write_fields(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
+  BodyState state = present_state(body, step.time);
+  state.bonds = broken_bonds(body);
+  state_fields_.complete(body, state);
+  writer_.submit([this, state = std::move(state)] { fields_.write(state); });
 }
 
 template <int dim>
-void Recorder<dim>::write_fields(double time, ParticleFields particles, CellFields cells,
-                                 std::vector<BrokenBond> bonds)
+BodyState Recorder<dim>::present_state(const CoupledBody<dim> &body, double time) const
 {
-  writer_.submit([this, time, particles = std::move(particles), cells = std::move(cells),
-                  bonds = std::move(bonds)] { fields_.write(time, particles, cells, bonds); });
+  BodyState state;
+  state.time = time;
+  state.particles = particle_fields(body);
+  state.cells = cell_fields(body);
+  return state;
 }
 
 template <int dim>
@@ -226,9 +230,7 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling:
   }
   broken_time_ = bonds.back().time;
   curve_.end();
-  break_particles_ = particle_fields(body);
-  break_cells_ = cell_fields(body);
-  break_broken_ = bonds.size();
+  break_state_ = present_state(body, step.time);
   log_.info("the load path is gone since {:.4g} s: {:.2g} of the section is left", *broken_time_,
             *left);
 }
@@ -266,18 +268,42 @@ ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
 }
 
 template <int dim>
-void Recorder<dim>::draw(const std::string &name, const std::string &caption,
-                         const ParticleFields &particles, const CellFields &cells,
-                         const std::vector<BrokenBond> &bonds, RunRecord &record)
+std::vector<std::string> Recorder<dim>::shown_fields() const
 {
-  FieldView view;
-  view.field = "stress";
-  view.component = machine_.has_load() ? machine_.axis() : -1;
-  view.title = caption;
-  const std::string file = "pictures/" + name + ".png";
-  write_picture(folder_.path + "/" + file,
-                picture_of(particles, cells, bonds, dim, scene_.zone.spacing / 2, view));
-  record.pictures.push_back({file, caption});
+  std::vector<std::string> words;
+  for (const PictureParameters &picture : scene_.output.pictures)
+    words.push_back(picture.field);
+  if (words.empty())
+    words.push_back(machine_.has_load() ? fmt::format("stress_{0}{0}", "xyz"[machine_.axis()])
+                                        : "equivalent_stress");
+  return words;
+}
+
+template <int dim>
+void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
+                                RunRecord &record)
+{
+  if (!draws_pictures_)
+    return;
+  const auto bonds = broken_bonds(body);
+  std::vector<const BodyState *> all;
+  for (BodyState &state : states) {
+    const auto later = std::find_if(bonds.begin(), bonds.end(),
+                                    [&](const BrokenBond &b) { return b.time > state.time; });
+    state.bonds.assign(bonds.begin(), later);
+    state_fields_.complete(body, state);
+    const StateFiles files = FieldSeries::files(state, state.name);
+    record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
+    all.push_back(&state);
+  }
+  writer_.submit([&] {
+    for (const BodyState &state : states)
+      fields_.write(state);
+  });
+  record.magnification =
+      scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
+  record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification);
+  writer_.wait();
 }
 
 template <int dim>
@@ -290,31 +316,33 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record_history(body, step, damping);
   history_.flush();
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
-  const auto bonds = broken_bonds(body);
-  const auto particles = particle_fields(body);
-  const auto cells = cell_fields(body);
-  if (std::isfinite(scene_.output.field_interval))
-    write_fields(step.time, particles, cells, bonds);
-  write_broken_bonds(folder_.broken_bonds(), bonds, dim);
+  write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim);
+  if (!body.cut_faces.empty())
+    write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim);
   snapshots_.write(body, folder_);
 
   curve_.put_into(record);
+  std::vector<BodyState> states;
+  const auto keep = [&](BodyState state, const char *name, const char *caption) {
+    state.name = name;
+    state.caption = caption;
+    states.push_back(std::move(state));
+  };
   if (fields_copied_at_ != 0)
-    draw("peak", record.peak_load ? "Stress near the peak load" : "Stress near the largest load",
-         peak_particles_, peak_cells_, {bonds.begin(), bonds.begin() + peak_broken_}, record);
+    keep(std::move(peak_state_), "peak",
+         record.peak_load ? "near the peak load" : "near the largest load");
   if (broken_time_)
-    draw("broken", "Stress when the load path is gone", break_particles_, break_cells_,
-         {bonds.begin(), bonds.begin() + break_broken_}, record);
-  draw("end", "Stress at the end", particles, cells, bonds, record);
+    keep(std::move(break_state_), "broken", "when the load path is gone");
+  keep(present_state(body, step.time), "end", "at the end");
+  keep_states(body, std::move(states), record);
   record.broken_time = broken_time_;
   record.trusted_until = trusted_until_;
-  record.broken_bonds = std::int64_t(bonds.size());
+  record.broken_bonds = n_broken(body);
   record.broken_in_overlap = guard_.n_broken();
   record.crack_length = crack_length(body, machine_.axis());
   record.external_work = *std::max_element(work_.begin(), work_.end());
   record.energy_residual = relative_residual(residual_, work_);
   add_warnings(body, record);
-  writer_.wait();
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

@@ -37,7 +37,8 @@ class Recorder
 {
 public:
   Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps);
+           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+           bool draws_pictures);
 
   /// Looks at the present state; empty while the run goes on. `damping` in J so far.
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -54,12 +55,14 @@ public:
 private:
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   bool keeps_copies(const CoupledBody<dim> &body) const;
-  void keep_copies(const CoupledBody<dim> &body, double load);
+  void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  void write_fields(double time, ParticleFields particles, CellFields cells,
-                    std::vector<BrokenBond> bonds);
-  void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
-            const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
+  /// The present fields without those that StateFields adds.
+  BodyState present_state(const CoupledBody<dim> &body, double time) const;
+  /// Of the pictures, in words of shown_field().
+  std::vector<std::string> shown_fields() const;
+  /// Completes, writes and draws what the run keeps.
+  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record);
   std::string report(const std::string &finding, const coupling::StepTime &step);
   void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void add_warnings(const CoupledBody<dim> &body, RunRecord &record) const;
@@ -76,6 +79,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_;
+  bool draws_pictures_;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   OverlapGuard<dim> guard_;
@@ -88,11 +92,9 @@ private:
   SnapshotKeeper<dim> snapshots_;
   bool quasi_static_ = true;    // at the last row
   double fields_copied_at_ = 0; // N, load of the copies below
-  ParticleFields peak_particles_;
-  CellFields peak_cells_;
-  std::size_t peak_broken_ = 0, break_broken_ = 0;
-  ParticleFields break_particles_; // when the load path was found gone
-  CellFields break_cells_;
+  BodyState peak_state_;        // without bonds until the end
+  BodyState break_state_;       // when the load path was found gone
+  StateFields<dim> state_fields_;
   core::BackgroundWriter writer_; // of fields_; last, so that its jobs end before what they use
 };
 } // namespace ligament::program

@@ -33,6 +33,8 @@ TEST(RunRecord, ComesBackWhole)
   r.skipped = {{"contact search", "nothing is broken"}};
   r.peak_load = -1e5;
   r.figures = {{"strength", {2.5e7, "Pa"}}, {"c", {0.82, ""}}};
+  r.magnification = 500;
+  r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
   r.pictures = {{"pictures/peak.png", "at the peak"}};
   r.trusted_until = 2e-4;
   r.broken_in_overlap = 7;
@@ -55,6 +57,10 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.figures.at("strength").value, 2.5e7);
   EXPECT_EQ(back.figures.at("strength").unit, "Pa");
   EXPECT_EQ(back.pictures.at(0).file, "pictures/peak.png");
+  EXPECT_EQ(back.magnification, 500);
+  EXPECT_EQ(back.states.at(0).time, 1e-3);
+  EXPECT_EQ(back.states[0].particles, "fields/particles_peak.vtp");
+  EXPECT_EQ(back.states[0].cells, "");
 
   EXPECT_EQ(back.trusted_until, r.trusted_until);
   EXPECT_EQ(back.broken_in_overlap, 7);
