@@ -18,6 +18,7 @@ void Log::info(const std::string &message)
 
 void Log::warning(const std::string &message)
 {
+  warnings_.push_back(message);
   line("warning", message);
   if (echo_)
     fmt::print(echo_, "warning: {}\n", message);

@@ -55,6 +55,13 @@ void ManyBodyForce<dim>::set_strength(double strength)
 }
 
 template <int dim>
+void ManyBodyForce<dim>::set_noted_share(double share)
+{
+  core::require(share > 0 && share <= 1, "the noted share of the limit lies above 0, at most at 1");
+  noted_share_ = share;
+}
+
+template <int dim>
 void ManyBodyForce<dim>::find_largest_size_factor()
 {
   largest_size_factor_ = 1;
@@ -92,7 +99,7 @@ BreakScreen ManyBodyForce<dim>::breaking_screen(bool of_table) const
                                   materials_.all()[m].shear_modulus());
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
   const bool principal = fracture_.criterion == FractureLaw::Criterion::maximum_tension;
-  return {least / largest_size_factor_ * (1 - round_off),
+  return {noted_share_ * least / largest_size_factor_ * (1 - round_off),
           principal ? PrincipalTension::tangent : 0};
 }
 
@@ -121,7 +128,7 @@ std::vector<BondTension<dim>> ManyBodyForce<dim>::suspected_bonds(const Particle
   std::vector<BondTension<dim>> found;
   const auto test = [&](const BondId &id, const Bond<dim> &b) {
     const auto t = bond_tension(id, b, p, work_.pressure);
-    if (t.utilisation >= 1)
+    if (t.utilisation >= noted_share_)
       found.push_back(t);
   };
   const auto test_bonds_of = [&](int i, bool lattice) {
@@ -213,6 +220,9 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   if (fracture_.criterion == FractureLaw::Criterion::none)
     return {};
   auto found = suspected_bonds(p);
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [](const auto &t) { return t.utilisation < 1; }),
+              found.end());
   std::vector<BondId> exceeding;
   if (fracture_.criterion == FractureLaw::Criterion::face_tension) {
     for (const auto &t : found)
@@ -230,6 +240,27 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
       exceeding.push_back(t.id);
   }
   return exceeding;
+}
+
+template <int dim>
+Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
+                                                 const std::vector<Watch> &watch) const
+{
+  Utilisation<dim> most;
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    return most;
+  auto found = suspected_bonds(p);
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [&](const auto &t) {
+                               return std::max(watch[t.bond.i], watch[t.bond.j]) != Watch::watched;
+                             }),
+              found.end());
+  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
+    find_principal_tension(found, p, work_.pressure);
+  for (const auto &t : found)
+    if (t.utilisation >= noted_share_ && t.utilisation > most.share)
+      most = {t.utilisation, Vector<dim>(get(p.reference, t.bond.i) + t.bond.lever_i)};
+  return most;
 }
 
 template <int dim>
@@ -268,12 +299,18 @@ BondTension<dim> ManyBodyForce<dim>::weakest_bond(const Particles &p,
 }
 
 template void ManyBodyForce<2>::set_strength(double);
+template void ManyBodyForce<2>::set_noted_share(double);
+template Utilisation<2> ManyBodyForce<2>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
 template void ManyBodyForce<2>::find_largest_size_factor();
 template BreakScreen ManyBodyForce<2>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
 template BondTension<2> ManyBodyForce<2>::weakest_bond(const Particles &,
                                                        const std::vector<int> &) const;
 template void ManyBodyForce<3>::set_strength(double);
+template void ManyBodyForce<3>::set_noted_share(double);
+template Utilisation<3> ManyBodyForce<3>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
 template void ManyBodyForce<3>::find_largest_size_factor();
 template BreakScreen ManyBodyForce<3>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;

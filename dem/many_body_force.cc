@@ -194,14 +194,6 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
 }
 
 template <int dim>
-double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
-                                   const std::vector<double> &pressure) const
-{
-  const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
-  return bond_force(b, motion(b, p), pressure).dot(normal) / (b.weight * b.area);
-}
-
-template <int dim>
 void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLoads<dim> &surface,
                                              Workspace &work) const
 {

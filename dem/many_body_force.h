@@ -42,6 +42,23 @@ struct BondTension
   double utilisation;           // tension over strength, or a bound of it; 0 without tension
 };
 
+/// How near the most loaded of some faces is to breaking.
+template <int dim>
+struct Utilisation
+{
+  double share = 0;                        // of the limit at which it breaks
+  Vector<dim> place = Vector<dim>::Zero(); // m, face point in the reference
+};
+
+/// Whether the faces of a particle are watched: those with a watched particle and without an
+/// exempt one.
+enum class Watch : char
+{
+  none,
+  watched,
+  exempt
+};
+
 template <int dim>
 class ManyBodyForce : public particles::ParticleForce<dim>
 {
@@ -100,10 +117,14 @@ public:
   /// Of the bonds of these particles the one that bears the largest share of its strength by the
   /// criterion; of utilisation 0 where none is under tension, and without a criterion.
   BondTension<dim> weakest_bond(const Particles &particles, const std::vector<int> &of) const;
-  double utilisation(const Particles &particles, const std::vector<int> &of) const
-  {
-    return weakest_bond(particles, of).utilisation;
-  }
+
+  /// Every compute() notes the faces that reach this share of their limit (above 0, at most 1, the
+  /// default) for utilisation().
+  void set_noted_share(double share);
+
+  /// The watched face nearest to its limit at the last compute(); one entry per particle. Its share
+  /// is 0 where no face reached the noted share.
+  Utilisation<dim> utilisation(const Particles &particles, const std::vector<Watch> &watch) const;
 
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
@@ -144,8 +165,8 @@ private:
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
-    std::vector<RowRange> exceeded_rows;
-    std::vector<int> exceeded_particles; // with bonds of the table that could break
+    std::vector<RowRange> exceeded_rows; // with bonds that may reach the noted share of the limit
+    std::vector<int> exceeded_particles; // with bonds of the table that may
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
     double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
@@ -164,10 +185,6 @@ private:
                          const Turn<dim> &turn_j) const;
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
-
-  /// Traction along the present normal of the face, in Pa.
-  double tension(const Bond<dim> &bond, const Particles &particles,
-                 const std::vector<double> &pressure) const;
 
   /// The pressures of other_particles_ from irregular bonds and loaded faces, and the slices'
   /// records.
@@ -230,7 +247,8 @@ private:
   /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                                 const std::vector<double> &pressure) const;
-  /// The bonds whose bound reaches 1, in the order of global ids, after elastic_forces().
+  /// The bonds whose bound reaches the noted share, in the order of global ids, after
+  /// elastic_forces().
   std::vector<BondTension<dim>> suspected_bonds(const Particles &particles) const;
   static std::pair<std::int64_t, std::int64_t> global_ids(const Bond<dim> &bond,
                                                           const Particles &particles);
@@ -267,6 +285,7 @@ private:
   std::vector<particles::BoundaryFace<dim>> boundary_faces_;
   Materials materials_;
   FractureLaw fracture_;
+  double noted_share_ = 1; // of the limit, see set_noted_share
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
   BondSlices<dim> slices_; // the irregular bonds, but those between materials

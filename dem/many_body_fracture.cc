@@ -79,7 +79,11 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
                        Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, released});
   }
   searching_ = true;
+  const auto noted_rows = work_.exceeded_rows; // what utilisation() looks at
+  const auto noted_particles = work_.exceeded_particles;
   elastic_forces(p, surface_, false, work_);
+  work_.exceeded_rows = noted_rows;
+  work_.exceeded_particles = noted_particles;
   add_contact_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
   // The mean of both forces acts. Over the step before, the force before would have made the work

@@ -5,6 +5,8 @@
 #include "src/launcher/sweep_command.h"
 #include "src/output/compare.h"
 #include "src/output/report.h"
+#include "src/output/run_folder.h"
+#include "src/output/run_record.h"
 #include "src/scene/read_scene.h"
 #include "src/sweep/study.h"
 
@@ -42,20 +44,33 @@ void print_explanation(const CommandLine &line)
     fmt::print("{}", explain(line.key));
 }
 
-void print_comparison(const CommandLine &line)
+ExitCode code_of(bool complete)
+{
+  return complete ? ExitCode::done : ExitCode::stopped_by_guard;
+}
+
+ExitCode print_comparison(const CommandLine &line)
 {
   const CompareResult result = compare(line.run, line.reference);
   fmt::print("{}", table(result));
   if (line.json)
     fmt::print("{}\n", to_json(result).dump());
+  return code_of(result.complete);
 }
 
-void print_report(const CommandLine &line)
+ExitCode print_report(const CommandLine &line)
 {
   const std::string file = write_report(line.run, line.fields);
+  const RunRecord record = read_run_record(RunFolder{line.run}.record());
   fmt::print("{}\n", file);
+  if (!record.is_complete())
+    fmt::print("the run {}: {}\n", incompleteness(record), record.reason);
   if (line.json)
-    fmt::print("{}\n", nlohmann::json{{"report", file}}.dump());
+    fmt::print("{}\n", nlohmann::json{{"report", file},
+                                      {"status", record.status},
+                                      {"complete", record.is_complete()}}
+                           .dump());
+  return code_of(record.is_complete());
 }
 
 int dispatch(const CommandLine &line, int argc, char **argv)
@@ -71,9 +86,9 @@ int dispatch(const CommandLine &line, int argc, char **argv)
   if (line.command == "explain")
     print_explanation(line);
   else if (line.command == "compare")
-    print_comparison(line);
+    return int(print_comparison(line));
   else
-    print_report(line);
+    return int(print_report(line));
   return int(ExitCode::done);
 }
 

@@ -10,7 +10,7 @@ enum class ExitCode
 {
   done = 0,
   wrong_input = 2,
-  stopped_by_guard = 3,
+  stopped_by_guard = 3, // or about a run that is not complete
   bad_environment = 4
 };
 

@@ -56,19 +56,23 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
   write_summary(folder, study, list, results, notes);
   for (const std::string &note : notes)
     fmt::print(stderr, "{}\n", note);
-  const int failed = count(results, CaseEnd::Status::failed);
+  const int failed = count(results, CaseEnd::Status::failed),
+            stopped = count(results, CaseEnd::Status::stopped);
   fmt::print("{} cases: {} done, {} stopped by a guard, {} refused, {} failed\n", results.size(),
-             count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::guard),
+             count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::stopped),
              count(results, CaseEnd::Status::refused), failed);
   fmt::print("table: {}\nsummary: {}\n", folder.table(), folder.summary());
   if (line.json) {
     int reused = 0;
     for (const auto &[id, end] : ends)
       reused += end.reused;
-    fmt::print("{}\n", nlohmann::ordered_json{{"status", failed == 0 ? "done" : "failed"},
+    fmt::print("{}\n", nlohmann::ordered_json{{"status", failed > 0    ? "failed"
+                                                         : stopped > 0 ? "stopped"
+                                                                       : "done"},
+                                              {"complete", failed == 0 && stopped == 0},
                                               {"cases", results.size()},
                                               {"done", count(results, CaseEnd::Status::done)},
-                                              {"guard", count(results, CaseEnd::Status::guard)},
+                                              {"stopped", count(results, CaseEnd::Status::stopped)},
                                               {"refused", count(results, CaseEnd::Status::refused)},
                                               {"failed", failed},
                                               {"reused", reused},
@@ -77,7 +81,9 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
                                               {"output", folder.path()}}
                            .dump());
   }
-  return int(failed == 0 ? ExitCode::done : ExitCode::bad_environment);
+  return int(failed > 0    ? ExitCode::bad_environment
+             : stopped > 0 ? ExitCode::stopped_by_guard
+                           : ExitCode::done);
 }
 } // namespace
 

@@ -110,7 +110,7 @@ void declare_coupling(Section &s, CouplingParameters &c)
   s.add("multiplier_cells", c.multiplier_cells, "edge of the multipliers' hat functions in cells; energy-weighted schemes only").at_least(1).at_most(10);
   s.add("ghost_force_correction", c.ghost_force_correction, "normal strains (xx, yy, zz) at which constant forces cancel the overlap's ghost forces, 0: off; energy-weighted schemes only").at_least(-0.1).at_most(0.1);
   s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
-  s.add("guard", c.guard, "what happens when fracture approaches the overlap or the body leaves the range of its regime").one_of({"stop", "warn"});
+  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons").one_of({"stop", "warn"});
   s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it").one_of({"automatic", "linear", "corotated", "nonlinear"});
   s.add("coarse_mass", c.coarse_mass, "factor on the masses of the coarse motion and of the far field, for fewer steps to a static answer; down to spacing/cell_size, with damping only").above(0).at_most(1);
 }
@@ -139,7 +139,7 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
   s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").above(0);
   s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
-  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as it carries no load").one_of({"end", "specimen_broken"});
+  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.3)").one_of({"end", "specimen_broken"});
 }
 
 void declare_picture(Section &s, PictureParameters &p)

@@ -135,13 +135,15 @@ RunRecord Simulation<dim>::run()
     log_.info("not needed: {} ({})", part.what, part.why);
 
   const auto stop = loop();
-  record.status = stop && stop->by_guard ? "guard" : "done";
+  record.status = stop && stop->by_guard ? "stopped" : "done";
   record.reason = stop ? stop->reason : "end of the scene's duration";
   record.regime = regime_.history();
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;
   recorder_.finish(body_, clock_.now, damping_.energy(), record);
+  for (const std::string &text : log_.warnings())
+    record.warnings.push_back({text});
   report_rest(record);
   record.timing = timers_.rows();
   double discrete = 0;

@@ -33,8 +33,11 @@ public:
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
              bool draws_pictures = true);
 
+  /// A warning about the input, which log and record repeat.
+  void warn(const std::string &text) { log_.warning(text); }
+
   /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
-  /// the record (status "guard"), not an exception.
+  /// the record (status "stopped"), not an exception.
   RunRecord run();
 
 private:

@@ -26,7 +26,7 @@ std::optional<std::string> finished_scene(const RunFolder &run)
     return {};
   try {
     const RunRecord record = read_run_record(run.record());
-    if (record.status != "done" && record.status != "guard")
+    if (record.status != "done" && record.status != "stopped")
       return {};
     return scene_text(Json::parse(core::read_file(run.resolved_scene())));
   } catch (const core::InputError &) {

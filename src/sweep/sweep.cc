@@ -46,7 +46,7 @@ std::string failure(const ChildEnd &end, const std::string &errors)
 
 std::string to_string(CaseEnd::Status status)
 {
-  constexpr const char *names[] = {"done", "guard", "refused", "failed"};
+  constexpr const char *names[] = {"done", "stopped", "refused", "failed"};
   return names[int(status)];
 }
 
@@ -87,7 +87,7 @@ void Sweep::reuse()
       continue;
     }
     const RunRecord record = read_run_record(run->record());
-    ends_[c.id] = {record.status == "guard" ? CaseEnd::Status::guard : CaseEnd::Status::done,
+    ends_[c.id] = {record.status == "stopped" ? CaseEnd::Status::stopped : CaseEnd::Status::done,
                    record.reason, run, true};
     ++n_old;
     n_other_version += record.commit != core::commit();
@@ -171,7 +171,7 @@ void Sweep::finish_run(const Case &c, const ChildEnd &end)
   result.run = folder_.finished(scene_text(c.scene));
   if (result.run) {
     const RunRecord record = read_run_record(result.run->record());
-    result.status = record.status == "guard" ? CaseEnd::Status::guard : CaseEnd::Status::done;
+    result.status = record.status == "stopped" ? CaseEnd::Status::stopped : CaseEnd::Status::done;
     result.reason = record.reason;
     write_cost(folder, {end.core_seconds, end.peak_memory, jobs_});
   } else

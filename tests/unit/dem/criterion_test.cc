@@ -60,7 +60,7 @@ void expect_principal_stress(const Packing<dim> &packing, double nu, unsigned se
     ASSERT_FALSE(body.inside.empty());
     const ManyBodyForce<dim> force(packing, material, {},
                                    {FractureLaw::Criterion::maximum_tension, small});
-    EXPECT_NEAR(force.utilisation(body.p, body.inside), 1., 1e-6) << others;
+    EXPECT_NEAR(force.weakest_bond(body.p, body.inside).utilisation, 1., 1e-6) << others;
   }
 }
 

@@ -176,7 +176,7 @@ void expect_all_breaking_found(const Packing<dim> &packing)
         const double strength = (1 - 1e-10) * share * sorted.back();
         ManyBodyForce<dim> force(packing, material, {},
                                  {Criterion::maximum_tension, strength, {}, whole_face});
-        EXPECT_NEAR(force.utilisation(p, all), sorted.back() / strength, 1e-9);
+        EXPECT_NEAR(force.weakest_bond(p, all).utilisation, sorted.back() / strength, 1e-9);
         force.compute(p, 0);
         EXPECT_EQ(broken_faces(force), breaking_faces(packing, tension, strength)) << share;
         const auto n = force.broken_bonds().size();
@@ -230,5 +230,60 @@ TEST(Screen, NoBondAboveTheStrengthIsMissed)
   expect_all_found<3>(lattice<3>(Kind::fcc, 6, 1));
   expect_all_found<3>(lattice<3>(Kind::simple_cubic, 6, 1));
   expect_all_found<3>(random_packing<3>(5, 1));
+}
+/// Against the tensions of an intact twin: of the watched particles, of one pair, of none.
+template <int dim>
+void expect_utilisation_of_watched_faces(const Packing<dim> &packing)
+{
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  const auto p = state(packing, 0.02, 3);
+  const ManyBodyForce<dim> intact(packing, material, {});
+  std::vector<double> tension(packing.size());
+  for (int i = 0; i < packing.size(); ++i)
+    tension[i] = intact.max_tension(p, {i});
+  const double strength = 1.1 * *std::max_element(tension.begin(), tension.end());
+  ManyBodyForce<dim> force(packing, material, {},
+                           {FractureLaw::Criterion::maximum_tension, strength});
+  constexpr double noted = 0.3;
+  force.set_noted_share(noted);
+  auto moved = p;
+  force.compute(moved, 0);
+  ASSERT_TRUE(force.broken_bonds().empty());
+
+  std::vector<Watch> watch(packing.size(), Watch::none);
+  EXPECT_EQ(force.utilisation(p, watch).share, 0);
+  double most = 0;
+  for (int i = 0; i < packing.size(); i += 3) {
+    watch[i] = Watch::watched;
+    most = std::max(most, tension[i] / strength);
+    const auto found = force.utilisation(p, watch);
+    ASSERT_NEAR(found.share, most >= noted ? most : 0, 1e-12) << i;
+  }
+  EXPECT_GT(most, noted);
+
+  // The most loaded face of a particle is one of those to its neighbours, the others exempt.
+  const int i = int(std::max_element(tension.begin(), tension.end()) - tension.begin());
+  double over_neighbours = 0;
+  force.for_each_face(p, [&](const particles::FaceView<dim> &face) {
+    if (face.i != i || face.j < 0)
+      return;
+    std::vector<Watch> pair(packing.size(), Watch::exempt);
+    pair[i] = Watch::watched;
+    EXPECT_EQ(force.utilisation(p, pair).share, 0);
+    pair[face.j] = Watch::none;
+    const auto found = force.utilisation(p, pair);
+    if (found.share > 0)
+      EXPECT_LT((found.place - face.centroid).norm(), 1e-12);
+    over_neighbours = std::max(over_neighbours, found.share);
+  });
+  EXPECT_NEAR(over_neighbours, tension[i] / strength, 1e-12);
+}
+
+TEST(Screen, UtilisationIsThatOfTheMostLoadedWatchedFace)
+{
+  expect_utilisation_of_watched_faces<2>(lattice<2>(Kind::hexagonal, 20, 1));
+  expect_utilisation_of_watched_faces<2>(random_packing<2>(10, 2));
+  expect_utilisation_of_watched_faces<3>(lattice<3>(Kind::fcc, 5, 1));
+  expect_utilisation_of_watched_faces<3>(random_packing<3>(5, 1));
 }
 } // namespace ligament::dem::testing
