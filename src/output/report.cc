@@ -198,7 +198,7 @@ std::string comparisons(const RunFolder &folder)
 {
   std::vector<std::string> files;
   for (const auto &entry : std::filesystem::directory_iterator(folder.path))
-    if (entry.path().extension() == ".svg" &&
+    if (entry.is_regular_file() && entry.path().extension() == ".svg" &&
         entry.path().filename().string().rfind("compare_", 0) == 0)
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -233,7 +233,7 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 }
 } // namespace
 
-std::string write_report(const std::string &run_folder)
+std::string write_report(const std::string &run_folder, const std::string &target)
 {
   const RunFolder folder{run_folder};
   core::require(folder.holds_a_run(),
@@ -246,13 +246,15 @@ std::string write_report(const std::string &run_folder)
                     record.verdict.empty() ? verdict(record) : record.verdict);
   body += pictures(folder, record);
   if (std::filesystem::exists(folder.history())) {
-    const Table history = read_csv(folder.history());
+    const Table history = read_history(folder, record);
     body +=
         load_curve(history) + crack_growth(history, record.dimension) + energies(history, record);
   }
   body += comparisons(folder) + model(record) + timing(record) + skipped(record) +
           sources(folder, record);
-  core::write_file(folder.report(), html_page(record.title, body));
-  return folder.report();
+  make_folder(target);
+  const std::string file = RunFolder{target}.report();
+  core::write_file(file, html_page(record.title, body));
+  return file;
 }
 } // namespace ligament::program

@@ -5,7 +5,11 @@
 
 namespace ligament::program
 {
-/// Writes report.html into the output folder from the files that lie there and returns its path.
-/// InputError when the folder holds no run.
-std::string write_report(const std::string &run_folder);
+/// Writes report.html from the files of the run into `folder`, which is made if need be, and returns
+/// its path. InputError when the first folder holds no run, EnvironmentError when the disk refuses.
+std::string write_report(const std::string &run_folder, const std::string &folder);
+inline std::string write_report(const std::string &run_folder)
+{
+  return write_report(run_folder, run_folder);
+}
 } // namespace ligament::program

@@ -1,5 +1,6 @@
 #include "src/simulation/recorder.h"
 
+#include "core/check.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/curve.h"
 #include "src/output/picture.h"
@@ -281,9 +282,26 @@ void Recorder<dim>::draw(const std::string &name, const std::string &caption,
   view.component = machine_.has_load() ? machine_.axis() : -1;
   view.title = caption;
   const std::string file = "pictures/" + name + ".png";
-  write_picture(folder_.path + "/" + file,
-                picture_of(particles, cells, bonds, dim, scene_.zone.spacing / 2, view));
-  record.pictures.push_back({file, caption});
+  try {
+    write_picture(folder_.path + "/" + file,
+                  picture_of(particles, cells, bonds, dim, scene_.zone.spacing / 2, view));
+    record.pictures.push_back({file, caption});
+  } catch (const core::EnvironmentError &error) {
+    log_.warning("a picture is missing: {}", error.what());
+  }
+}
+
+template <int dim>
+template <typename Write>
+void Recorder<dim>::attempt(Write &&write)
+{
+  try {
+    write();
+  } catch (const core::EnvironmentError &error) {
+    log_.warning("{}", error.what());
+    if (failure_.empty())
+      failure_ = error.what();
+  }
 }
 
 template <int dim>
@@ -291,18 +309,21 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
                            double damping, RunRecord &record)
 {
   const auto timing = timers_.scope(section_);
-  record_history(body, step, damping);
-  history_.flush();
+  attempt([&] {
+    record_history(body, step, damping);
+    history_.flush();
+  });
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
   const auto bonds = broken_bonds(body);
   const auto particles = particle_fields(body);
   const auto cells = cell_fields(body);
-  if (std::isfinite(scene_.output.field_interval))
-    write_fields(step.time, particles, cells, bonds);
-  write_broken_bonds(folder_.broken_bonds(), bonds, dim);
+  attempt([&] { write_broken_bonds(folder_.broken_bonds(), bonds, dim); });
   for (std::size_t i = 0; i < snapshots_.size(); ++i)
     if (body.zone && snapshots_[i])
-      write_snapshot(folder_.snapshots()[i], *snapshots_[i]);
+      attempt([&] { write_snapshot(folder_.snapshots()[i], *snapshots_[i]); });
+  // Behind the small files: these are the ones that fill a disk.
+  if (std::isfinite(scene_.output.field_interval))
+    attempt([&] { write_fields(step.time, particles, cells, bonds); });
 
   if (const auto peak = peak_index(load_)) {
     record.peak_load = load_[*peak];
@@ -319,7 +340,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.broken_bonds = std::int64_t(bonds.size());
   record.crack_length = crack_length(body, machine_.axis());
   record.energy_residual = relative_residual(residual_, work_);
-  writer_.wait();
+  attempt([&] { writer_.wait(); });
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

@@ -45,11 +45,17 @@ public:
   /// Logs what leaves the range of the models; a stop when the scene's guard says so.
   std::optional<Stop> report_excess(const std::string &finding, const coupling::StepTime &step);
 
-  /// Last row, last fields, pictures, tables; completes the record.
+  /// Last row, last fields, pictures, tables; completes the record. A file that cannot be written
+  /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
               RunRecord &record);
 
+  /// The first file that finish() could not write, and why; empty: none.
+  const std::string &failure() const { return failure_; }
+
 private:
+  template <typename Write>
+  void attempt(Write &&write);
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
@@ -82,6 +88,7 @@ private:
   } break_;
   std::vector<int> guarded_; // overlap particles
   bool warned_ = false;
+  std::string failure_;
 
   // What the record needs from the history; loads up to the time when the sides feel the break.
   std::vector<double> load_, stress_, strain_, time_, residual_, work_;

@@ -1,6 +1,7 @@
 // One run: the time loop, and who watches it.
 #pragma once
 
+#include "core/interruption.h"
 #include "core/timers.h"
 #include "src/output/run_folder.h"
 #include "src/simulation/damping.h"
@@ -31,9 +32,10 @@ public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
 
-  /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
-  /// the record (status "guard"), not an exception.
-  RunRecord run();
+  /// Runs to the end of the scene, or until a signal asks for the end; writes all outputs and
+  /// returns the record. A guard's stop, a signal and a disk that refuses are in the record (status
+  /// "guard", "interrupted", "failed"), not exceptions: what was computed is kept.
+  RunRecord run(const core::Interruption *interruption = nullptr);
 
 private:
   Clock clock_of() const;
@@ -43,7 +45,9 @@ private:
   /// What was left out of the steps, for log and record.
   void report_rest(RunRecord &record);
   /// The time loop; the reason when it ends early.
-  std::optional<Stop> loop();
+  std::optional<Stop> loop(const core::Interruption *interruption);
+  /// Runs the loop and says in the record how it ended.
+  void run_loop(const core::Interruption *interruption, RunRecord &record);
 
   const Scene scene_;
   RunFolder folder_;
