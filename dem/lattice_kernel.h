@@ -63,15 +63,18 @@ struct TractionScreen
 class RowWindow
 {
 public:
-  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle;
-  /// no multiples of 4096 bytes, so that these lie in different sets of the cache. Close together
-  /// they share large pages; the wide one is for layers with very many particles.
-  static constexpr long close = (1L << 16) + 24, wide = (1L << 20) + 24;
+  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle,
+  /// by an offset that fits the processor's instructions; no multiples of 4096 bytes, so that these
+  /// lie in different sets of the cache. Close together they share large pages; the wide one is for
+  /// layers with very many particles.
+  static constexpr long close = (1L << 16) + 24, wide = (1L << 23) + 24;
 
-  /// Room for `length` particles from 0 on. Memory is taken as it is touched.
-  void reset(int n_streams, long stride, int length);
+  /// Room for at least `least` particles, or for all n of them, from 0 on. Memory is taken as it is
+  /// touched. Throws core::InputError when the stride is too short for them.
+  void reset(int n_streams, long stride, long least, int n);
 
-  /// Makes room up to `end`, keeping what was written from `keep` on; the length bounds end - keep.
+  /// Makes room up to `end`, keeping what was written from `keep` on; throws core::InputError when
+  /// the room does not suffice.
   void slide(int keep, int end);
 
   /// Where stream 0 of particle 0 would lie; valid for particles in the window until the next
@@ -83,6 +86,15 @@ private:
   long stride_ = 0;
   int n_streams_ = 0, length_ = 0, begin_ = 0;
 };
+
+/// Particles that the window holds at least where neighbours are at most `reach` apart.
+constexpr long window_length_for(long reach)
+{
+  return 3 * reach + 2 * row_piece + most_lanes;
+}
+
+/// Largest offset between neighbours that the kernels can bridge: about a layer of the packing.
+inline constexpr long largest_reach = (RowWindow::wide - window_length_for(0)) / 3;
 
 /// Everything one sweep over the segments needs; passed through the run-time dispatch.
 template <int dim>
@@ -102,7 +114,7 @@ struct RowSweep
   TractionScreen screen = {};
 
   /// Particles that the window must hold at least.
-  long window_length() const { return 3L * reach + 2 * row_piece + most_lanes; }
+  long window_length() const { return window_length_for(reach); }
 };
 
 /// cos - 1 and sin of n angles, to round-off for any angle below 1e5.
@@ -116,6 +128,7 @@ template <int dim>
 class LatticeKernel
 {
 public:
+  /// Throws core::InputError when neighbours lie farther apart than largest_reach.
   LatticeKernel(const std::vector<DirectionData<dim>> &directions,
                 const std::vector<RowSegment> &segments, int n_particles, double shear_modulus,
                 bool volumetric);

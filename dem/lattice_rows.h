@@ -126,10 +126,7 @@ public:
   HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep)
       : sweep_(sweep), bonds_(sweep), dilated_(*sweep.segments, sweep.ranges->pressed)
   {
-    // Sliding takes little time when the window is twice as long as it must be.
-    const long length = std::min(2 * sweep.window_length(), Bonds::stride);
-    sweep.window->reset(Bonds::n_streams, Bonds::stride,
-                        int(std::min(length, long(sweep.n_particles))));
+    sweep.window->reset(Bonds::n_streams, Bonds::stride, sweep.window_length(), sweep.n_particles);
   }
 
   HWY_INLINE void run()

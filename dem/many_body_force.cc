@@ -50,6 +50,11 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materia
   for (const auto &face : packing.faces)
     if (face.cracked) {
       Bond<dim> b = BondNetwork<dim>::make_bond(face, materials_, packing.thickness);
+      if (face.cut >= 0) {
+        contacts_.add_joint(b, face.cut, packing.cuts[face.cut].normal(),
+                            get(packing.centre, face.j));
+        continue;
+      }
       // Closed faces press with nothing, not even with rounding: that would be a load from the
       // start.
       const Vector<dim> between = get(packing.centre, b.j) - get(packing.centre, b.i);
@@ -248,9 +253,12 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
 template <int dim>
 void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
-  if (time != time_)
+  if (time != time_) {
     last_time_ = time_;
-  time_ = time;
+    time_ = time;
+    breaking_step_error_ += quarter_work_of_jumps(p);
+    jumps_.clear();
+  }
   surface_.set_time(time);
   if (rest_ && !rest_->all_awake())
     wake_loaded();

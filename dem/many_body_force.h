@@ -90,10 +90,10 @@ public:
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return fracture_energy_; }
-  /// Energy in J by which the leap-frog's invariant (kinetic energy 1/2 v(-) m v(+)) fell at the
-  /// steps that broke bonds: sum of dt^2/8 (F^2 after - F^2 before)/m, spins likewise; dt is the
-  /// time since the previous compute(). Belongs to the energy balance; second order in the step.
-  double breaking_step_error() const { return breaking_step_error_; }
+  /// Energy in J by which the leap-frog's invariant (kinetic energy 1/2 v(-) m v(+)) fell because
+  /// forces jumped, theory.md (E10): where bonds broke, and where contacts opened or closed.
+  /// Belongs to the energy balance; second order in the step.
+  double breaking_step_error() const { return breaking_step_error_ + contacts_.step_error(); }
   /// Energy in J that friction took.
   double frictional_work() const { return contacts_.frictional_work(); }
 
@@ -206,6 +206,8 @@ private:
   /// The bonds that exceed the strength, in the order of global ids.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
+  /// A quarter of the work in J that the jumps of the last break do over this step's motion.
+  double quarter_work_of_jumps(const Particles &particles) const;
   /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
   /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
@@ -247,6 +249,13 @@ private:
   mutable RowWindow rows_; // scratch: nothing in it outlives a call
   mutable core::LargeArray records_;
   std::vector<BrokenBond<dim>> broken_;
+  struct Jump
+  {
+    int i;
+    Vector<dim> force; // N, after less before
+    Spin<dim> torque;  // N m
+  };
+  std::vector<Jump> jumps_; // where bonds broke in the last step
   std::unique_ptr<PlasticBlocks<dim>> plastic_;
   double yield_traction_ = 0;       // Pa: no particle yields whose bonds all have less,
   double pressure_share_ = 0;       // and whose pressure (plane strain) is below this share of it

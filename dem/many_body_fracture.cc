@@ -153,19 +153,28 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   elastic_forces(p, surface_, 0., work_);
   add_contact_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
-  // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
-  // the mean force leaves as it is.
-  const double dt = time_ - last_time_;
-  const auto mean = [&](auto &now, const auto &before, double moment) {
-    for (std::size_t c = 0; c < now.size(); ++c)
-      for (std::size_t i = 0; i < now[c].size(); ++i) {
-        breaking_step_error_ += dt * dt / (8 * moment * p.mass[i]) * (now[c][i] - before[c][i]) *
-                                (now[c][i] + before[c][i]);
-        now[c][i] = 0.5 * (now[c][i] + before[c][i]);
-      }
-  };
-  mean(p.force, force_before, 1.);
-  mean(p.torque, torque_before, p.gyration);
+  // The mean of both forces acts. Over the step before, the force before would have made the work
+  // exact, over the next one that after: (E10).
+  jumps_.clear();
+  for (int i = 0; i < p.n_owned; ++i) {
+    const Jump jump = {i, get(p.force, i) - get(force_before, i),
+                       get(p.torque, i) - get(torque_before, i)};
+    if (jump.force.isZero(0) && jump.torque.isZero(0))
+      continue;
+    add(p.force, i, Vector<dim>(-0.5 * jump.force));
+    add(p.torque, i, Spin<dim>(-0.5 * jump.torque));
+    jumps_.push_back(jump);
+  }
+  breaking_step_error_ -= quarter_work_of_jumps(p);
+}
+
+template <int dim>
+double ManyBodyForce<dim>::quarter_work_of_jumps(const Particles &p) const
+{
+  double power = 0;
+  for (const Jump &jump : jumps_)
+    power += jump.force.dot(get(p.velocity, jump.i)) + jump.torque.dot(get(p.spin, jump.i));
+  return 0.25 * (time_ - last_time_) * power;
 }
 
 template void ManyBodyForce<2>::set_strength(double);
@@ -182,6 +191,8 @@ template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const BondMotion<
 template double ManyBodyForce<3>::strength() const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;
+template double ManyBodyForce<2>::quarter_work_of_jumps(const Particles &) const;
+template double ManyBodyForce<3>::quarter_work_of_jumps(const Particles &) const;
 template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &, double);
 template void ManyBodyForce<3>::break_bonds(Particles &, const std::vector<BondId> &, double);
 template double ManyBodyForce<2>::local_energy(const Bond<2> &, const Particles &) const;

@@ -3,10 +3,9 @@
 #include "particles/packing_file.h"
 #include "src/commands/check_volumes.h"
 #include "src/commands/peak_memory.h"
+#include "src/commands/scene_picture.h"
 #include "src/launcher/program.h"
-#include "src/output/picture.h"
 #include "src/output/run_folder.h"
-#include "src/scene/geometry.h"
 #include "src/simulation/damping.h"
 #include "src/simulation/make_zone.h"
 #include "src/simulation/recorder.h"
@@ -75,83 +74,6 @@ std::string duration_text(double seconds)
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// An absorbing side as a thick line, its layer's border dashed; in 3D along two edges.
-template <int dim>
-std::vector<Segments> absorbing_lines(const LoadParameters &load, int boundary,
-                                      const Vector<dim> &lower, const Vector<dim> &upper)
-{
-  const int axis = boundary / 2;
-  std::vector<Segments> lines;
-  for (const double depth : {0., load.absorbing_layer}) {
-    if (depth == 0 && !lines.empty())
-      break;
-    Segments s;
-    s.color = {20, 110, 200};
-    s.width = depth == 0 ? 6 : 2;
-    s.dashed = depth > 0;
-    for (int c = 0; c < dim; ++c)
-      if (c != axis)
-        for (const double end : {lower[c], upper[c]}) {
-          std::array<double, 3> point = {};
-          for (int k = 0; k < dim; ++k)
-            point[k] = upper[k];
-          point[axis] = boundary % 2 ? upper[axis] - depth : lower[axis] + depth;
-          point[c] = end;
-          s.points.insert(s.points.end(), point.begin(), point.end());
-        }
-    lines.push_back(s);
-  }
-  return lines;
-}
-
-template <int dim>
-void draw(const CoupledBody<dim> &body, const Scene &scene, const std::string &file)
-{
-  FieldView view;
-  view.field = "displacement";
-  view.magnify = 0;
-  view.title = scene.title;
-  if (scene.zone.extent == DiscreteZone::Extent::box) {
-    for (const auto &part : zone_shape<dim>(scene).boxes) {
-      std::array<double, 6> box = {};
-      for (int c = 0; c < dim; ++c) {
-        box[c] = std::max(part.lower[c], body.lower[c]);
-        box[3 + c] = std::min(part.upper[c], body.upper[c]);
-      }
-      view.boxes.push_back(box);
-    }
-  }
-  auto picture =
-      picture_of(particle_fields(body), cell_fields(body), {}, dim, body.spacing / 2, view);
-  picture.value_label.clear();
-  for (auto &scatter : picture.scatters)
-    scatter.values.clear();
-  for (auto &quads : picture.quads)
-    quads.values.clear();
-  for (const auto &load : scene.loads) {
-    Label label;
-    const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
-    const int boundary = int(std::find(names.begin(), names.end(), load.boundary) - names.begin());
-    label.position = {0, 0, 0};
-    label.position[boundary / 2] =
-        (boundary % 2 ? 0.94 : -0.94) * scene.specimen.size[boundary / 2] / 2;
-    label.text = load.boundary + ": " + (load.absorbing ? "absorbing" : load.kind);
-    picture.labels.push_back(label);
-    if (load.absorbing) {
-      auto segments = absorbing_lines(load, boundary, body.lower, body.upper);
-      picture.segments.insert(picture.segments.end(), segments.begin(), segments.end());
-    }
-  }
-  for (const auto &crack : scene.specimen.cracks)
-    if (dim == 2) {
-      Segments segments;
-      for (const auto &point : crack.points)
-        segments.points.insert(segments.points.end(), {point[0], point[1], 0.});
-      picture.segments.push_back(segments);
-    }
-  write_picture(file, picture);
-}
-
 template <int dim>
 int check(const CommandLine &line, const ReadResult &input)
 {
@@ -164,7 +86,7 @@ int check(const CommandLine &line, const ReadResult &input)
     const std::string folder = output_folder(line);
     std::filesystem::create_directories(folder);
     const std::string file = folder + "/check.png";
-    draw(body, scene, file);
+    write_picture(file, scene_picture(body, scene));
     fmt::print("picture: {}\n", file);
     if (body.seeds) {
       const std::string packing = RunFolder{folder}.packing();

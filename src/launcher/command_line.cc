@@ -81,6 +81,15 @@ void declare(CLI::App &app, CommandLine &line)
 
   CLI::App &report = *app.add_subcommand("report", "writes the HTML report of a run again");
   report.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
+  report
+      .add_option("--field", line.fields,
+                  "draws this field in place of the run's own pictures, such as stress_yy, "
+                  "equivalent_stress, velocity; may be repeated")
+      ->type_name("FIELD")
+      ->type_size(1)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
   report.add_option("--output,-o", line.output, "folder for it; without it: that of the run")
       ->type_name("DIR");
 
@@ -91,6 +100,14 @@ void declare(CLI::App &app, CommandLine &line)
       .add_flag("--stability", line.stability,
                 "stability under stress; with --full 1e5 steps of each setting")
       ->excludes("case");
+  verify
+      .add_option("--seeds,--seed", line.seeds,
+                  "random_scenes: one seed, whose files and runs are kept, or a range; what the "
+                  "folder holds of a range is not computed again")
+      ->type_name("N or FIRST:LAST");
+  verify
+      .add_option("--output,-o", line.output, "random_scenes with --seeds: folder for the results")
+      ->type_name("DIR");
 
   for (CLI::App *command : app.get_subcommands({}))
     command->add_flag("--json", line.json, "ends with one JSON object on the last line");

@@ -23,6 +23,7 @@ struct CommandLine
   int jobs = 1;                       // sweep: runs at the same time
   bool dry_run = false;               // sweep: list the cases only
   std::string run, reference;         // compare, report: folders (the reference may be a curve)
+  std::vector<std::string> fields;    // report: of its pictures; empty: those of the run
   std::string key;                    // explain; empty: all keys
   bool markdown = false;              // explain: the page of the manual
   bool schema = false;                // explain: the JSON schema
@@ -30,6 +31,7 @@ struct CommandLine
   std::string verify_case;            // verify; empty: all
   bool full = false;                  // verify: also the slow ones; check: builds whatever its size
   bool stability = false;             // verify: those of stability under stress
+  std::string seeds;                  // verify: of random scenes, into `output`; "17" or "1:1000"
 
   /// Set when nothing is left to do: help and version were printed, or a mistake (2).
   std::optional<int> exit_code;

@@ -70,9 +70,9 @@ void print_comparison(const CommandLine &line)
 std::string report_of(const CommandLine &line)
 {
   if (!line.output.empty())
-    return write_report(line.run, line.output);
+    return write_report(line.run, line.fields, line.output);
   try {
-    return write_report(line.run);
+    return write_report(line.run, line.fields);
   } catch (const core::EnvironmentError &error) {
     throw core::EnvironmentError(error.what() +
                                  std::string("; give a folder for it with --output"));

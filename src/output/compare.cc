@@ -272,7 +272,7 @@ private:
     if (plot.series.size() < 2)
       r_.notes.push_back("plot: the curves have no pair of columns in common");
     r_.file_name = "compare_" + reference_.name;
-    r_.plot = svg(plot);
+    r_.plot = draw_plot(plot);
     std::vector<std::vector<std::string>> rows;
     for (const auto &l : r_.lines)
       rows.push_back({l.name, l.run, l.reference, l.difference});

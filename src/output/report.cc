@@ -6,8 +6,7 @@
 #include "src/output/history.h"
 #include "src/output/html.h"
 #include "src/output/plot.h"
-#include "src/output/run_folder.h"
-#include "src/output/run_record.h"
+#include "src/output/run_pictures.h"
 #include "src/output/verdict.h"
 
 #include <fmt/core.h>
@@ -68,7 +67,7 @@ std::string load_curve(const Table &history)
     plot.series = {{"", history.raw(shift ? "displacement" : "time"), history.raw("load")}};
   } else
     return "";
-  return "<h2>Load curve</h2>\n" + svg(plot);
+  return "<h2>Load curve</h2>\n" + draw_plot(plot);
 }
 
 std::string crack_growth(const Table &history, int dimension)
@@ -80,7 +79,7 @@ std::string crack_growth(const Table &history, int dimension)
   plot.y = {dimension == 2 ? "crack length" : "crack area", dimension == 2 ? "m" : "m^2", false};
   plot.series = {{"", history.raw("time"), history.raw("crack_length")}};
   plot.height = 280;
-  return "<h2>Crack</h2>\n" + svg(plot);
+  return "<h2>Crack</h2>\n" + draw_plot(plot);
 }
 
 std::string energies(const Table &history, const RunRecord &record)
@@ -106,7 +105,7 @@ std::string energies(const Table &history, const RunRecord &record)
   }
   if (rows.empty())
     return "";
-  std::string text = "<h2>Energy ledger</h2>\n" + svg(plot) +
+  std::string text = "<h2>Energy ledger</h2>\n" + draw_plot(plot) +
                      html_table({"at the end", "energy", "of the external work"}, rows);
   if (record.energy_residual)
     text += fmt::format("<p>Largest residual of the whole run: {:.2g} of the external work.</p>\n",
@@ -212,10 +211,13 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 {
   std::string text = "<h2>Files</h2>\n<ul>\n";
   const std::pair<std::string, const char *> files[] = {
-      {folder.pvd(), "particles, cells and broken faces over time: open this one in ParaView, then "
-                     "apply Warp By Vector with displacement"},
+      {folder.pvd(),
+       "particles, cells and broken faces over time: open this one in ParaView, then "
+       "apply Warp By Vector with displacement. fields/*_peak, *_broken and *_end are "
+       "the states of the pictures"},
       {folder.history(), "the time series with units"},
       {folder.broken_bonds(), "every broken face with its time"},
+      {folder.cut_faces(), "every face that an initial crack cuts"},
       {folder.log(), "the log"},
       {folder.record(), "the figures of this page for scripts"}};
   for (const auto &[file, meaning] : files)
@@ -233,18 +235,23 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 }
 } // namespace
 
-std::string write_report(const std::string &run_folder, const std::string &target)
+std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields,
+                         const std::string &target)
 {
   const RunFolder folder{run_folder};
   core::require(folder.holds_a_run(),
                 run_folder + ": not the output folder of a run (no run.json in it)");
-  const RunRecord record = read_run_record(folder.record());
+  RunRecord record = read_run_record(folder.record());
+  const RunFolder place{target.empty() ? run_folder : target};
+  make_folder(place.path);
+  if (!fields.empty())
+    record.pictures = write_pictures(folder, record, fields, place);
   const bool bad = record.status == "guard" || record.status == "failed";
 
   std::string body = paragraph("headline", headline(record));
   body += paragraph(bad ? "verdict bad" : "verdict",
                     record.verdict.empty() ? verdict(record) : record.verdict);
-  body += pictures(folder, record);
+  body += pictures(fields.empty() ? folder : place, record);
   if (std::filesystem::exists(folder.history())) {
     const Table history = read_history(folder, record);
     body +=
@@ -252,9 +259,7 @@ std::string write_report(const std::string &run_folder, const std::string &targe
   }
   body += comparisons(folder) + model(record) + timing(record) + skipped(record) +
           sources(folder, record);
-  make_folder(target);
-  const std::string file = RunFolder{target}.report();
-  core::write_file(file, html_page(record.title, body));
-  return file;
+  core::write_file(place.report(), html_page(record.title, body));
+  return place.report();
 }
 } // namespace ligament::program

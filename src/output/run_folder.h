@@ -20,6 +20,8 @@ struct RunFolder
   std::string log() const { return path + "/run.log"; }
   std::string history() const { return path + "/history.csv"; }
   std::string broken_bonds() const { return path + "/broken_bonds.csv"; }
+  /// Faces that initial cracks cut, in the same columns; only of runs with a crack.
+  std::string cut_faces() const { return path + "/cut_faces.csv"; }
   /// Motion of the particles at the last common times (see common_time_index) before fracture took
   /// over, the latest first.
   std::array<std::string, 3> snapshots() const

@@ -45,6 +45,16 @@ void for_each_field(PictureEntry &r, Visit &&visit)
 }
 
 template <typename Visit>
+void for_each_field(StateEntry &r, Visit &&visit)
+{
+  visit("name", r.name);
+  visit("caption", r.caption);
+  visit("time", r.time);
+  visit("particles", r.particles);
+  visit("cells", r.cells);
+}
+
+template <typename Visit>
 void for_each_field(RunRecord &r, Visit &&visit)
 {
   visit("title", r.title);
@@ -84,6 +94,8 @@ void for_each_field(RunRecord &r, Visit &&visit)
   visit("figures", r.figures);
   visit("timing", r.timing);
   visit("skipped", r.skipped);
+  visit("magnification", r.magnification);
+  visit("states", r.states);
   visit("pictures", r.pictures);
 }
 

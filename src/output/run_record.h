@@ -31,6 +31,15 @@ struct PictureEntry
   std::string caption;
 };
 
+/// A state that the run kept with all fields.
+struct StateEntry
+{
+  std::string name;             // of its files: peak, broken, end
+  std::string caption;          // "near the peak load"
+  double time = 0;              // s
+  std::string particles, cells; // files, relative to the output folder; empty: none of these
+};
+
 /// Figures that are not known stay empty and are null in the file.
 struct RunRecord
 {
@@ -81,6 +90,8 @@ struct RunRecord
 
   /// Toughness factor c, strength, crack half length, ... by name.
   std::map<std::string, Figure> figures;
+  double magnification = 0; // of displacements in pictures; 0: they show none
+  std::vector<StateEntry> states;
   std::vector<PictureEntry> pictures;
 };
 

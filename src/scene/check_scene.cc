@@ -1,6 +1,11 @@
 #include "src/scene/check_scene.h"
 
+#include "core/parameters/spelling.h"
+#include "src/output/shown_field.h"
+
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace ligament::program
 {
@@ -119,6 +124,18 @@ void check_time(const Scene &scene, Findings &f)
               "the fracture criterion is \"none\"", "");
 }
 
+/// Components across the plane are 0 in 2D.
+void check_pictures(const Scene &scene, Findings &f)
+{
+  const auto words = shown_field_words(scene.dimension);
+  for (std::size_t k = 0; k < scene.output.pictures.size(); ++k) {
+    const std::string key = fmt::format("/output/pictures/{}", k);
+    const std::string &field = scene.output.pictures[k].field;
+    if (f.sound({key}) && std::find(words.begin(), words.end(), field) == words.end())
+      f.error(key + "/field", fmt::format("there is no \"{}\" in 2D", field),
+              "it is 0 everywhere", "use one of " + core::listed(words));
+  }
+}
 } // namespace
 
 void check_fracture(const FractureParameters &fracture, const std::string &section,
@@ -163,5 +180,6 @@ void check_scene(const Scene &scene, Findings &f)
   }
   check_loads(scene, layout ? &*layout : nullptr, f);
   check_scales(scene, f);
+  check_pictures(scene, f);
 }
 } // namespace ligament::program

@@ -1,5 +1,7 @@
 #include "src/scene/scene_parameters.h"
 
+#include "src/output/shown_field.h"
+
 namespace ligament::program
 {
 namespace
@@ -140,11 +142,19 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as it carries no load").one_of({"end", "specimen_broken"});
 }
 
+void declare_picture(Section &s, PictureParameters &p)
+{
+  s.add("field", p.field, "what colours the pictures; without component the length of a vector").one_of(shown_field_words(3));
+  s.set_shorthand("field");
+}
+
 void declare_output(Section &s, OutputParameters &o)
 {
   s.add("field_interval", o.field_interval, "simulated time between two outputs of all fields").in("s").usually(1e-15, 1e5, "us ms ns").above(0).word("never", infinity);
   s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000").in("s").usually(1e-15, 1e5, "us ms ns").at_least(0);
   s.add("progress_interval", o.progress_interval, "wall time between two progress lines").in("s").above(0);
+  s.list("pictures", o.pictures, "fields that the pictures of the run show, near the peak load and at the end; empty: the stress along the load", declare_picture);
+  s.add("magnification", o.magnification, "factor on displacements in pictures; 0: a round one that suits all pictures of the run").at_least(0);
 }
 } // namespace
 

@@ -293,6 +293,21 @@ particles::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body,
   return std::move(irregular.packing);
 }
 
+template <int dim>
+BrokenBond cut_face(const particles::Packing<dim> &packing, const particles::Face<dim> &face,
+                    double thickness)
+{
+  BrokenBond cut = {};
+  cut.i = packing.global_id[face.i];
+  cut.j = packing.global_id[face.j];
+  const Vector<dim> place = get(packing.centre, face.i) + face.lever_i;
+  for (int c = 0; c < dim; ++c) {
+    cut.centroid[c] = place[c];
+    cut.normal[c] = face.normal[c];
+  }
+  cut.size = face.area / thickness;
+  return cut;
+}
 } // namespace
 
 dem::DemMaterial material_of(const Scene &scene)
@@ -336,8 +351,10 @@ void make_zone(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   const auto constants = material_of(scene).elastic_constants<dim>();
   auto dashpots = particles::absorbing_dashpots(packing, state, body.loads, scene.material.density,
                                                 constants.wave_speed_p, constants.wave_speed_s);
-  body.n_cracked_faces = std::count_if(packing.faces.begin(), packing.faces.end(),
-                                       [](const auto &face) { return face.cracked; });
+  for (const auto &face : packing.faces)
+    if (face.cracked)
+      body.cut_faces.push_back(cut_face<dim>(packing, face, body.thickness));
+  body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   const dem::Materials of_particles(std::move(materials), packing.material);
   auto force = std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles,
                                                          body.loads, fracture);

@@ -3,7 +3,7 @@
 #include "core/check.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/curve.h"
-#include "src/output/picture.h"
+#include "src/output/run_pictures.h"
 #include "src/simulation/connectivity.h"
 
 #include <fmt/format.h>
@@ -90,13 +90,14 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
 
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps)
+                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+                        bool draws_pictures)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), history_interval_(history_interval_of(scene)),
-      guarded_(guarded_particles(body))
+      n_steps_(n_steps), draws_pictures_(draws_pictures),
+      history_interval_(history_interval_of(scene)), guarded_(guarded_particles(body))
 {
 }
 
@@ -174,9 +175,7 @@ void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, doubl
   }
   if (std::abs(load) > copied_growth * std::abs(fields_copied_at_)) {
     fields_copied_at_ = load;
-    peak_particles_ = particle_fields(body);
-    peak_cells_ = cell_fields(body);
-    peak_broken_ = body.force ? body.force->broken_bonds().size() : 0;
+    peak_state_ = present_state(body, time);
   }
 }
 
@@ -184,15 +183,20 @@ template <int dim>
 void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
   next_fields_ += scene_.output.field_interval;
-  write_fields(step.time, particle_fields(body), cell_fields(body), broken_bonds(body));
+  BodyState state = present_state(body, step.time);
+  state.bonds = broken_bonds(body);
+  state_fields_.complete(body, state);
+  writer_.submit([this, state = std::move(state)] { fields_.write(state); });
 }
 
 template <int dim>
-void Recorder<dim>::write_fields(double time, ParticleFields particles, CellFields cells,
-                                 std::vector<BrokenBond> bonds)
+BodyState Recorder<dim>::present_state(const CoupledBody<dim> &body, double time) const
 {
-  writer_.submit([this, time, particles = std::move(particles), cells = std::move(cells),
-                  bonds = std::move(bonds)] { fields_.write(time, particles, cells, bonds); });
+  BodyState state;
+  state.time = time;
+  state.particles = particle_fields(body);
+  state.cells = cell_fields(body);
+  return state;
 }
 
 template <int dim>
@@ -225,7 +229,7 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
     }
   }
   if (body.force && !broken_)
-    look_for_break(body);
+    look_for_break(body, step.time);
   if (broken_ && step.time >= break_.felt_at && scene_.time.stop_when == "specimen_broken")
     return Stop{false, fmt::format("specimen broken at {:.4g} s", break_.time)};
   return {};
@@ -234,7 +238,7 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
 // The sides feel the break when a wave from it has reached them; what they feel later is the swing
 // of the halves, which is no load that the specimen carries.
 template <int dim>
-void Recorder<dim>::look_for_break(const CoupledBody<dim> &body)
+void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, double time)
 {
   const auto &bonds = body.force->broken_bonds();
   if (bonds.size() == broken_before_)
@@ -244,8 +248,7 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body)
   if (!is_broken_across(body, axis))
     return;
   broken_ = true;
-  break_particles_ = particle_fields(body);
-  break_cells_ = cell_fields(body);
+  break_state_ = present_state(body, time);
   const double place = bonds.back().position[axis];
   const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
   break_.time = bonds.back().time;
@@ -273,22 +276,48 @@ ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
 }
 
 template <int dim>
-void Recorder<dim>::draw(const std::string &name, const std::string &caption,
-                         const ParticleFields &particles, const CellFields &cells,
-                         const std::vector<BrokenBond> &bonds, RunRecord &record)
+std::vector<std::string> Recorder<dim>::shown_fields() const
 {
-  FieldView view;
-  view.field = "stress";
-  view.component = machine_.has_load() ? machine_.axis() : -1;
-  view.title = caption;
-  const std::string file = "pictures/" + name + ".png";
-  try {
-    write_picture(folder_.path + "/" + file,
-                  picture_of(particles, cells, bonds, dim, scene_.zone.spacing / 2, view));
-    record.pictures.push_back({file, caption});
-  } catch (const core::EnvironmentError &error) {
-    log_.warning("a picture is missing: {}", error.what());
+  std::vector<std::string> words;
+  for (const PictureParameters &picture : scene_.output.pictures)
+    words.push_back(picture.field);
+  if (words.empty())
+    words.push_back(machine_.has_load() ? fmt::format("stress_{0}{0}", "xyz"[machine_.axis()])
+                                        : "equivalent_stress");
+  return words;
+}
+
+template <int dim>
+void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
+                                RunRecord &record)
+{
+  if (!draws_pictures_)
+    return;
+  const auto bonds = broken_bonds(body);
+  std::vector<const BodyState *> all;
+  for (BodyState &state : states) {
+    const auto later = std::find_if(bonds.begin(), bonds.end(),
+                                    [&](const BrokenBond &b) { return b.time > state.time; });
+    state.bonds.assign(bonds.begin(), later);
+    state_fields_.complete(body, state);
+    const StateFiles files = FieldSeries::files(state, state.name);
+    record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
+    all.push_back(&state);
   }
+  attempt([&] {
+    writer_.submit([&] {
+      for (const BodyState &state : states)
+        fields_.write(state);
+    });
+  });
+  record.magnification =
+      scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
+  std::vector<std::string> missing;
+  record.pictures =
+      write_pictures(folder_, all, shown_fields(), dim, record.magnification, &missing);
+  for (const std::string &reason : missing)
+    log_.warning("a picture is missing: {}", reason);
+  attempt([&] { writer_.wait(); }); // it reads the states
 }
 
 template <int dim>
@@ -314,30 +343,31 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
     history_.flush();
   });
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
-  const auto bonds = broken_bonds(body);
-  const auto particles = particle_fields(body);
-  const auto cells = cell_fields(body);
-  attempt([&] { write_broken_bonds(folder_.broken_bonds(), bonds, dim); });
+  attempt([&] { write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim); });
+  if (!body.cut_faces.empty())
+    attempt([&] { write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim); });
   for (std::size_t i = 0; i < snapshots_.size(); ++i)
     if (body.zone && snapshots_[i])
       attempt([&] { write_snapshot(folder_.snapshots()[i], *snapshots_[i]); });
-  // Behind the small files: these are the ones that fill a disk.
-  if (std::isfinite(scene_.output.field_interval))
-    attempt([&] { write_fields(step.time, particles, cells, bonds); });
 
+  std::vector<BodyState> states;
+  const auto keep = [&](BodyState state, const char *name, const char *caption) {
+    state.name = name;
+    state.caption = caption;
+    states.push_back(std::move(state));
+  };
   if (const auto peak = peak_index(load_)) {
     record.peak_load = load_[*peak];
     record.peak_stress = stress_[*peak];
     record.peak_time = time_[*peak];
-    const std::vector<BrokenBond> at_peak(bonds.begin(), bonds.begin() + peak_broken_);
-    draw("peak", "Stress near the peak load", peak_particles_, peak_cells_, at_peak, record);
+    keep(std::move(peak_state_), "peak", "near the peak load");
   }
   if (broken_)
-    draw("broken", "Stress when the specimen is in two", break_particles_, break_cells_,
-         {bonds.begin(), bonds.begin() + broken_before_}, record);
-  draw("end", "Stress at the end", particles, cells, bonds, record);
+    keep(std::move(break_state_), "broken", "when the specimen is in two");
+  keep(present_state(body, step.time), "end", "at the end");
+  keep_states(body, std::move(states), record);
   record.stiffness = fit_stiffness(strain_, stress_);
-  record.broken_bonds = std::int64_t(bonds.size());
+  record.broken_bonds = body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
   record.crack_length = crack_length(body, machine_.axis());
   record.energy_residual = relative_residual(residual_, work_);
   attempt([&] { writer_.wait(); });

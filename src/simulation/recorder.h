@@ -36,7 +36,8 @@ class Recorder
 {
 public:
   Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps);
+           core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+           bool draws_pictures);
 
   /// Looks at the present state; empty while the run goes on. `damping` in J so far.
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -59,12 +60,15 @@ private:
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  void write_fields(double time, ParticleFields particles, CellFields cells,
-                    std::vector<BrokenBond> bonds);
-  void draw(const std::string &name, const std::string &caption, const ParticleFields &particles,
-            const CellFields &cells, const std::vector<BrokenBond> &bonds, RunRecord &record);
+  /// The present fields without those that StateFields adds.
+  BodyState present_state(const CoupledBody<dim> &body, double time) const;
+  /// Of the pictures, in words of shown_field().
+  std::vector<std::string> shown_fields() const;
+  /// Completes, writes and draws what the run keeps.
+  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
+                   RunRecord &record);
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  void look_for_break(const CoupledBody<dim> &body);
+  void look_for_break(const CoupledBody<dim> &body, double time);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;
 
@@ -78,6 +82,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_;
+  bool draws_pictures_;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   std::size_t broken_before_ = 0;             // at the last check of connectivity
@@ -95,11 +100,9 @@ private:
   std::array<std::optional<Snapshot>, 2> snapshots_;  // the later one first
   int common_time_ = std::numeric_limits<int>::min(); // index of the last one
   double fields_copied_at_ = 0;                       // N, load of the copies below
-  ParticleFields peak_particles_;
-  CellFields peak_cells_;
-  std::size_t peak_broken_ = 0;
-  ParticleFields break_particles_; // when the specimen was found in two
-  CellFields break_cells_;
+  BodyState peak_state_;  // without bonds until the end
+  BodyState break_state_; // when the specimen was found in two
+  StateFields<dim> state_fields_;
   core::BackgroundWriter writer_; // of fields_; last, so that its jobs end before what they use
 };
 } // namespace ligament::program

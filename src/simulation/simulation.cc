@@ -14,11 +14,12 @@
 namespace ligament::program
 {
 template <int dim>
-Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress)
+Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
+                            bool draws_pictures)
     : scene_(scene), folder_(folder), log_(folder.log(), progress),
       body_(make_body<dim>(scene_, log_, timers_)), regime_(scene_.coupling.regime, body_),
       damping_(scene_.damping), clock_(clock_of()),
-      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps)
+      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures)
 {
   if (body_.seeds)
     particles::write_packing_file(folder_.packing(), *body_.seeds);

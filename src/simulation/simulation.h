@@ -29,8 +29,10 @@ template <int dim>
 class Simulation
 {
 public:
-  /// Builds the body (core::InputError when that can't be done) and opens the output folder.
-  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
+  /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
+  /// scenes take less time than their pictures, which may be left out.
+  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
+             bool draws_pictures = true);
 
   /// Runs to the end of the scene, or until a signal asks for the end; writes all outputs and
   /// returns the record. A guard's stop, a signal and a disk that refuses are in the record (status

@@ -37,7 +37,8 @@ private:
   double area_ = 1, size_ = 1;
 };
 
-/// Mean of a displacement component over the particles or nodes on a side of the specimen, in m.
+/// Displacement component of a side of the specimen, in m: the mean over its nodes, or without a
+/// far field that of its middle after an affine fit to the particles near it.
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component);
 } // namespace ligament::program

@@ -194,7 +194,7 @@ void write_summary(const StudyFolder &folder, const Study &study, const CaseList
     const auto all = points(study, results, axis.errors);
     if (all.empty())
       continue;
-    const std::string drawing = svg(error_plot(study, results, axis.errors));
+    const std::string drawing = draw_plot(error_plot(study, results, axis.errors));
     core::write_file(folder.path() + "/" + axis.file, drawing);
     body += std::string("<h2>") + axis.title + "</h2>\n" + drawing + front_table(study, all);
   }

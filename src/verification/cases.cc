@@ -27,6 +27,7 @@ std::vector<Case> all_cases()
   add(beam_cases());
   add(stability_cases());
   add(contrast_cases());
+  add(random_scene_cases());
   return cases;
 }
 

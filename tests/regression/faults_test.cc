@@ -152,7 +152,7 @@ TEST_F(Faults, SignalsCloseTheOutputs)
     EXPECT_GT(record["steps"], 0);
     EXPECT_FALSE(record["energy_residual"].is_null());
     EXPECT_TRUE(is_whole_table(file_text(folder + "/history.csv")));
-    for (const char *file : {"broken_bonds.csv", "report.html", "pictures/end.png"})
+    for (const char *file : {"broken_bonds.csv", "report.html", "pictures/end_stress_yy.png"})
       EXPECT_TRUE(fs::exists(folder + "/" + file)) << file;
   }
 }
@@ -225,7 +225,7 @@ TEST_F(Faults, ALimitOnFilesFailsTheRunAndKeepsItsResults)
 
 TEST_F(Faults, APictureLessIsAWarning)
 {
-  fs::create_directories("out/pictures/end.png/in_the_way");
+  fs::create_directories("out/pictures/end_stress_yy.png/in_the_way");
   const auto outcome = ligament("run scene.json -o out --json");
   EXPECT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_EQ(outcome.json()["status"], "done");

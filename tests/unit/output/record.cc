@@ -33,6 +33,8 @@ TEST(RunRecord, ComesBackWhole)
   r.skipped = {{"contact search", "nothing is broken"}};
   r.peak_load = -1e5;
   r.figures = {{"strength", {2.5e7, "Pa"}}, {"c", {0.82, ""}}};
+  r.magnification = 500;
+  r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
   r.pictures = {{"pictures/peak.png", "at the peak"}};
   write_run_record("run.json", r);
   const RunRecord back = read_run_record("run.json");
@@ -52,6 +54,10 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.figures.at("strength").value, 2.5e7);
   EXPECT_EQ(back.figures.at("strength").unit, "Pa");
   EXPECT_EQ(back.pictures.at(0).file, "pictures/peak.png");
+  EXPECT_EQ(back.magnification, 500);
+  EXPECT_EQ(back.states.at(0).time, 1e-3);
+  EXPECT_EQ(back.states[0].particles, "fields/particles_peak.vtp");
+  EXPECT_EQ(back.states[0].cells, "");
 
   // Writing what was read gives the same bytes: no field is lost on either way.
   write_run_record("again.json", back);
