@@ -1,10 +1,13 @@
 #include "src/commands/commands.h"
 
 #include "particles/packing_file.h"
+#include "src/commands/check_volumes.h"
 #include "src/commands/cost_advice.h"
 #include "src/commands/peak_memory.h"
 #include "src/commands/scene_picture.h"
+#include "src/launcher/program.h"
 #include "src/output/run_folder.h"
+#include "src/simulation/make_zone.h"
 #include "src/simulation/recorder.h"
 
 #include <fmt/format.h>
@@ -95,23 +98,33 @@ int check(const CommandLine &line, const ReadResult &input)
                                    {"dt_critical", critical},
                                    {"steps", steps},
                                    {"memory_bytes", memory},
+                                   {"available_memory_bytes", available_memory()},
                                    {"predicted_seconds", seconds},
                                    {"seconds_per_step", cost.seconds_per_step},
                                    {"output_seconds", output},
                                    {"setup_seconds", setup_seconds},
                                    {"predicted_saving", saving},
                                    {"advice", nullptr},
+                                   {"built", true},
+                                   {"not_checked", nlohmann::json::array()},
                                    {"errors", nlohmann::json::array()}};
     if (advice)
       json["advice"] = to_json(*advice);
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
   }
-  return 0;
+  return int(ExitCode::done);
 }
 } // namespace
 
 int check_command(const CommandLine &line, const ReadResult &input)
 {
+  const bool particles = input.scene->zone.extent != DiscreteZone::Extent::none;
+  const SizeEstimate size =
+      estimate_size(*input.scene, particles ? mean_cell_volume(*input.scene) : 1);
+  if (!line.full && std::max(size.particles, size.cells) > largest_built) {
+    print_volumes(line, input, size);
+    return int(ExitCode::done);
+  }
   return input.scene->dimension == 2 ? check<2>(line, input) : check<3>(line, input);
 }
 } // namespace ligament::program

@@ -1,6 +1,7 @@
 #include "src/output/compare.h"
 
 #include "core/files.h"
+#include "core/parameters/spelling.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/compared_side.h"
 #include "src/output/crack_path.h"
@@ -124,12 +125,20 @@ public:
       fields();
       cost();
     } else
-      r_.notes.push_back("the reference is a curve: no crack path, fields or times to compare");
-    write_files();
+      note_what_a_curve_lacks();
+    draw();
     return std::move(r_);
   }
 
 private:
+  void note_what_a_curve_lacks()
+  {
+    r_.notes.push_back("the reference is a curve: no crack path, fields or times to compare");
+    if (const auto unknown = unknown_columns(reference_); !unknown.empty())
+      r_.notes.push_back("columns of the reference that compare does not know: " +
+                         core::listed(unknown, "and"));
+  }
+
   void line(const std::string &name, const std::string &run, const std::string &reference,
             const std::string &difference)
   {
@@ -353,7 +362,7 @@ private:
     line("wall time", duration(a.wall_seconds), duration(b.wall_seconds), factor(r_.time_ratio));
   }
 
-  void write_files()
+  void draw()
   {
     Plot plot;
     plot.title = run_.name + " against " + reference_.name;
@@ -366,19 +375,15 @@ private:
                                false, true});
     if (plot.series.size() < 2)
       r_.notes.push_back("plot: the curves have no pair of columns in common");
-    const std::string stem = run_.folder->path + "/compare_" + reference_.name;
-    r_.svg_file = stem + ".svg";
-    r_.html_file = stem + ".html";
-    const std::string drawing = draw_plot(plot);
-    core::write_file(r_.svg_file, drawing);
-
+    r_.file_name = "compare_" + reference_.name;
+    r_.plot = draw_plot(plot);
     std::vector<std::vector<std::string>> rows;
     for (const auto &l : r_.lines)
       rows.push_back({l.name, l.run, l.reference, l.difference});
-    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + drawing;
+    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + r_.plot;
     for (const auto &note : r_.notes)
       body += "<p>" + escape_xml(note) + "</p>\n";
-    core::write_file(r_.html_file, html_page(plot.title, body));
+    r_.page = html_page(plot.title, body);
   }
 
   ComparedSide run_, reference_;
@@ -392,5 +397,15 @@ private:
 CompareResult compare(const std::string &run_folder, const std::string &reference)
 {
   return Comparison(read_run(run_folder), read_reference(reference)).result();
+}
+
+void write_comparison(CompareResult &result, const std::string &folder)
+{
+  make_folder(folder);
+  const std::string stem = folder + "/" + result.file_name;
+  core::write_file(stem + ".svg", result.plot);
+  result.svg_file = stem + ".svg";
+  core::write_file(stem + ".html", result.page);
+  result.html_file = stem + ".html";
 }
 } // namespace ligament::program

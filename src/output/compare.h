@@ -52,12 +52,18 @@ struct CompareResult
   };
   std::vector<Line> lines;
   std::vector<std::string> notes;
-  std::string svg_file, html_file; // written into the folder of the run
+  std::string plot, page;          // SVG, HTML
+  std::string file_name;           // of both, without folder and extension
+  std::string svg_file, html_file; // where they were written; empty until then
 };
 
-/// `reference` is the folder of another run or a CSV curve with units. Writes
-/// compare_<reference>.svg and .html into the run's folder. InputError when one of them is neither.
+/// `reference` is the folder of another run or a CSV curve with units. InputError when one of them
+/// is neither.
 CompareResult compare(const std::string &run_folder, const std::string &reference);
+
+/// Writes plot and page as compare_<reference>.svg and .html into the folder, which is made if need
+/// be. EnvironmentError when the disk refuses.
+void write_comparison(CompareResult &result, const std::string &folder);
 
 /// Text for the terminal.
 std::string table(const CompareResult &result);

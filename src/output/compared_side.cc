@@ -1,7 +1,9 @@
 #include "src/output/compared_side.h"
 
 #include "core/check.h"
+#include "core/parameters/spelling.h"
 #include "src/output/curve.h"
+#include "src/output/history.h"
 
 #include <algorithm>
 #include <cctype>
@@ -12,6 +14,10 @@ namespace ligament::program
 {
 namespace
 {
+/// What a curve can be compared by.
+constexpr const char *known_columns[] = {"time",   "load",   "displacement",
+                                         "stress", "strain", "external_work"};
+
 std::string name_of(const std::string &path)
 {
   auto normal = std::filesystem::path(path).lexically_normal();
@@ -32,7 +38,7 @@ ComparedSide read_run(const std::string &path)
   core::require(side.folder->holds_a_run(),
                 path + ": not the output folder of a run (no run.json in it)");
   side.record = read_run_record(side.folder->record());
-  side.curve = read_csv(side.folder->history());
+  side.curve = read_history(*side.folder, *side.record);
   return side;
 }
 
@@ -42,8 +48,23 @@ ComparedSide read_reference(const std::string &path)
     return read_run(path);
   core::require(std::filesystem::is_regular_file(path),
                 path + ": neither the output folder of a run nor a CSV file");
-  return {name_of(path), {}, {}, read_csv(path)};
+  ComparedSide side{name_of(path), {}, {}, read_csv(path)};
+  core::require(unknown_columns(side).size() < side.curve.columns().size(),
+                path + ": none of its columns is one that compare knows: " +
+                    core::listed({std::begin(known_columns), std::end(known_columns)}, "and"));
+  return side;
 }
+
+std::vector<std::string> unknown_columns(const ComparedSide &side)
+{
+  std::vector<std::string> unknown;
+  for (const Column &column : side.curve.columns())
+    if (std::find(std::begin(known_columns), std::end(known_columns), column.name) ==
+        std::end(known_columns))
+      unknown.push_back(column.name);
+  return unknown;
+}
+
 std::optional<std::vector<double>> ComparedSide::values(const char *column, const char *unit) const
 {
   if (!curve.has(column))

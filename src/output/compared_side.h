@@ -33,8 +33,12 @@ struct ComparedSide
 
 /// The folder of a run; InputError when it is none.
 ComparedSide read_run(const std::string &path);
-/// The folder of a run or a CSV curve with units; InputError when it is neither.
+/// The folder of a run or a CSV curve with units; InputError when it is neither, or a curve of
+/// which no column is known.
 ComparedSide read_reference(const std::string &path);
+
+/// Columns of the curve that compare does not read.
+std::vector<std::string> unknown_columns(const ComparedSide &side);
 
 /// What both sides can be measured by: load over displacement, or stress over strain.
 struct Measure

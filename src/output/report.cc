@@ -213,7 +213,7 @@ std::string comparisons(const RunFolder &folder)
 {
   std::vector<std::string> files;
   for (const auto &entry : std::filesystem::directory_iterator(folder.path))
-    if (entry.path().extension() == ".svg" &&
+    if (entry.is_regular_file() && entry.path().extension() == ".svg" &&
         entry.path().filename().string().rfind("compare_", 0) == 0)
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -251,27 +251,30 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 }
 } // namespace
 
-std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields)
+std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields,
+                         const std::string &target)
 {
   const RunFolder folder{run_folder};
   core::require(folder.holds_a_run(),
                 run_folder + ": not the output folder of a run (no run.json in it)");
   RunRecord record = read_run_record(folder.record());
+  const RunFolder place{target.empty() ? run_folder : target};
+  make_folder(place.path);
   if (!fields.empty())
-    record.pictures = write_pictures(folder, record, fields);
+    record.pictures = write_pictures(folder, record, fields, place);
 
   std::string body = paragraph("headline", headline(record));
   body += paragraph(is_stable(record) ? "verdict" : "verdict bad",
                     record.verdict.empty() ? verdict(record) : record.verdict);
-  body += warnings(record) + pictures(folder, record);
+  body += warnings(record) + pictures(fields.empty() ? folder : place, record);
   if (std::filesystem::exists(folder.history())) {
-    const Table history = read_csv(folder.history());
+    const Table history = read_history(folder, record);
     body +=
         load_curve(history) + crack_growth(history, record.dimension) + energies(history, record);
   }
   body += comparisons(folder) + model(record) + timing(record) + skipped(record) +
           sources(folder, record);
-  core::write_file(folder.report(), html_page(record.title, body));
-  return folder.report();
+  core::write_file(place.report(), html_page(record.title, body));
+  return place.report();
 }
 } // namespace ligament::program

@@ -1,6 +1,7 @@
 #include "src/output/run_record.h"
 
 #include "core/check.h"
+#include "core/disk_reserve.h"
 #include "core/files.h"
 
 #include <nlohmann/json.hpp>
@@ -208,7 +209,14 @@ void write_run_record(const std::string &path, const RunRecord &record)
   RunRecord copy = record;
   for_each_field(copy, Writer{json});
   json["complete"] = record.is_complete();
-  core::write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  try {
+    core::write_file(path, text);
+  } catch (const core::EnvironmentError &) {
+    if (!core::release_reserve(path))
+      throw;
+    core::write_file(path, text);
+  }
 }
 
 std::string incompleteness(const RunRecord &record)

@@ -32,6 +32,9 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
 /// Scheme, sizes and masses of a coupled scene with sound spacing and cell size.
 void check_coupling(const Scene &scene, Findings &findings);
 
+/// What is possible for each key, and not together: speeds, strains, numbers of steps.
+void check_scales(const Scene &scene, Findings &findings);
+
 /// Sizes of the far field's cells.
 void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 

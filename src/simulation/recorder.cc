@@ -1,5 +1,6 @@
 #include "src/simulation/recorder.h"
 
+#include "core/check.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/curve.h"
 #include "src/output/format.h"
@@ -296,14 +297,33 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
     all.push_back(&state);
   }
-  writer_.submit([&] {
-    for (const BodyState &state : states)
-      fields_.write(state);
+  attempt([&] {
+    writer_.submit([&] {
+      for (const BodyState &state : states)
+        fields_.write(state);
+    });
   });
   record.magnification =
       scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
-  record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification);
-  writer_.wait();
+  std::vector<std::string> missing;
+  record.pictures =
+      write_pictures(folder_, all, shown_fields(), dim, record.magnification, &missing);
+  for (const std::string &reason : missing)
+    log_.warning("a picture is missing: {}", reason);
+  attempt([&] { writer_.wait(); }); // it reads the states
+}
+
+template <int dim>
+template <typename Write>
+void Recorder<dim>::attempt(Write &&write)
+{
+  try {
+    write();
+  } catch (const core::EnvironmentError &error) {
+    log_.warning("{}", error.what());
+    if (failure_.empty())
+      failure_ = error.what();
+  }
 }
 
 template <int dim>
@@ -313,13 +333,15 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   const auto timing = timers_.scope(section_);
   if (const auto finding = guard_.look(body))
     report(*finding, step);
-  record_history(body, step, damping);
-  history_.flush();
+  attempt([&] {
+    record_history(body, step, damping);
+    history_.flush();
+  });
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
-  write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim);
+  attempt([&] { write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim); });
   if (!body.cut_faces.empty())
-    write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim);
-  snapshots_.write(body, folder_);
+    attempt([&] { write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim); });
+  attempt([&] { snapshots_.write(body, folder_); });
 
   curve_.put_into(record);
   std::vector<BodyState> states;
@@ -343,6 +365,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.external_work = *std::max_element(work_.begin(), work_.end());
   record.energy_residual = relative_residual(residual_, work_);
   add_warnings(body, record);
+  attempt([&] { writer_.wait(); });
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

@@ -48,11 +48,17 @@ public:
   /// guard says so.
   std::optional<Stop> report_excess(const std::string &finding, const coupling::StepTime &step);
 
-  /// Last row, last fields, pictures, tables; completes the record.
+  /// Last row, last fields, pictures, tables; completes the record. A file that cannot be written
+  /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
               RunRecord &record);
 
+  /// The first file that finish() could not write, and why; empty: none.
+  const std::string &failure() const { return failure_; }
+
 private:
+  template <typename Write>
+  void attempt(Write &&write);
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   bool keeps_copies(const CoupledBody<dim> &body) const;
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
@@ -86,6 +92,7 @@ private:
   LoadPath<dim> path_;
   std::optional<double> broken_time_;   // s, of the last bond when the load path was gone
   std::optional<double> trusted_until_; // s
+  std::string failure_;
 
   LoadCurve curve_;
   std::vector<double> residual_, work_; // J, of the rows of the history

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "core/tell.h"
 #include "core/version.h"
 #include "src/output/format.h"
 #include "src/output/run_record.h"
@@ -59,10 +60,7 @@ Sweep::Sweep(const CaseList &list, StudyFolder &folder, std::string solver, int 
 template <typename... Arguments>
 void Sweep::say(const char *format, const Arguments &...arguments) const
 {
-  if (!progress_)
-    return;
-  fmt::print(progress_, "{}\n", fmt::format(fmt::runtime(format), arguments...));
-  std::fflush(progress_);
+  core::tell(progress_, fmt::format(fmt::runtime(format), arguments...) + "\n");
 }
 
 std::map<std::string, CaseEnd> Sweep::run()

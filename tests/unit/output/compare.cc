@@ -48,9 +48,8 @@ TEST(Compare, FindsTheFactorsBetweenTwoRuns)
   EXPECT_NEAR(*r.displacement_error_max, 0.25, rounding);
   EXPECT_NEAR(*r.velocity_error, 0, rounding);
   EXPECT_TRUE(r.notes.empty()) << table(r);
-  EXPECT_EQ(r.svg_file, "a/compare_b.svg");
-  EXPECT_TRUE(std::filesystem::exists(r.svg_file));
-  EXPECT_TRUE(std::filesystem::exists(r.html_file));
+  EXPECT_NE(r.plot.find("<svg"), std::string::npos);
+  EXPECT_EQ(r.file_name, "compare_b");
 }
 
 // The run breaks first, and its last state is too near to its onset.
@@ -208,7 +207,7 @@ TEST(Compare, CurveWithUnitsAsReference)
   EXPECT_FALSE(r.time_ratio);
   EXPECT_FALSE(r.particle_ratio);
   EXPECT_FALSE(r.crack_distance_max);
-  EXPECT_EQ(r.html_file, "run/compare_paper.html");
+  EXPECT_EQ(r.file_name, "compare_paper");
 }
 
 TEST(Compare, RefusesWhatIsNeither)
@@ -240,5 +239,35 @@ TEST(CrackPath, NearestDistancesAgreeWithTheSlowSearch)
     EXPECT_EQ(distances[i], best);
   }
   EXPECT_TRUE(nearest_distances(a, {}).empty());
+}
+
+TEST(Compare, NamesTheColumnsOfACurveThatItDoesNotKnow)
+{
+  SyntheticRun().write("a");
+  core::write_file("half.csv",
+                   "\xEF\xBB\xBFstrain,stress,temperature\n1,MPa,K\n0,0,1\n1e-5,0.7,1\n");
+  const CompareResult r = compare("a", "half.csv");
+  EXPECT_NE(table(r).find("does not know: \"temperature\""), std::string::npos) << table(r);
+  EXPECT_TRUE(r.peak_load_error) << "the byte order mark belongs to no name";
+  core::write_file("alien.csv", "mass,temperature\nkg,K\n0,1\n");
+  try {
+    compare("a", "alien.csv");
+    ADD_FAILURE() << "was read";
+  } catch (const core::InputError &error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("alien.csv: none of its columns"), std::string::npos) << text;
+    EXPECT_NE(text.find("\"stress\""), std::string::npos) << text;
+  }
+}
+
+TEST(Compare, WritesWhereItIsTold)
+{
+  SyntheticRun().write("a");
+  SyntheticRun().write("b");
+  CompareResult r = compare("a", "b");
+  EXPECT_FALSE(std::filesystem::exists("a/compare_b.svg"));
+  write_comparison(r, "elsewhere/deep");
+  EXPECT_TRUE(std::filesystem::exists("elsewhere/deep/compare_b.svg"));
+  EXPECT_EQ(r.html_file, "elsewhere/deep/compare_b.html");
 }
 } // namespace
