@@ -362,7 +362,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.broken_bonds = n_broken(body);
   record.broken_in_overlap = guard_.n_broken();
   record.crack_length = crack_length(body, machine_.axis());
-  record.external_work = *std::max_element(work_.begin(), work_.end());
+  if (!work_.empty())
+    record.external_work = *std::max_element(work_.begin(), work_.end());
   record.energy_residual = relative_residual(residual_, work_);
   add_warnings(body, record);
   attempt([&] { writer_.wait(); });

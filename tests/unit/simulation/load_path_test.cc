@@ -69,7 +69,7 @@ TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
   SmallBody small(
       small_scene({"/specimen/cracks=[{\"points\": [[-12, 0], [-2, 0]]}]", square,
                    "/material/poissons_ratio=0", "/far_field=none",
-                   R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-3})"}));
+                   R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"}));
   auto &body = small.body;
   auto &state = body.zone->state;
   LoadPath<2> path(1);

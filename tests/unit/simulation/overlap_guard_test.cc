@@ -15,7 +15,7 @@ struct GuardedPlate
 {
   SmallBody small{
       small_scene({R"(/discrete_zone/packing="square")", "/material/poissons_ratio=0",
-                   R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-3})"})};
+                   R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"})};
   OverlapGuard<2> guard{small.body};
   double time = 0;
 
