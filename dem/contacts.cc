@@ -239,14 +239,9 @@ double Contacts<dim>::energy(const Particles &p) const
 template <int dim>
 void Contacts<dim>::add_moments(const Particles &p, Components<n_strains<dim>> &moments) const
 {
-  for (const auto &c : contacts_) {
-    const State s = state(c, p);
-    if (s.overlap <= 0)
-      continue;
-    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal);
-    ligament::add(moments, c.face.i, symmetric_product<dim>(s.lever, f));
-    ligament::add(moments, c.face.j, symmetric_product<dim>(s.between - s.lever, f));
-  }
+  for_each_moment(p, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
+    ligament::add(moments, i, symmetric_product<dim>(a, f));
+  });
 }
 
 template <int dim>

@@ -211,9 +211,10 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 {
   std::string text = "<h2>Files</h2>\n<ul>\n";
   const std::pair<std::string, const char *> files[] = {
-      {folder.pvd(), "particles, cells and broken faces over time: open this one in ParaView, then "
-                     "apply Warp By Vector with displacement. fields/*_peak, *_broken and *_end are "
-                     "the states of the pictures"},
+      {folder.pvd(),
+       "particles, cells and broken faces over time: open this one in ParaView, then "
+       "apply Warp By Vector with displacement. fields/*_peak, *_broken and *_end are "
+       "the states of the pictures"},
       {folder.history(), "the time series with units"},
       {folder.broken_bonds(), "every broken face with its time"},
       {folder.cut_faces(), "every face that an initial crack cuts"},

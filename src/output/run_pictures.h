@@ -11,7 +11,8 @@ namespace ligament::program
 /// range of colours, all with this factor on displacements.
 std::vector<PictureEntry> write_pictures(const RunFolder &folder,
                                          const std::vector<const BodyState *> &states,
-                                         const std::vector<std::string> &fields, int dimension, double magnification);
+                                         const std::vector<std::string> &fields, int dimension,
+                                         double magnification);
 
 /// The same of a run that has ended: the states that it kept, with its magnification.
 std::vector<PictureEntry> write_pictures(const RunFolder &folder, const RunRecord &record,

@@ -128,8 +128,8 @@ void check_pictures(const Scene &scene, Findings &f)
     const std::string key = fmt::format("/output/pictures/{}", k);
     const std::string &field = scene.output.pictures[k].field;
     if (f.sound({key}) && std::find(words.begin(), words.end(), field) == words.end())
-      f.error(key + "/field", fmt::format("there is no \"{}\" in 2D", field),
-              "it is 0 everywhere", "use one of " + core::listed(words));
+      f.error(key + "/field", fmt::format("there is no \"{}\" in 2D", field), "it is 0 everywhere",
+              "use one of " + core::listed(words));
   }
 }
 } // namespace

@@ -37,8 +37,8 @@ void declare_specimen(Section &s, Specimen &p)
 
 void declare_fracture(Section &s, FractureParameters &f)
 {
-  s.add("criterion", f.criterion, "what breaks a bond: the normal stress on its face, or nothing").one_of({"none", "maximum_tension"});
-  s.add("strength", f.strength, "normal stress at which a bond breaks; either this or toughness").in("Pa").above(0);
+  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing").one_of({"none", "maximum_tension", "face_tension"});
+  s.add("strength", f.strength, "tension at which a bond breaks; either this or toughness").in("Pa").above(0);
   s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").above(0);
 }
 

@@ -45,19 +45,6 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
   body.force->stresses(state, stress);
-  if (const auto *overlap = body.coupler->overlap()) // pads lack neighbours, their own tensor is
-                                                     // not complete: they show the mesh's
-  {
-    for (const auto &m : overlap->members)
-      if (m.pad) {
-        Vec<dim * fem::n_cell_nodes<dim>> u;
-        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-          u.template segment<dim>(a * dim) =
-              get(body.far->displacement, overlap->near_nodes[m.nodes[a]]);
-        const Strain<dim> strain = fem::strain_matrix<dim>(m.gradient) * u;
-        set(stress, m.particle, Strain<dim>(body.far->body().stiffness * strain));
-      }
-  }
   std::vector<double> tensor(6 * state.n_owned);
   for (int i = 0; i < state.n_owned; ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);

@@ -1,13 +1,16 @@
 #include "src/simulation/make_zone.h"
 
 #include "core/check.h"
+#include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
 #include "particles/absorbing_sides.h"
 #include "particles/lattice_packing.h"
 #include "particles/packing_file.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/toughness_cache.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,13 +85,39 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
   return m;
 }
 
+dem::FractureLaw::Criterion criterion_of(const Scene &scene)
+{
+  using Criterion = dem::FractureLaw::Criterion;
+  const std::string &name = scene.material.fracture.criterion;
+  return name == "maximum_tension" ? Criterion::maximum_tension
+         : name == "face_tension"  ? Criterion::face_tension
+                                   : Criterion::none;
+}
+
+/// All that the factor c depends on, in one line.
+std::string toughness_key(const Scene &scene, const dem::DemMaterial &material)
+{
+  const DiscreteZone &zone = scene.zone;
+  const std::string packing =
+      zone.packing == "random"
+          ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
+          : fmt::format("turned {}", fmt::join(zone.orientation, " "));
+  return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method,
+                     scene.material.fracture.criterion, scene.dimension,
+                     scene.plane == PlaneMode::stress ? "stress" : "strain", zone.packing,
+                     material.poissons_ratio, packing);
+}
+
 template <int dim>
 double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
 {
-  if (scene.zone.packing == "random")
-    return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material);
-  const auto lattice = lattice_of<dim>(scene);
-  return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material);
+  const auto criterion = criterion_of(scene);
+  return ToughnessCache().factor(toughness_key(scene, material), [&] {
+    if (scene.zone.packing == "random")
+      return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
+    const auto lattice = lattice_of<dim>(scene);
+    return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
+  });
 }
 
 /// Strength from the scene, or from the toughness through the calibrated factor c. `name` is added
@@ -114,9 +143,12 @@ template <int dim>
 dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
   dem::FractureLaw law;
-  if (scene.material.fracture.criterion == "none")
+  law.criterion = criterion_of(scene);
+  if (law.criterion == dem::FractureLaw::Criterion::none)
     return law;
-  law.criterion = dem::FractureLaw::Criterion::maximum_tension;
+  if (!scene.material.fracture.strength)
+    law.whole_face = dem::PrincipalTension::whole_face<dim>(scene.zone.spacing) *
+                     (dim == 2 ? scene.specimen.thickness : 1);
   law.strength = strength_of<dim>(scene, scene.material, "", body, log);
   if (scene.inclusions.empty())
     return law;

@@ -72,7 +72,7 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
   });
   const auto guarded = guarded_particles(body);
   const double guard = guarded.empty() ? 0 : seconds_of([&] {
-    reading += body.force->max_tension(body.zone->state, guarded);
+    reading += body.force->utilisation(body.zone->state, guarded);
   });
   const double copy = seconds_of([&] {
     const auto particles = particle_fields(body);
@@ -215,14 +215,13 @@ std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
 {
   // Overlap bonds must not break.
   if (!guarded_.empty() && !warned_) {
-    const double strength = body.force->fracture().strength;
-    const double tension = body.force->max_tension(body.zone->state, guarded_);
-    if (tension > guarded_share * strength) {
+    const double utilisation = body.force->utilisation(body.zone->state, guarded_);
+    if (utilisation > guarded_share) {
       warned_ = true;
       if (const auto stop = report_excess(
               fmt::format("the tension in the overlap is {:.0f} % of the strength: fracture comes "
                           "near it; make /discrete_zone/region larger",
-                          100 * tension / strength),
+                          100 * utilisation),
               step))
         return stop;
     }
@@ -307,8 +306,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     for (const BodyState &state : states)
       fields_.write(state);
   });
-  record.magnification = scene_.output.magnification > 0 ? scene_.output.magnification
-                                                         : good_magnification(all);
+  record.magnification =
+      scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
   record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification);
   writer_.wait();
 }

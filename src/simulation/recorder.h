@@ -59,8 +59,7 @@ private:
   /// Of the pictures, in words of shown_field().
   std::vector<std::string> shown_fields() const;
   /// Completes, writes and draws what the run keeps.
-  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
-                   RunRecord &record);
+  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record);
   std::optional<Stop> check_guards(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void look_for_break(const CoupledBody<dim> &body, double time);
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -93,8 +92,8 @@ private:
   std::array<std::optional<Snapshot>, 2> snapshots_;  // the later one first
   int common_time_ = std::numeric_limits<int>::min(); // index of the last one
   double fields_copied_at_ = 0;                       // N, load of the copies below
-  BodyState peak_state_;  // without bonds until the end
-  BodyState break_state_; // when the specimen was found in two
+  BodyState peak_state_;                              // without bonds until the end
+  BodyState break_state_;                             // when the specimen was found in two
   StateFields<dim> state_fields_;
   core::BackgroundWriter writer_; // of fields_; last, so that its jobs end before what they use
 };

@@ -29,8 +29,10 @@ std::vector<Case> all_cases()
   add(beam_cases());
   add(stability_cases());
   add(contrast_cases());
+  add(compression_cases());
   add(breaking_cases());
   add(closed_crack_cases());
+  add(toughness_cases());
   add(random_scene_cases());
   return cases;
 }
