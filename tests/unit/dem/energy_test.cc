@@ -207,7 +207,15 @@ void bounce(int openings, bool joint)
   const double d = packing.spacing;
   for (int i = 0; i < 2; ++i) {
     const Vector<dim> n = (i ? 1 : -1) * Vector<dim>::Unit(0);
-    packing.boundary_faces.push_back({i, n, packing.faces[0].area, d / 2, d / 2 * n, i});
+    const auto hold = [&](const Vector<dim> &outward) {
+      packing.boundary_faces.push_back(
+          {i, outward, packing.faces[0].area, d / 2, d / 2 * outward, i});
+    };
+    hold(n);
+    for (int c = 1; c < dim; ++c) { // else a joint's torque turns them about the end for ever
+      hold(Vector<dim>::Unit(c));
+      hold(-Vector<dim>::Unit(c));
+    }
   }
   std::vector<core::BoundaryLoad<dim>> loads(2);
   for (int i = 0; i < 2; ++i) {
