@@ -35,7 +35,7 @@ struct LatticeParameters : SpecimenParameters<dim>
   LatticeKind kind = dim == 2 ? LatticeKind::hexagonal : LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero(); // rad; 2D angle, 3D rotation vector
   /// Layers (2D: rows) of up to so many particles lie as the lattice has them; larger ones another
-  /// way where that makes them smaller.
+  /// way where that pays (RowLayout). 0: the smallest layers.
   long small_layer = 2000;
 };
 

@@ -27,10 +27,10 @@ public:
     int n_points;
   };
 
-  /// Rows along the lattice's own first axis and layers along its last one, unless another order
-  /// has layers so much smaller than these that it pays. Layers of up to `small_layer` points are
-  /// never worth it. Throws core::InputError when the box is too large for the numbers of lattice
-  /// points.
+  /// Rows along the lattice's own first axis and layers along its last one, unless these have more
+  /// than `small_layer` points and in another order they are so much smaller that it pays, shorter
+  /// rows counted in; 0: the smallest layers. Throws core::InputError when the box is too large for
+  /// the numbers of lattice points.
   RowLayout(const Lattice<dim> &lattice, const Vector<dim> &lower, const Vector<dim> &upper,
             long small_layer);
 
@@ -49,7 +49,7 @@ private:
             const Axes &axes);
   static std::vector<Axes> candidates(const Lattice<dim> &lattice);
   /// Steps of kernels take longer in proportion to this.
-  double cost() const;
+  double cost(long small_layer) const;
 
   Axes axes_, inverse_;
   Index first_row_, n_rows_; // component 0 unused
