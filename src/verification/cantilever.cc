@@ -29,7 +29,7 @@ Scene make_scene(const Cantilever &c)
     add_far_field(scene, {60, 0, 0}, c.cell_size);
   else {
     scene.zone.extent = DiscreteZone::Extent::none;
-    scene.far_field = FarField{c.cell_size};
+    scene.far_field.emplace().cell_size = c.cell_size;
   }
   scene.far_field->levels = c.levels;
   LoadParameters &held = scene.loads.emplace_back();
