@@ -25,8 +25,10 @@ std::vector<Case> all_cases()
   add(scheme_cases());
   add(wave_bench_cases());
   add(absorbing_cases());
+  add(absorbing_steady_cases());
   add(kirsch_cases());
   add(beam_cases());
+  add(cantilever_cases());
   add(stability_cases());
   add(contrast_cases());
   add(compression_cases());
