@@ -110,6 +110,8 @@ void Sweep::process(const std::string &command, const std::vector<const Case *> 
       const std::string scene = folder_.case_file(c.id, "scene.json");
       core::write_file(scene, c.scene.dump(2) + "\n");
       std::vector<std::string> words = {solver_, command, scene, "--json"};
+      if (command == "check") // a study wants the time, and to know what is refused
+        words.push_back("--full");
       if (command == "run")
         words.insert(words.end(), {"--output", folder_.new_run(c.id).path});
       running[children.start(words, folder_.case_file(c.id, command + ".out"),
