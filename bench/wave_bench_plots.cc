@@ -100,7 +100,7 @@ void plot(const Table &table, const std::string &file, const std::string &title,
     if (!series.x.empty())
       plot.series.push_back(series);
   }
-  std::ofstream(file) << svg(plot);
+  std::ofstream(file) << draw_plot(plot);
 }
 
 std::string number(double value)

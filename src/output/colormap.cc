@@ -36,4 +36,19 @@ Color colormap(double t)
   const double chroma = 0.10 + 0.07 * t;
   return oklch(0.28 + 0.64 * t, chroma, 310 - 205 * t);
 }
+
+Palette colormap_palette()
+{
+  Palette palette;
+  for (std::size_t i = 0; i < palette.size(); ++i)
+    palette[i] = colormap(double(i) / double(palette.size() - 1));
+  return palette;
+}
+
+Palette flat_palette(Color color)
+{
+  Palette palette;
+  palette.fill(color);
+  return palette;
+}
 } // namespace ligament::program

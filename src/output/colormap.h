@@ -8,4 +8,7 @@ namespace ligament::program
 /// t in [0, 1]; outside is clamped. Lightness grows linearly and hue turns in the OKLab space
 /// (B. Ottosson, 2020), so that equal steps of t look equally large and survive in grey.
 Color colormap(double t);
+
+Palette colormap_palette();
+Palette flat_palette(Color color);
 } // namespace ligament::program

@@ -1,4 +1,6 @@
-#include "src/output/picture.h"
+#include "src/output/field_view.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,37 +11,20 @@ namespace ligament::program
 {
 namespace
 {
-constexpr Color crack_color = {225, 25, 60}, zone_color = {90, 90, 90};
+constexpr Color crack_color = {225, 25, 60}, cut_color = {40, 40, 40};
 
-/// One number per item for the colour: a component, the length of a vector, von Mises of a tensor.
+/// One number per item for the colour: a component, or the length of a vector.
 std::vector<double> coloring(const Field &field, int component)
 {
   const int n = field.n_components();
+  if (n == 1)
+    return field.values;
   std::vector<double> values(field.values.size() / n);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double *v = &field.values[n * i];
-    if (component >= 0 || n == 1)
-      values[i] = v[std::clamp(component, 0, n - 1)];
-    else if (n == 3)
-      values[i] = std::hypot(v[0], v[1], v[2]);
-    else {
-      const double xy = v[0] - v[1], yz = v[1] - v[2], zx = v[2] - v[0];
-      values[i] = std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) +
-                            3 * (v[3] * v[3] + v[4] * v[4] + v[5] * v[5]));
-    }
+    values[i] = component >= 0 ? v[component] : std::hypot(v[0], v[1], v[2]);
   }
   return values;
-}
-
-std::string label_of(const Field &field, int component)
-{
-  static constexpr const char *vector[] = {"x", "y", "z"};
-  static constexpr const char *tensor[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
-  if (field.kind == Field::Kind::scalar)
-    return field.name;
-  if (component < 0)
-    return field.kind == Field::Kind::tensor ? "von Mises " + field.name : field.name;
-  return field.name + " " + (field.kind == Field::Kind::tensor ? tensor : vector)[component];
 }
 
 /// Mean over the cells around each node.
@@ -68,22 +53,32 @@ std::vector<double> moved(const std::vector<double> &reference, const Field *dis
   return points;
 }
 
-/// Displacements that show as 3 % of the size of the specimen.
-double good_magnification(const ParticleFields &particles, const CellFields &cells)
+double largest_displacement(const BodyState &state)
+{
+  double largest = 0;
+  for (const auto *fields : {&state.particles.fields, &state.cells.node_fields})
+    if (const Field *u = find_field(*fields, "displacement"))
+      for (const double value : u->values)
+        largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+double size_of(const BodyState &state)
 {
   double lower[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (const auto *points : {&particles.reference, &cells.reference})
+  for (const auto *points : {&state.particles.reference, &state.cells.reference})
     for (std::size_t i = 0; i < points->size(); ++i) {
       lower[i % 3] = std::min(lower[i % 3], (*points)[i]);
       upper[i % 3] = std::max(upper[i % 3], (*points)[i]);
     }
-  double largest = 0;
-  for (const auto *fields : {&particles.fields, &cells.node_fields})
-    if (const Field *u = find_field(*fields, "displacement"))
-      for (const double value : u->values)
-        largest = std::max(largest, std::abs(value));
-  const double size = std::hypot(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]);
-  return largest > 0 ? 0.03 * size / largest : 0;
+  return std::hypot(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]);
+}
+
+/// The largest of 1, 2 or 5 times a power of ten up to x.
+double round_down(double x)
+{
+  const double power = std::pow(10, std::floor(std::log10(x) + 1e-9)), lead = x / power;
+  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
 /// True where the item at x has been cut away.
@@ -126,110 +121,144 @@ std::vector<std::int64_t> visible_faces(const CellFields &cells, const FieldView
   return corners;
 }
 
-Scatter visible_particles(const ParticleFields &particles, const FieldView &view, double magnify,
-                          double radius)
+Scatter visible_particles(const ParticleFields &particles, const FieldView &view, double magnify)
 {
   Scatter all;
-  all.radius = radius;
-  const Field *color = find_field(particles.fields, view.field);
-  const auto values = color ? coloring(*color, view.component) : std::vector<double>();
+  const Field *color = find_field(particles.fields, view.field.field);
+  const Field *radius = find_field(particles.fields, "radius");
+  const auto values = color ? coloring(*color, view.field.component) : std::vector<double>();
   const auto positions =
       moved(particles.reference, find_field(particles.fields, "displacement"), magnify);
   for (std::size_t i = 0; i < particles.size(); ++i)
     if (!is_cut(view, &particles.reference[3 * i])) {
       all.positions.insert(all.positions.end(), &positions[3 * i], &positions[3 * i] + 3);
+      all.radii.push_back(radius ? radius->values[i] : 0);
       if (color)
         all.values.push_back(values[i]);
     }
   return all;
 }
 
-/// Broken faces between the moved particles: a line in 2D, a cross of the face's size in 3D.
-Segments broken_faces(const ParticleFields &particles, const std::vector<BrokenBond> &bonds,
-                      int dimension, const FieldView &view, double magnify)
+/// Both flanks of broken faces, each with its particle: lines in 2D, outlines of squares of the
+/// faces' sizes in 3D.
+class BrokenFaces
 {
-  const Field *ids = find_field(particles.fields, "global_id");
-  const Field *u = find_field(particles.fields, "displacement");
-  std::unordered_map<std::int64_t, std::size_t> index;
-  if (ids && u)
-    for (std::size_t i = 0; i < particles.size(); ++i)
-      index[std::int64_t(ids->values[i])] = i;
-  Segments segments;
-  segments.color = crack_color;
-  segments.width = 2.5;
-  for (const auto &bond : bonds) {
-    if (is_cut(view, bond.centroid))
-      continue;
-    double centre[3];
-    for (int c = 0; c < 3; ++c) {
-      centre[c] = bond.centroid[c];
-      for (const std::int64_t id : {bond.i, bond.j})
-        if (const auto particle = index.find(id); particle != index.end())
-          centre[c] += 0.5 * magnify * u->values[3 * particle->second + c];
-    }
-    const double half = 0.5 * (dimension == 2 ? bond.size : std::sqrt(2 * bond.size));
-    for (const auto &t : face_tangents(bond.normal)) {
-      for (const int side : {-1, 1})
-        for (int c = 0; c < 3; ++c)
-          segments.points.push_back(centre[c] + side * half * t[c]);
-      if (dimension == 2)
-        break;
+public:
+  BrokenFaces(const ParticleFields &particles, int dimension, double magnify, Color color)
+      : u_(find_field(particles.fields, "displacement")), dimension_(dimension), magnify_(magnify)
+  {
+    lines_.color = color;
+    lines_.width = dimension == 2 ? 2.5 : 1.2;
+    if (const Field *ids = find_field(particles.fields, "global_id"))
+      for (std::size_t i = 0; i < particles.size(); ++i)
+        particle_[std::int64_t(ids->values[i])] = i;
+  }
+
+  void add(const BrokenBond &bond)
+  {
+    for (const std::int64_t id : {bond.i, bond.j}) {
+      std::array<double, 3> centre;
+      const auto particle = particle_.find(id);
+      for (int c = 0; c < 3; ++c)
+        centre[c] = bond.centroid[c] + (u_ && particle != particle_.end()
+                                            ? magnify_ * u_->values[3 * particle->second + c]
+                                            : 0);
+      add_outline(bond, centre);
     }
   }
-  return segments;
-}
 
-Segments box_lines(const std::vector<std::array<double, 6>> &boxes, int dimension)
+  const Segments &lines() const { return lines_; }
+
+private:
+  void add_outline(const BrokenBond &bond, const std::array<double, 3> &centre)
+  {
+    const auto [t, s] = face_tangents(bond.normal);
+    const double half = 0.5 * (dimension_ == 2 ? bond.size : std::sqrt(bond.size));
+    static constexpr double along_t[] = {-1, 1, 1, -1}, along_s[] = {-1, -1, 1, 1};
+    const auto corner = [&, &t = t, &s = s](int k) {
+      for (int c = 0; c < 3; ++c)
+        lines_.points.push_back(centre[c] + half * (along_t[k % 4] * t[c] +
+                                                    (dimension_ == 3 ? along_s[k % 4] * s[c] : 0)));
+    };
+    for (int k = 0; k < (dimension_ == 2 ? 1 : 4); ++k) {
+      corner(k);
+      corner(k + 1);
+    }
+  }
+
+  const Field *u_;
+  int dimension_;
+  double magnify_;
+  std::unordered_map<std::int64_t, std::size_t> particle_;
+  Segments lines_;
+};
+
+Quads visible_cells(const CellFields &cells, const FieldView &view, double magnify)
 {
-  Segments segments;
-  segments.color = zone_color;
-  segments.width = 1.5;
-  segments.dashed = true;
-  for (const auto &box : boxes)
-    for (int corner = 0; corner < 1 << dimension; ++corner)
-      for (int axis = 0; axis < dimension; ++axis)
-        if (!(corner >> axis & 1))
-          for (const int end : {corner, corner | 1 << axis})
-            for (int c = 0; c < 3; ++c)
-              segments.points.push_back(c < dimension ? box[c + 3 * (end >> c & 1)] : 0.);
-  return segments;
+  Quads quads;
+  quads.points = moved(cells.reference, find_field(cells.node_fields, "displacement"), magnify);
+  quads.corners = visible_faces(cells, view);
+  const int component = view.field.component;
+  if (const Field *color = find_field(cells.node_fields, view.field.field))
+    quads.values = coloring(*color, component);
+  else if (const Field *color = find_field(cells.cell_fields, view.field.field))
+    quads.values = to_nodes(cells, coloring(*color, component));
+  return quads;
 }
 } // namespace
 
-Picture picture_of(const ParticleFields &particles, const CellFields &cells,
-                   const std::vector<BrokenBond> &bonds, int dimension, double radius,
-                   const FieldView &view)
+double good_magnification(const std::vector<const BodyState *> &states)
 {
-  const double magnify = view.magnify.value_or(good_magnification(particles, cells));
+  double factor = HUGE_VAL;
+  for (const BodyState *state : states)
+    if (const double largest = largest_displacement(*state); largest > 0)
+      factor = std::min(factor, (state == states[0] ? 0.03 : 0.06) * size_of(*state) / largest);
+  if (!std::isfinite(factor))
+    return 0;
+  return factor > 1 ? round_down(factor) : 1;
+}
+
+Picture picture_of(const BodyState &state, int dimension, const FieldView &view)
+{
+  const double magnify = view.magnify.value_or(good_magnification({&state}));
   Picture picture;
   picture.dimension = dimension;
-  picture.title = view.title;
-  const auto set_label = [&](const Field &field) {
-    picture.value_label = label_of(field, view.component);
-    picture.value_unit = field.unit;
+  picture.title = state.caption;
+  picture.value_label = view.field.label();
+  picture.value_unit = view.field.unit();
+  if (magnify > 0)
+    picture.notes.push_back(fmt::format("displacements × {:g}", magnify));
+  if (state.cells.n_cells() > 0)
+    picture.quads.push_back(visible_cells(state.cells, view, magnify));
+  if (state.particles.size() > 0)
+    picture.scatters.push_back(visible_particles(state.particles, view, magnify));
+  const auto add_faces = [&](const std::vector<BrokenBond> &bonds, Color color, const char *name) {
+    if (!view.crack || bonds.empty())
+      return;
+    BrokenFaces faces(state.particles, dimension, magnify, color);
+    for (const BrokenBond &bond : bonds)
+      if (!is_cut(view, bond.centroid))
+        faces.add(bond);
+    picture.segments.push_back(faces.lines());
+    picture.legend.push_back({name, color, LegendEntry::Mark::line});
   };
-  if (cells.n_cells() > 0) {
-    Quads quads;
-    quads.points = moved(cells.reference, find_field(cells.node_fields, "displacement"), magnify);
-    quads.corners = visible_faces(cells, view);
-    if (const Field *color = find_field(cells.node_fields, view.field)) {
-      quads.values = coloring(*color, view.component);
-      set_label(*color);
-    } else if (const Field *color = find_field(cells.cell_fields, view.field)) {
-      quads.values = to_nodes(cells, coloring(*color, view.component));
-      set_label(*color);
-    }
-    picture.quads.push_back(std::move(quads));
-  }
-  if (particles.size() > 0) {
-    picture.scatters.push_back(visible_particles(particles, view, magnify, radius));
-    if (const Field *color = find_field(particles.fields, view.field))
-      set_label(*color);
-  }
-  if (!view.boxes.empty())
-    picture.segments.push_back(box_lines(view.boxes, dimension));
-  if (view.crack && !bonds.empty())
-    picture.segments.push_back(broken_faces(particles, bonds, dimension, view, magnify));
+  add_faces(state.cuts, cut_color, "initial crack");
+  add_faces(state.bonds, crack_color, "broken faces");
   return picture;
+}
+
+std::vector<Picture> pictures_of(const std::vector<const BodyState *> &states, int dimension,
+                                 const FieldView &view)
+{
+  FieldView common = view;
+  if (!common.magnify)
+    common.magnify = good_magnification(states);
+  std::vector<Picture> pictures;
+  for (const BodyState *state : states)
+    pictures.push_back(picture_of(*state, dimension, common));
+  const ValueRange range = value_range(pictures);
+  for (Picture &picture : pictures)
+    picture.range = range;
+  return pictures;
 }
 } // namespace ligament::program

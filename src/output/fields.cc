@@ -1,10 +1,52 @@
 #include "src/output/fields.h"
 
+#include "core/check.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace ligament::program
 {
+const std::vector<FieldInfo> &field_table()
+{
+  using Kind = Field::Kind;
+  constexpr auto number = Field::Storage::float32, name = Field::Storage::int64;
+  static const std::vector<FieldInfo> table = {
+      {"displacement", "m", Kind::vector, number, true, true, false},
+      {"velocity", "m/s", Kind::vector, number, true, true, false},
+      {"stress", "Pa", Kind::tensor, number, true, true, false},
+      {"equivalent_stress", "Pa", Kind::scalar, number, true, true, false},
+      {"radius", "m", Kind::scalar, number, true, false, false},
+      {"global_id", "1", Kind::scalar, name, true, false, false},
+      {"material", "1", Kind::scalar, name, true, false, true},
+      {"zone", "1", Kind::scalar, name, true, false, true},
+      {"broken_bond_share", "1", Kind::scalar, number, true, false, false}};
+  return table;
+}
+
+Field make_field(const std::string &name, std::vector<double> values)
+{
+  for (const FieldInfo &info : field_table())
+    if (info.name == name)
+      return {name, info.unit, info.kind, std::move(values), info.storage};
+  throw core::InputError("there is no field '" + name + "'");
+}
+
+double equivalent_stress(const double *s)
+{
+  const double xy = s[0] - s[1], yz = s[1] - s[2], zx = s[2] - s[0];
+  return std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) +
+                   3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+std::vector<double> equivalent_stress(const std::vector<double> &stress)
+{
+  std::vector<double> values(stress.size() / 6);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = equivalent_stress(&stress[6 * i]);
+  return values;
+}
+
 std::array<std::array<double, 3>, 2> face_tangents(const double *n)
 {
   // Close to the z axis every direction in the plane z = 0 will do.

@@ -8,8 +8,7 @@
 
 namespace ligament::program
 {
-/// A quantity on particles, nodes or cells. Both models use the same names and units:
-/// displacement (m), velocity (m/s), stress (Pa), global_id, material.
+/// A quantity on particles, nodes or cells. Both models use the names and units of field_table().
 struct Field
 {
   enum class Kind
@@ -67,6 +66,45 @@ struct BrokenBond
   double size;        // 2D: length of the face, m; 3D: its area, m^2
   double energy;      // J, released by the face
 };
+
+/// A body at one time that is worth keeping: what pictures are drawn from, during a run and later.
+struct BodyState
+{
+  std::string name;    // of its files
+  std::string caption; // "Near the peak load"
+  double time = 0;     // s
+  ParticleFields particles;
+  CellFields cells;
+  std::vector<BrokenBond> bonds; // broken by then
+  std::vector<BrokenBond> cuts;  // faces that initial cracks cut
+};
+
+/// A field that runs write, and where.
+struct FieldInfo
+{
+  std::string name, unit;
+  Field::Kind kind;
+  Field::Storage storage;
+  bool on_particles, on_nodes, on_cells;
+};
+const std::vector<FieldInfo> &field_table();
+
+/// A field of the table with these values; InputError for another name.
+Field make_field(const std::string &name, std::vector<double> values);
+
+/// What the numbers of the field `zone` mean.
+enum class ZoneNumber
+{
+  discrete,   // discrete elements alone
+  overlap,    // both models
+  pad,        // particles that move with the mesh
+  transition, // cells behind the overlap, which the coupler moves
+  far         // finite elements alone
+};
+
+/// Von Mises of a tensor xx, yy, zz, xy, yz, xz.
+double equivalent_stress(const double *stress);
+std::vector<double> equivalent_stress(const std::vector<double> &stress);
 
 /// Two unit vectors that span the plane of a face with unit normal n; the first one has z = 0, in
 /// 2D it is the direction of the face.

@@ -44,6 +44,19 @@ std::string quantity(double value, const std::string &unit)
   return fmt::format("{:.{}f} {}{}", scaled, value == 0 ? 0 : 3 - before, prefix.symbol, unit);
 }
 
+Prefix unit_prefix(double magnitude, const std::string &unit)
+{
+  const bool plain = unit.empty() || unit == "1" || unit.find_first_of("^* ") != std::string::npos;
+  return plain ? Prefix{1, ""} : si_prefix(magnitude);
+}
+
+std::string with_unit(const std::string &name, const Prefix &prefix, const std::string &unit)
+{
+  if (unit.empty() || unit == "1")
+    return name;
+  return fmt::format("{} ({}{})", name, prefix.symbol, unit);
+}
+
 std::string percent(const std::optional<double> &fraction)
 {
   return fraction ? fmt::format("{:+.2f} %", 100 * *fraction) : "-";
@@ -102,5 +115,33 @@ std::string base64(const void *data, std::size_t n_bytes)
       text += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
+}
+
+std::string from_base64(std::string_view text)
+{
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  unsigned group = 0;
+  int bits = 0;
+  for (const char c : text) {
+    int digit;
+    if (c >= 'A' && c <= 'Z')
+      digit = c - 'A';
+    else if (c >= 'a' && c <= 'z')
+      digit = c - 'a' + 26;
+    else if (c >= '0' && c <= '9')
+      digit = c - '0' + 52;
+    else if (c == '+' || c == '/')
+      digit = c == '+' ? 62 : 63;
+    else
+      break;
+    group = (group << 6 | unsigned(digit)) & 0xffffff;
+    bits += 6;
+    if (bits >= 8) {
+      bits -= 8;
+      bytes += char(group >> bits & 0xff);
+    }
+  }
+  return bytes;
 }
 } // namespace ligament::program

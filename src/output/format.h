@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace ligament::program
 {
@@ -28,9 +29,16 @@ struct Prefix
 };
 Prefix si_prefix(double magnitude);
 
+/// The same where the unit can carry one; none for plain numbers, powers and products.
+Prefix unit_prefix(double magnitude, const std::string &unit);
+/// "stress (MPa)"; plain numbers have no brackets.
+std::string with_unit(const std::string &name, const Prefix &prefix, const std::string &unit);
+
 /// Text for HTML and XML: & < > " escaped.
 std::string escape_xml(const std::string &text);
 
 /// Base64 of any bytes.
 std::string base64(const void *data, std::size_t n_bytes);
+/// Its inverse; reads up to the first character that is no digit.
+std::string from_base64(std::string_view text);
 } // namespace ligament::program

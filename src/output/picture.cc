@@ -1,10 +1,10 @@
 #include "src/output/picture.h"
 
 #include "core/files.h"
-#include "src/output/canvas.h"
+#include "src/output/colormap.h"
 #include "src/output/format.h"
 #include "src/output/plot.h"
-#include "src/output/stroke_font.h"
+#include "src/output/projection.h"
 
 #include <fmt/core.h>
 
@@ -15,131 +15,175 @@ namespace ligament::program
 {
 namespace
 {
-constexpr double margin = 24, title_height = 15, label_height = 11; // pixels
-constexpr double bar_width = 18, bar_gap = 26;
-constexpr int largest_height = 1500;
-constexpr Color ink = {40, 40, 40};
+using Vertex = DepthRaster::Vertex;
 
-using Point = std::array<double, 3>;
+// Pixels.
+constexpr double margin = 22, title_size = 20, text_size = 17, line_height = 25;
+constexpr double bar_width = 20, column_gap = 30, longest_bar = 420, shortest_bar = 150;
+constexpr double mark_width = 26, mark_gap = 10;
+constexpr double largest_height = 1300;   // of the body
+constexpr double smallest_particle = 0.6; // radius
+constexpr double axes_height = 64;        // 3D, of the small axes below the body
 
-Point normalized(const Point &a)
-{
-  const double length = std::hypot(a[0], a[1], a[2]);
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
+/// Particles are filled as far as this from their centres, in radii: the corner of a square cell
+/// lies at 1.41, of a hexagonal one at 1.15; those of random packings reach farther now and then.
+constexpr double reach = 1.5;
 
-Point cross(const Point &a, const Point &b)
-{
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+const Drawing::Font text_font = {text_size};
+const Drawing::Font title_font = {title_size, ink, Drawing::Align::left, true};
 
-double dot(const double *a, const Point &b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// Orthographic projection: right, up and towards the viewer; then to pixels.
-class Projection
+/// Colour bar and legend stand in a column to the right of the body.
+class Column
 {
 public:
-  explicit Projection(const Picture &picture)
+  Column(const Picture &picture, const ValueRange &range) : picture_(picture), range_(range)
   {
-    if (picture.dimension == 3) {
-      towards_ = normalized(picture.view);
-      const bool from_above = std::abs(towards_[1]) > 0.999;
-      right_ = normalized(cross(from_above ? Point{0, 0, -1} : Point{0, 1, 0}, towards_));
-      up_ = cross(towards_, right_);
+    const double largest = std::max(std::abs(range[0]), std::abs(range[1]));
+    prefix_ = unit_prefix(largest, picture.value_unit);
+    title_ = with_unit(picture.value_label, prefix_, picture.value_unit);
+    has_bar_ = !picture.value_label.empty() && has_values(picture);
+    if (has_bar_)
+      width_ = std::max(bar_width + 90, Drawing::text_width(title_, text_font));
+    for (const auto &entry : picture.legend)
+      width_ = std::max(width_, mark_width + mark_gap + Drawing::text_width(entry.text, text_font));
+  }
+
+  double width() const { return width_ > 0 ? width_ + column_gap : 0; }
+  /// For a body of this height.
+  double height(double body) const
+  {
+    return (has_bar_ ? 2 * line_height + bar_length(body) : 0) +
+           double(picture_.legend.size()) * line_height;
+  }
+
+  void draw(Drawing &drawing, double x, double y, double body) const
+  {
+    if (has_bar_) {
+      drawing.text({x, y + text_size}, title_, text_font);
+      bar(drawing, x, y + 1.6 * line_height, bar_length(body));
+      y += 2.4 * line_height + bar_length(body);
     }
-    for (const auto &layer : picture.quads)
-      include(layer.points, 0);
-    for (const auto &layer : picture.scatters)
-      include(layer.positions, layer.radius);
-    for (const auto &layer : picture.segments)
-      include(layer.points, 0);
-    if (!(lower_[0] <= upper_[0]))
-      lower_ = {0, 0}, upper_ = {1, 1};
-
-    const bool bar = !picture.value_label.empty();
-    // Room for the widest prefix of the unit; tick texts need less.
-    const double bar_column =
-        bar ? bar_gap + std::max(100., label_height * stroke_text(picture.value_label + " (" + "M" +
-                                                                  picture.value_unit + ")")
-                                                          .width)
-            : 0;
-    const double free_width = picture.width - 2 * margin - bar_column;
-    const double free_height = largest_height - 2 * margin - header() - footer();
-    const double w = upper_[0] - lower_[0], h = upper_[1] - lower_[1];
-    pixels_per_metre_ =
-        std::min(free_width / std::max(w, 1e-12 * h), free_height / std::max(h, 1e-12 * w));
-    right_edge_ = margin + w * pixels_per_metre_;
-    bottom_edge_ = margin + header() + h * pixels_per_metre_;
-    width = int(std::ceil(std::max(right_edge_ + bar_column + margin, 420.)));
-    height = int(std::ceil(std::max(bottom_edge_ + footer() + margin, bar ? 260. : 0.)));
+    for (const auto &entry : picture_.legend) {
+      mark(drawing, entry, x, y);
+      drawing.text({x + mark_width + mark_gap, y + text_size}, entry.text, text_font);
+      y += line_height;
+    }
   }
-
-  Canvas::Vertex operator()(const double *x, double t = 0) const
-  {
-    return {margin + (dot(x, right_) - lower_[0]) * pixels_per_metre_,
-            bottom_edge_ - (dot(x, up_) - lower_[1]) * pixels_per_metre_,
-            dot(x, towards_) * pixels_per_metre_, t};
-  }
-
-  static double header() { return title_height + 14; }
-  static double footer() { return 34; }
-  double pixels_per_metre() const { return pixels_per_metre_; }
-  double right_edge() const { return right_edge_; }
-  double bottom_edge() const { return bottom_edge_; }
-
-  int width, height; // of the picture
 
 private:
-  void include(const std::vector<double> &points, double radius)
+  static double bar_length(double body)
   {
-    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
-      for (int c = 0; c < 2; ++c) {
-        const double x = dot(&points[i], c == 0 ? right_ : up_);
-        lower_[c] = std::min(lower_[c], x - radius);
-        upper_[c] = std::max(upper_[c], x + radius);
-      }
+    return std::clamp(body - 3 * line_height, shortest_bar, longest_bar);
   }
 
-  Point right_ = {1, 0, 0}, up_ = {0, 1, 0}, towards_ = {0, 0, 1};
-  std::array<double, 2> lower_ = {HUGE_VAL, HUGE_VAL}, upper_ = {-HUGE_VAL, -HUGE_VAL};
-  double pixels_per_metre_, right_edge_, bottom_edge_;
+  void bar(Drawing &drawing, double x, double top, double length) const
+  {
+    constexpr int n = 256;
+    const Palette colors = colormap_palette();
+    // Each colour reaches down to the end: no seams between them.
+    for (int i = n - 1; i >= 0; --i)
+      drawing.rectangle(x, top + length * (n - 1 - i) / n, x + bar_width, top + length, colors[i]);
+    const auto [below, above] = outside();
+    const double tip = 0.6 * bar_width, middle = x + bar_width / 2;
+    if (above)
+      drawing.polygon({{x, top}, {middle, top - tip}, {x + bar_width, top}}, colors[n - 1]);
+    if (below)
+      drawing.polygon(
+          {{x, top + length}, {middle, top + length + tip}, {x + bar_width, top + length}},
+          colors[0]);
+    const double lower = range_[0] / prefix_.factor, upper = range_[1] / prefix_.factor;
+    const auto ticks = nice_ticks(lower, upper, 5);
+    for (const double tick : ticks) {
+      const double y = top + length * (upper - tick) / (upper - lower);
+      if (y < top - 1 || y > top + length + 1)
+        continue;
+      drawing.line({x + bar_width, y}, {x + bar_width + 6, y}, {ink, 1.5});
+      drawing.text({x + bar_width + 11, y + 0.36 * text_size}, tick_text(tick, ticks[1] - ticks[0]),
+                   text_font);
+    }
+  }
+
+  static bool has_values(const Picture &picture)
+  {
+    const auto colored = [](const auto &layer) { return !layer.values.empty(); };
+    return std::any_of(picture.quads.begin(), picture.quads.end(), colored) ||
+           std::any_of(picture.scatters.begin(), picture.scatters.end(), colored);
+  }
+
+  /// Whether values lie below and above the range.
+  std::array<bool, 2> outside() const
+  {
+    std::array<bool, 2> result = {false, false};
+    const auto look = [&](const std::vector<double> &values) {
+      for (const double value : values) {
+        result[0] |= value < range_[0];
+        result[1] |= value > range_[1];
+      }
+    };
+    for (const auto &layer : picture_.quads)
+      look(layer.values);
+    for (const auto &layer : picture_.scatters)
+      look(layer.values);
+    return result;
+  }
+
+  static void mark(Drawing &drawing, const LegendEntry &entry, double x, double y)
+  {
+    using Mark = LegendEntry::Mark;
+    const double middle = y + 0.64 * text_size;
+    const Spot left = {x, middle}, right = {x + mark_width, middle};
+    if (entry.mark == Mark::patch)
+      drawing.rectangle(x, middle - 7, x + mark_width, middle + 7, entry.color);
+    else if (entry.mark == Mark::arrow)
+      drawing.arrow(left, right, {entry.color, 2.5});
+    else
+      drawing.line(left, right, {entry.color, 3, 1, entry.mark == Mark::dashes});
+  }
+
+  const Picture &picture_;
+  ValueRange range_;
+  Prefix prefix_;
+  std::string title_;
+  bool has_bar_;
+  double width_ = 0;
 };
 
-/// A few hot particles at a crack tip must not turn all others dark.
-std::array<double, 2> value_range(const Picture &picture)
+/// Where everything stands on the page, in pixels.
+struct Layout
 {
-  if (picture.range)
-    return *picture.range;
-  std::vector<double> values;
-  const auto collect = [&](const std::vector<double> &more) {
-    std::copy_if(more.begin(), more.end(), std::back_inserter(values),
-                 [](double v) { return std::isfinite(v); });
-  };
-  for (const auto &layer : picture.quads)
-    collect(layer.values);
-  for (const auto &layer : picture.scatters)
-    collect(layer.values);
-  if (values.empty())
-    return {0, 1};
-  const auto quantile = [&](double q) {
-    const auto place = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-  };
-  const double lower = quantile(0.01), upper = quantile(0.99);
-  const double least = std::max(1e-12 * std::max(std::abs(lower), std::abs(upper)), 1e-300);
-  return {lower, std::max(upper, lower + least)};
-}
+  Column column;
+  double room; // around the body, for arrows
+  Projection project;
+  double left, top; // of the body
+  int width, height;
+
+  Layout(const Picture &picture, const ValueRange &range)
+      : column(picture, range), room(picture.arrows.empty() ? 0 : 46),
+        project(picture, picture.width - 2 * margin - 2 * room - column.width(), largest_height),
+        left(margin + room), top(margin + (picture.title.empty() ? 0 : title_size + 16) + room)
+  {
+    double right = std::max(column_left() + column.width() - column_gap,
+                            margin + Drawing::text_width(picture.title, title_font));
+    for (const auto &note : picture.notes)
+      right = std::max(right, margin + Drawing::text_width(note, text_font));
+    width = int(std::ceil(std::max(right, 300.) + margin));
+    const double notes_end = footer() + 34 + (picture.dimension == 3 ? axes_height : 0) +
+                             double(picture.notes.size()) * line_height;
+    height = int(std::ceil(std::max(notes_end, top + column.height(project.height())) + 6));
+  }
+
+  double column_left() const { return left + project.width() + room + column_gap; }
+  double footer() const { return top + project.height() + room; }
+};
 
 class Painter
 {
 public:
-  explicit Painter(const Picture &picture)
-      : picture_(picture), project_(picture), range_(value_range(picture)),
-        canvas_(project_.width, project_.height, picture.dimension == 3)
+  Painter(const Picture &picture, ImageFormat format)
+      : picture_(picture), range_(picture.range ? *picture.range : value_range({picture})),
+        layout_(picture, range_), drawing_(layout_.width, layout_.height, format),
+        raster_(int(std::ceil(layout_.project.width())) + 1,
+                int(std::ceil(layout_.project.height())) + 1)
   {
   }
 
@@ -148,155 +192,226 @@ public:
     for (const auto &layer : picture_.quads)
       fill(layer);
     for (const auto &layer : picture_.scatters)
-      discs(layer);
+      particles(layer);
+    drawing_.image(layout_.left, layout_.top, raster_.width(), raster_.height(), raster_.pixels());
     // Above the particles, so that the mesh shows through where the models overlap.
     for (const auto &layer : picture_.quads)
-      if (layer.edges)
-        edges(layer);
+      edges(layer);
     for (const auto &layer : picture_.segments)
-      lines(layer);
+      segments(layer);
+    for (const auto &arrow : picture_.arrows)
+      draw(arrow);
     for (const auto &label : picture_.labels) {
-      const auto at = project_(label.position.data());
-      canvas_.text(at.x, at.y + label_height / 2, label.text, label_height, label.color,
-                   Canvas::Align::centre);
+      const Vertex at = layout_.project(label.position.data());
+      drawing_.text({layout_.left + at.x, layout_.top + at.y + 0.36 * text_size}, label.text,
+                    {text_size, label.color, Drawing::Align::centre, false, false, true});
     }
-    if (!picture_.title.empty())
-      canvas_.text(margin, margin + title_height, picture_.title, title_height, ink);
-    if (!picture_.value_label.empty())
-      color_bar();
-    scale_bar();
-    return canvas_.png();
+    drawing_.text({margin, margin + title_size - 2}, picture_.title, title_font);
+    layout_.column.draw(drawing_, layout_.column_left(), layout_.top, layout_.project.height());
+    scale();
+    return drawing_.file();
   }
 
 private:
-  double normal(double value) const { return (value - range_[0]) / (range_[1] - range_[0]); }
-
-  /// The palette of a layer and the place of item i in it.
-  Palette palette(const std::vector<double> &values, Color color) const
-  {
-    return values.empty() ? flat_palette(color) : colormap_palette();
-  }
   double place(const std::vector<double> &values, std::size_t i) const
   {
-    return values.empty() || !std::isfinite(values[i]) ? 0 : normal(values[i]);
+    if (values.empty() || !std::isfinite(values[i]))
+      return 0;
+    return (values[i] - range_[0]) / (range_[1] - range_[0]);
+  }
+  static Palette palette(const std::vector<double> &values, Color color)
+  {
+    return values.empty() ? flat_palette(color) : colormap_palette();
   }
 
   void fill(const Quads &layer)
   {
     const Palette colors = palette(layer.values, layer.color);
     for (std::size_t q = 0; q + 3 < layer.corners.size(); q += 4) {
-      std::array<Canvas::Vertex, 4> v;
+      std::array<Vertex, 4> v;
       for (int k = 0; k < 4; ++k) {
         const auto i = std::size_t(layer.corners[q + k]);
-        v[k] = project_(&layer.points[3 * i], place(layer.values, i));
+        v[k] = layout_.project(&layer.points[3 * i], place(layer.values, i));
+        if (picture_.dimension == 2)
+          v[k].z = -1e30; // behind all particles
       }
-      double shade = 1;
-      if (picture_.dimension == 3) {
-        const Point a = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
-        const Point b = {v[3].x - v[1].x, v[3].y - v[1].y, v[3].z - v[1].z};
-        const Point n = normalized(cross(a, b));
-        // Faces are seen from either side: the light falls on the side of the viewer.
-        const double side = n[2] < 0 ? -1 : 1;
-        shade = 0.7 + 0.32 * std::max(0., side * (-0.4 * n[0] - 0.5 * n[1] + 0.77 * n[2]));
-      }
-      canvas_.triangle({v[0], v[1], v[2]}, colors, shade);
-      canvas_.triangle({v[0], v[2], v[3]}, colors, shade);
+      const double shade = picture_.dimension == 2 ? 1 : light(v);
+      raster_.triangle({v[0], v[1], v[2]}, colors, shade);
+      raster_.triangle({v[0], v[2], v[3]}, colors, shade);
     }
   }
 
-  void discs(const Scatter &layer)
+  /// Faces are seen from either side: the light falls on the side of the viewer.
+  static double light(const std::array<Vertex, 4> &v)
+  {
+    const double a[3] = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
+    const double b[3] = {v[3].x - v[1].x, v[3].y - v[1].y, v[3].z - v[1].z};
+    const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                         a[0] * b[1] - a[1] * b[0]};
+    const double length = std::hypot(n[0], n[1], n[2]) * (n[2] < 0 ? -1 : 1);
+    return 0.7 + 0.32 * std::max(0., (-0.4 * n[0] - 0.5 * n[1] + 0.77 * n[2]) / length);
+  }
+
+  void particles(const Scatter &layer)
   {
     const Palette colors = palette(layer.values, layer.color);
-    const double radius = std::max(layer.radius * project_.pixels_per_metre(), 0.75);
-    const auto draw = [&](double r, const Palette &palette) {
-      for (std::size_t i = 0; 3 * i + 2 < layer.positions.size(); ++i)
-        canvas_.disc(project_(&layer.positions[3 * i], place(layer.values, i)), r, palette);
-    };
-    if (picture_.dimension == 2) {
-      // Closes the gaps between touching discs (2/sqrt(3) radii reach their middle), a little
-      // darker so that the particles remain to be seen.
-      Palette darker = colors;
-      for (Color &c : darker)
-        c = {std::uint8_t(0.85 * c.r), std::uint8_t(0.85 * c.g), std::uint8_t(0.85 * c.b)};
-      draw(2 / std::sqrt(3.) * radius, darker);
+    for (std::size_t i = 0; i < layer.radii.size(); ++i) {
+      const Vertex centre = layout_.project(&layer.positions[3 * i], place(layer.values, i));
+      const double radius =
+          std::max(layer.radii[i] * layout_.project.pixels_per_metre(), smallest_particle);
+      if (picture_.dimension == 2)
+        raster_.cell(centre, radius, reach * radius, colors);
+      else
+        raster_.sphere(centre, radius, colors);
     }
-    draw(radius, colors);
   }
 
+  /// Mesh lines, each once.
   void edges(const Quads &layer)
   {
-    const Canvas::Pen pen{{255, 255, 255}, 1, 0.45, 0};
+    std::vector<std::array<std::int64_t, 2>> pairs;
     for (std::size_t q = 0; q + 3 < layer.corners.size(); q += 4)
       for (int k = 0; k < 4; ++k) {
-        auto a = project_(&layer.points[3 * layer.corners[q + k]]);
-        auto b = project_(&layer.points[3 * layer.corners[q + (k + 1) % 4]]);
-        a.z += 1; // in front of the faces that they bound
-        b.z += 1;
-        canvas_.line(a, b, pen);
+        const std::int64_t a = layer.corners[q + k], b = layer.corners[q + (k + 1) % 4];
+        pairs.push_back({std::min(a, b), std::max(a, b)});
       }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    VisibleLines lines;
+    for (const auto &[a, b] : pairs)
+      add(lines, &layer.points[3 * a], &layer.points[3 * b]);
+    drawing_.lines(lines.in_front, {layer.edge_color, 1, 0.45});
   }
 
-  void lines(const Segments &layer)
+  void segments(const Segments &layer)
   {
-    const Canvas::Pen pen{layer.color, layer.width, 1, 0.5};
-    for (std::size_t i = 0; i + 5 < layer.points.size(); i += 6) {
-      auto a = project_(&layer.points[i]), b = project_(&layer.points[i + 3]);
-      a.z += 1;
-      b.z += 1;
-      if (layer.dashed)
-        canvas_.dashed_line(a, b, pen);
+    VisibleLines lines;
+    for (std::size_t i = 0; i + 5 < layer.points.size(); i += 6)
+      add(lines, &layer.points[i], &layer.points[i + 3]);
+    drawing_.lines(lines.hidden, {layer.color, layer.width, 0.35, layer.dashed});
+    drawing_.lines(lines.in_front, {layer.color, layer.width, 1, layer.dashed});
+  }
+
+  struct VisibleLines
+  {
+    std::vector<std::vector<Spot>> in_front, hidden;
+  };
+
+  /// Cuts a line where it goes behind something (3D).
+  void add(VisibleLines &lines, const double *from, const double *to) const
+  {
+    const Vertex a = layout_.project(from), b = layout_.project(to);
+    const auto at = [&](double s) {
+      return Spot{layout_.left + a.x + s * (b.x - a.x), layout_.top + a.y + s * (b.y - a.y)};
+    };
+    if (picture_.dimension == 2) {
+      lines.in_front.push_back({at(0), at(1)});
+      return;
+    }
+    constexpr double piece = 2, in_front_by = 1; // pixels
+    const int n = std::max(1, int(std::hypot(b.x - a.x, b.y - a.y) / piece));
+    std::vector<std::vector<Spot>> *last = nullptr;
+    for (int k = 0; k < n; ++k) {
+      const double s = (k + 0.5) / n;
+      const bool hidden = raster_.hides(a.x + s * (b.x - a.x), a.y + s * (b.y - a.y),
+                                        a.z + s * (b.z - a.z) + in_front_by);
+      auto &list = hidden ? lines.hidden : lines.in_front;
+      if (&list == last)
+        list.back().back() = at((k + 1.) / n);
       else
-        canvas_.line(a, b, pen);
+        list.push_back({at(double(k) / n), at((k + 1.) / n)});
+      last = &list;
     }
   }
 
-  void color_bar()
+  void draw(const Arrow &arrow)
   {
-    const double x = project_.right_edge() + bar_gap, top = margin + Projection::header() + 26;
-    const double length = std::clamp(project_.bottom_edge() - top, 120., 420.);
-    const Palette colors = colormap_palette();
-    for (int i = 0; i < 256; ++i)
-      canvas_.fill_rectangle(x, top + length * (255 - i) / 256., x + bar_width,
-                             top + length * (256 - i) / 256., colors[i]);
-    const bool plain = picture_.value_unit.empty() || picture_.value_unit == "1" ||
-                       picture_.value_unit.find_first_of("^*/ ") != std::string::npos;
-    const double magnitude = std::max(std::abs(range_[0]), std::abs(range_[1]));
-    const Prefix prefix = plain ? Prefix{1, ""} : si_prefix(magnitude);
-    const auto ticks = nice_ticks(range_[0] / prefix.factor, range_[1] / prefix.factor, 5);
-    for (const double tick : ticks) {
-      const double y = top + length * (1 - normal(tick * prefix.factor));
-      if (y < top - 1 || y > top + length + 1)
-        continue;
-      canvas_.fill_rectangle(x + bar_width, y - 0.5, x + bar_width + 5, y + 0.5, ink);
-      canvas_.text(x + bar_width + 9, y + label_height / 2, tick_text(tick, ticks[1] - ticks[0]),
-                   label_height, ink);
-    }
-    const std::string unit = picture_.value_unit == "1" ? "" : prefix.symbol + picture_.value_unit;
-    canvas_.text(x, top - 12, picture_.value_label + (unit.empty() ? "" : " (" + unit + ")"),
-                 label_height, ink);
+    const Vertex p = layout_.project(arrow.place.data());
+    const Spot d = layout_.project.direction(arrow.direction.data());
+    const Spot at = {layout_.left + p.x, layout_.top + p.y};
+    const double sign = arrow.ends_there ? -1 : 1;
+    const Spot other = {at[0] + sign * arrow.length * d[0], at[1] + sign * arrow.length * d[1]};
+    drawing_.arrow(arrow.ends_there ? other : at, arrow.ends_there ? at : other,
+                   {arrow.color, 2.5});
   }
 
-  /// A round length of about a fifth of the picture.
-  void scale_bar()
+  /// A round length: a bar of about a fifth of the picture in 2D, the axes in 3D.
+  void scale()
   {
-    const double wanted = 0.2 * (project_.right_edge() - margin) / project_.pixels_per_metre();
-    const double length = nice_ticks(0, wanted, 1)[1];
-    const double y = project_.bottom_edge() + 20, pixels = length * project_.pixels_per_metre();
-    canvas_.fill_rectangle(margin, y, margin + pixels, y + 3, ink);
+    const double per_metre = layout_.project.pixels_per_metre();
+    const double wanted =
+        picture_.dimension == 2 ? std::max(0.2 * layout_.project.width(), 40.) : 0.4 * axes_height;
+    const double length = nice_ticks(0, wanted / per_metre, 1)[1], pixels = length * per_metre;
     const Prefix prefix = si_prefix(length);
-    canvas_.text(margin + pixels + 10, y + label_height / 2 + 1,
-                 fmt::format("{:g} {}m", length / prefix.factor, prefix.symbol), label_height, ink);
+    const std::string text = fmt::format("{:g} {}m", length / prefix.factor, prefix.symbol);
+    double y = layout_.footer() + 26;
+    if (picture_.dimension == 2) {
+      drawing_.rectangle(layout_.left, y - 8, layout_.left + pixels, y - 4, ink);
+      drawing_.text({layout_.left + pixels + 12, y}, text, text_font);
+    } else {
+      y += axes_height;
+      axes({margin + 0.6 * axes_height, y - 0.5 * axes_height}, pixels);
+      drawing_.text({margin + 1.9 * axes_height, y - 0.5 * axes_height}, "axes: " + text,
+                    text_font);
+    }
+    for (const auto &note : picture_.notes)
+      drawing_.text({margin, y += line_height}, note, text_font);
+  }
+
+  void axes(const Spot &origin, double pixels)
+  {
+    static constexpr double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static constexpr const char *names[] = {"x", "y", "z"};
+    for (int c = 0; c < 3; ++c) {
+      const Spot d = layout_.project.direction(unit[c]);
+      const Spot end = {origin[0] + pixels * d[0], origin[1] + pixels * d[1]};
+      drawing_.arrow(origin, end, {ink, 1.5});
+      const double beyond = 11 / std::max(std::hypot(d[0], d[1]), 0.1);
+      drawing_.text({end[0] + beyond * d[0], end[1] + beyond * d[1] + 0.36 * text_size}, names[c],
+                    {0.9 * text_size, ink, Drawing::Align::centre});
+    }
   }
 
   const Picture &picture_;
-  Projection project_;
-  std::array<double, 2> range_;
-  Canvas canvas_;
+  ValueRange range_;
+  Layout layout_;
+  Drawing drawing_;
+  DepthRaster raster_;
 };
 } // namespace
 
+ValueRange value_range(const std::vector<Picture> &pictures)
+{
+  std::vector<double> values;
+  const auto collect = [&](const std::vector<double> &more) {
+    std::copy_if(more.begin(), more.end(), std::back_inserter(values),
+                 [](double v) { return std::isfinite(v); });
+  };
+  for (const auto &picture : pictures) {
+    for (const auto &layer : picture.quads)
+      collect(layer.values);
+    for (const auto &layer : picture.scatters)
+      collect(layer.values);
+  }
+  if (values.empty())
+    return {0, 1};
+  const auto quantile = [&](double q) {
+    const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const double lower = quantile(0.01), upper = quantile(0.99);
+  const double least = std::max(1e-12 * std::max(std::abs(lower), std::abs(upper)), 1e-300);
+  return {lower, std::max(upper, lower + least)};
+}
+
+std::string draw_picture(const Picture &picture, ImageFormat format)
+{
+  return Painter(picture, format).paint();
+}
+
 void write_picture(const std::string &path, const Picture &picture)
 {
-  core::write_file(path, Painter(picture).paint());
+  core::write_file(path, draw_picture(picture));
 }
 } // namespace ligament::program

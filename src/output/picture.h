@@ -1,8 +1,8 @@
-// Pictures of specimen, zones and crack without a display: coloured particles, cells and lines.
+// Pictures of bodies without a display: particles, cells, lines and arrows with a legend.
 #pragma once
 
 #include "src/output/color.h"
-#include "src/output/fields.h"
+#include "src/output/drawing.h"
 
 #include <array>
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace ligament::program
 {
-/// Particles drawn as discs (2D) or shaded spheres (3D). x, y, z per particle.
+/// Particles drawn as their cells (2D) or as shaded spheres (3D). x, y, z per particle.
 struct Scatter
 {
   std::vector<double> positions; // m
+  std::vector<double> radii;     // m, one per particle
   std::vector<double> values;    // one per particle; empty: all in `color`
-  double radius = 0;             // m
   Color color = {120, 140, 160};
 };
 
@@ -28,7 +28,7 @@ struct Quads
   std::vector<std::int64_t> corners; // 4 per quadrilateral
   std::vector<double> values;        // one per point, interpolated; empty: all in `color`
   Color color = {210, 216, 224};
-  bool edges = true; // mesh lines
+  Color edge_color = {255, 255, 255};
 };
 
 /// Straight lines on top of everything; 3D: hidden parts shine through.
@@ -40,6 +40,17 @@ struct Segments
   bool dashed = false;
 };
 
+/// An arrow that starts or ends at a place of the body; its length is in pixels, since it shows a
+/// direction only.
+struct Arrow
+{
+  std::array<double, 3> place;     // m
+  std::array<double, 3> direction; // its length does not matter
+  bool ends_there = false;         // the head is at the place
+  Color color = {20, 20, 20};
+  double length = 34; // pixels
+};
+
 /// A text at a place of the specimen.
 struct Label
 {
@@ -48,44 +59,51 @@ struct Label
   Color color = {40, 40, 40};
 };
 
+/// What a colour or line means.
+struct LegendEntry
+{
+  enum class Mark
+  {
+    patch,
+    line,
+    dashes,
+    arrow
+  };
+  std::string text;
+  Color color;
+  Mark mark = Mark::patch;
+};
+
+using ValueRange = std::array<double, 2>;
+
 struct Picture
 {
   int dimension = 2;
   std::vector<Quads> quads; // drawn first in 2D; depth decides in 3D
   std::vector<Scatter> scatters;
   std::vector<Segments> segments; // drawn last
+  std::vector<Arrow> arrows;
   std::vector<Label> labels;
 
   std::string title;
   std::string value_label; // beside the colour bar; empty: no bar
   std::string value_unit;
-  /// Colour range; empty: from the 1 % to the 99 % quantile of all values.
-  std::optional<std::array<double, 2>> range;
-  int width = 1400; // pixels; the height follows from the shape of the specimen
+  /// Colour range; empty: value_range() of this picture. What lies outside has the outermost
+  /// colour, and the bar has a tip.
+  std::optional<ValueRange> range;
+  std::vector<LegendEntry> legend;
+  std::vector<std::string> notes; // lines below the picture
+  int width = 1400;               // pixels at most for the body; the height follows from its shape
   /// 3D: direction from which the specimen is seen.
   std::array<double, 3> view = {0.5, 0.35, 1};
 };
 
+/// From the 1 % to the 99 % quantile of all values of these pictures: a few hot particles at a
+/// crack tip must not turn all others dark.
+ValueRange value_range(const std::vector<Picture> &pictures);
+
+std::string draw_picture(const Picture &picture, ImageFormat format = ImageFormat::png);
+
 /// PNG; EnvironmentError when the disk refuses.
 void write_picture(const std::string &path, const Picture &picture);
-
-/// What the picture of a run shows.
-struct FieldView
-{
-  std::string field = "stress";
-  int component = -1;            // of a vector or tensor; -1: magnitude, von Mises for tensors
-  std::optional<double> magnify; // of displacements; empty: the largest one shows as 3 %
-  bool crack = true;
-  /// 3D: what lies on the positive side of the plane is cut away: point and normal.
-  std::optional<std::array<double, 6>> cut;
-  std::string title;
-  /// Lower and upper corners of boxes to be drawn dashed (zones).
-  std::vector<std::array<double, 6>> boxes;
-};
-
-/// The specimen at one time in its deformed shape: particles and cells on one colour scale, mesh
-/// lines light, broken faces in strong colour. `radius` in m, usually half the spacing.
-Picture picture_of(const ParticleFields &particles, const CellFields &cells,
-                   const std::vector<BrokenBond> &bonds, int dimension, double radius,
-                   const FieldView &view);
 } // namespace ligament::program

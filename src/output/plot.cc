@@ -12,12 +12,33 @@ namespace ligament::program
 {
 namespace
 {
-constexpr int left_margin = 70, right_margin = 18, bottom_margin = 48;
+constexpr double right_margin = 18, bottom_margin = 48; // pixels
+constexpr double text_size = 12, legend_row = 18, marker_radius = 3.5;
+
+const Drawing::Font text_font = {text_size};
 
 /// Distinguishable also without colour vision and in print.
-constexpr std::array<const char *, 10> colors = {"#1b6ca8", "#d1495b", "#2e8b57", "#e08e0b",
-                                                 "#6a4c93", "#117a8b", "#8c564b", "#c2185b",
-                                                 "#7a8b0b", "#555555"};
+constexpr std::array<Color, 10> colors = {{{27, 108, 168},
+                                           {209, 73, 91},
+                                           {46, 139, 87},
+                                           {224, 142, 11},
+                                           {106, 76, 147},
+                                           {17, 122, 139},
+                                           {140, 86, 75},
+                                           {194, 24, 91},
+                                           {122, 139, 11},
+                                           {85, 85, 85}}};
+constexpr Color grid_color = {227, 230, 234}, frame_color = {85, 85, 85};
+
+/// 10 with the exponent as superscript.
+std::string power_of_ten(int exponent)
+{
+  static constexpr const char *digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = exponent < 0 ? "10⁻" : "10";
+  for (const char c : std::to_string(std::abs(exponent)))
+    text += digits[c - '0'];
+  return text;
+}
 
 /// One axis: from values to [0, 1], with the prefix of its unit.
 class Scale
@@ -30,10 +51,7 @@ public:
       upper_ = std::max(std::ceil(std::log10(upper) - 1e-9), lower_ + 1);
       return;
     }
-    const bool plain = axis.unit.empty() || axis.unit == "1" ||
-                       axis.unit.find_first_of("^*/ ") != std::string::npos;
-    if (!plain)
-      prefix_ = si_prefix(std::max(std::abs(lower), std::abs(upper)));
+    prefix_ = unit_prefix(std::max(std::abs(lower), std::abs(upper)), axis.unit);
     lower_ = lower / prefix_.factor;
     upper_ = upper / prefix_.factor;
     if (!(upper_ - lower_ > 1e-9 * std::max(std::abs(lower_), std::abs(upper_)))) {
@@ -64,7 +82,7 @@ public:
     const auto place = [&](double t) { return (t - lower_) / (upper_ - lower_); };
     if (axis_.logarithmic)
       for (double t = lower_; t <= upper_; ++t)
-        result.push_back({place(t), fmt::format("1e{:.0f}", t)});
+        result.push_back({place(t), power_of_ten(int(t))});
     else {
       const auto values = nice_ticks(lower_, upper_, n);
       for (const double t : values)
@@ -73,12 +91,18 @@ public:
     return result;
   }
 
-  std::string title() const
+  /// Of 2, 3, ... 9 times the powers of ten.
+  std::vector<double> fine_ticks() const
   {
-    if (axis_.unit.empty() || axis_.unit == "1")
-      return axis_.label;
-    return fmt::format("{} ({}{})", axis_.label, prefix_.symbol, axis_.unit);
+    std::vector<double> places;
+    if (axis_.logarithmic && upper_ - lower_ <= 6)
+      for (double t = lower_; t < upper_; ++t)
+        for (int k = 2; k < 10; ++k)
+          places.push_back((t + std::log10(k) - lower_) / (upper_ - lower_));
+    return places;
   }
+
+  std::string title() const { return with_unit(axis_.label, prefix_, axis_.unit); }
 
 private:
   PlotAxis axis_;
@@ -107,120 +131,230 @@ struct Frame
   double left, top, width, height;
 };
 
-/// Path of a curve: what falls into the same half pixel column is drawn as its extremes, and no
+/// Lines of a curve: what falls into the same half pixel column is drawn as its extremes, and no
 /// way twice, or dashes would fill each other's gaps.
-std::string path(const Series &series, const Scale &x, const Scale &y, const Frame &frame)
+class CurveLines
 {
-  std::string text;
-  bool connected = false;
-  double column = -1, low = 0, high = 0, first_y = 0, last_y = 0, y_now = 0;
-  const auto put = [&](double px, double py) {
-    text += fmt::format("{}{:.1f} {:.1f}", connected ? "L" : "M", px, py);
-    connected = true;
-    y_now = py;
-  };
-  const auto finish_column = [&] {
-    if (column >= 0) {
-      if (std::min(first_y, last_y) > low)
-        put(column, low);
-      if (std::max(first_y, last_y) < high)
-        put(column, high);
-      if (last_y != y_now)
-        put(column, last_y);
-    }
-    column = -1;
-  };
-  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
-    if (!x.shows(series.x[i]) || !y.shows(series.y[i])) {
-      finish_column();
-      connected = false;
-      continue;
-    }
-    const double px = frame.left + frame.width * x(series.x[i]);
-    const double py = frame.top + frame.height * (1 - y(series.y[i]));
-    if (column >= 0 && std::abs(px - column) < 0.5) {
-      low = std::min(low, py);
-      high = std::max(high, py);
+public:
+  void add(const Spot &at)
+  {
+    if (column_ >= 0 && std::abs(at[0] - column_) < 0.5) {
+      low_ = std::min(low_, at[1]);
+      high_ = std::max(high_, at[1]);
     } else {
       finish_column();
-      put(px, py);
-      column = px;
-      low = high = first_y = py;
+      put(at[0], at[1]);
+      column_ = at[0];
+      low_ = high_ = first_ = at[1];
     }
-    last_y = py;
+    last_ = at[1];
   }
-  finish_column();
-  return text;
-}
 
-std::string axes(const Plot &plot, const Scale &x, const Scale &y, const Frame &f)
-{
-  std::string text;
-  for (const auto &tick : x.ticks(std::max(3, plot.width / 100))) {
-    const double px = f.left + f.width * tick.place;
-    text +=
-        fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1}V{2}\"/><text x=\"{0:.1f}\" y=\"{3}\" "
-                    "text-anchor=\"middle\">{4}</text>\n",
-                    px, f.top, f.top + f.height, f.top + f.height + 16, tick.text);
+  /// The next point starts a new line.
+  void interrupt()
+  {
+    finish_column();
+    connected_ = false;
   }
-  for (const auto &tick : y.ticks(std::max(3, plot.height / 60))) {
-    const double py = f.top + f.height * (1 - tick.place);
-    text +=
-        fmt::format("<path class=\"grid\" d=\"M{1} {0:.1f}H{2}\"/><text x=\"{3}\" y=\"{4:.1f}\" "
-                    "text-anchor=\"end\">{5}</text>\n",
-                    py, f.left, f.left + f.width, f.left - 6, py + 4, tick.text);
+
+  std::vector<std::vector<Spot>> lines()
+  {
+    finish_column();
+    return std::move(lines_);
   }
-  text += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                      f.left, f.top, f.width, f.height);
-  text += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                      f.left + f.width / 2, plot.height - 10, escape_xml(x.title()));
-  text += fmt::format("<text transform=\"translate(16 {}) rotate(-90)\" "
-                      "text-anchor=\"middle\">{}</text>\n",
-                      f.top + f.height / 2, escape_xml(y.title()));
-  if (!plot.title.empty())
-    text += fmt::format("<text class=\"title\" x=\"{}\" y=\"20\">{}</text>\n", f.left,
-                        escape_xml(plot.title));
-  return text;
-}
 
-std::string marker(const Series &series, const char *color, double px, double py)
-{
-  const std::string look =
-      series.hollow ? fmt::format("r=\"5\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", color)
-                    : fmt::format("r=\"3.5\" fill=\"{}\"", color);
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" {}/>\n", px, py, look);
-}
+private:
+  void put(double x, double y)
+  {
+    if (!connected_)
+      lines_.emplace_back();
+    lines_.back().push_back({x, y});
+    connected_ = true;
+  }
 
-/// Text beside a point, on the side where there is room.
-std::string note(const std::string &text, const char *color, double px, double py,
-                 const Frame &frame)
-{
-  const bool to_the_left = px + 7. * double(text.size()) + 12 > frame.left + frame.width;
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\" fill=\"{}\"{}>{}</text>\n",
-                     px + (to_the_left ? -8 : 8), py + 4, color,
-                     to_the_left ? " text-anchor=\"end\"" : "", escape_xml(text));
-}
+  void finish_column()
+  {
+    if (column_ >= 0) {
+      if (std::min(first_, last_) > low_)
+        put(column_, low_);
+      if (std::max(first_, last_) < high_)
+        put(column_, high_);
+      if (last_ != lines_.back().back()[1])
+        put(column_, last_);
+    }
+    column_ = -1;
+  }
 
-std::string curve(const Series &series, const char *color, const Scale &x, const Scale &y,
-                  const Frame &frame)
+  std::vector<std::vector<Spot>> lines_;
+  bool connected_ = false;
+  double column_ = -1, low_ = 0, high_ = 0, first_ = 0, last_ = 0;
+};
+
+/// The legend stands above the frame in rows, so that it never covers a curve.
+struct LegendPlace
 {
-  std::string text;
-  if (series.line)
-    text +=
-        fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>\n", color,
-                    series.dashed ? " stroke-dasharray=\"7 4\"" : "", path(series, x, y, frame));
-  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
-    if (!x.shows(series.x[i]) || !y.shows(series.y[i]))
-      continue;
-    const double px = frame.left + frame.width * x(series.x[i]);
-    const double py = frame.top + frame.height * (1 - y(series.y[i]));
+  std::size_t series;
+  Spot at; // left end of the mark
+};
+
+class PlotPainter
+{
+public:
+  PlotPainter(const Plot &plot, ImageFormat format)
+      : plot_(plot), x_(scale_of(plot, plot.x, &Series::x, 0)),
+        y_(scale_of(plot, plot.y, &Series::y, 0.06)), drawing_(plot.width, plot.height, format)
+  {
+    double widest = 0;
+    for (const auto &tick : y_ticks())
+      widest = std::max(widest, Drawing::text_width(tick.text, text_font));
+    frame_.left = std::max(48., widest + 34);
+    frame_.width = plot.width - frame_.left - right_margin;
+    frame_.top = place_legend() + 10;
+    frame_.height = plot.height - frame_.top - bottom_margin;
+  }
+
+  std::string paint()
+  {
+    grid();
+    for (std::size_t s = 0; s < plot_.series.size(); ++s)
+      curve(plot_.series[s], color(s));
+    drawing_.outline({{frame_.left, frame_.top},
+                      {frame_.left + frame_.width, frame_.top},
+                      {frame_.left + frame_.width, frame_.top + frame_.height},
+                      {frame_.left, frame_.top + frame_.height}},
+                     {frame_color, 1});
+    titles();
+    for (const auto &place : legend_)
+      legend_entry(place);
+    return drawing_.file();
+  }
+
+private:
+  static Color color(std::size_t series) { return colors[series % colors.size()]; }
+
+  std::vector<Scale::Tick> x_ticks() const { return x_.ticks(std::max(3, plot_.width / 100)); }
+  std::vector<Scale::Tick> y_ticks() const { return y_.ticks(std::max(3, plot_.height / 60)); }
+
+  /// The lower end of title and legend.
+  double place_legend()
+  {
+    double y = plot_.title.empty() ? 6 : 28, x = frame_.left;
+    if (plot_.series.size() < 2)
+      return y;
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) {
+      const double width = 46 + Drawing::text_width(plot_.series[s].label, text_font);
+      if (x > frame_.left && x + width > plot_.width - right_margin + 18) {
+        y += legend_row;
+        x = frame_.left;
+      }
+      legend_.push_back({s, {x, y + 0.5 * legend_row}});
+      x += width;
+    }
+    return y + legend_row;
+  }
+
+  void legend_entry(const LegendPlace &place)
+  {
+    const Series &series = plot_.series[place.series];
+    if (series.line)
+      drawing_.line(place.at, {place.at[0] + 22, place.at[1]}, pen(series, color(place.series)));
     if (series.markers)
-      text += marker(series, color, px, py);
-    if (i < series.notes.size() && !series.notes[i].empty())
-      text += note(series.notes[i], color, px, py, frame);
+      marker(series, color(place.series), {place.at[0] + 11, place.at[1]});
+    drawing_.text({place.at[0] + 27, place.at[1] + 0.36 * text_size}, series.label, text_font);
   }
-  return text;
-}
+
+  void grid()
+  {
+    std::vector<std::vector<Spot>> lines, fine;
+    const auto upright = [&](double place) {
+      const double x = frame_.left + frame_.width * place;
+      return std::vector<Spot>{{x, frame_.top}, {x, frame_.top + frame_.height}};
+    };
+    const auto level = [&](double place) {
+      const double y = frame_.top + frame_.height * (1 - place);
+      return std::vector<Spot>{{frame_.left, y}, {frame_.left + frame_.width, y}};
+    };
+    for (const auto &tick : x_ticks()) {
+      lines.push_back(upright(tick.place));
+      drawing_.text({lines.back()[1][0], frame_.top + frame_.height + 17}, tick.text,
+                    {text_size, ink, Drawing::Align::centre});
+    }
+    for (const auto &tick : y_ticks()) {
+      lines.push_back(level(tick.place));
+      drawing_.text({frame_.left - 7, lines.back()[0][1] + 0.36 * text_size}, tick.text,
+                    {text_size, ink, Drawing::Align::right});
+    }
+    for (const double place : x_.fine_ticks())
+      fine.push_back(upright(place));
+    for (const double place : y_.fine_ticks())
+      fine.push_back(level(place));
+    drawing_.lines(fine, {grid_color, 0.5});
+    drawing_.lines(lines, {grid_color, 1});
+  }
+
+  void titles()
+  {
+    drawing_.text({frame_.left + frame_.width / 2, plot_.height - 11.}, x_.title(),
+                  {text_size, ink, Drawing::Align::centre});
+    drawing_.text({16, frame_.top + frame_.height / 2}, y_.title(),
+                  {text_size, ink, Drawing::Align::centre, false, true});
+    if (!plot_.title.empty())
+      drawing_.text({frame_.left, 20}, plot_.title, {14, ink, Drawing::Align::left, true});
+  }
+
+  static Drawing::Pen pen(const Series &series, Color color)
+  {
+    return {color, 1.8, 1, series.dashed};
+  }
+
+  void marker(const Series &series, Color color, const Spot &at)
+  {
+    if (series.hollow)
+      drawing_.ring(at, 5, {color, 2});
+    else
+      drawing_.disc(at, marker_radius, color);
+  }
+
+  /// Text beside a point, on the side where there is room.
+  void note(const std::string &text, Color color, const Spot &at)
+  {
+    Drawing::Font font = {11, color};
+    const bool to_the_left =
+        at[0] + 10 + Drawing::text_width(text, font) > frame_.left + frame_.width;
+    font.align = to_the_left ? Drawing::Align::right : Drawing::Align::left;
+    drawing_.text({at[0] + (to_the_left ? -8 : 8), at[1] + 4}, text, font);
+  }
+
+  void curve(const Series &series, Color color)
+  {
+    CurveLines curve;
+    std::vector<std::size_t> shown;
+    const auto spot = [&](std::size_t i) {
+      return Spot{frame_.left + frame_.width * x_(series.x[i]),
+                  frame_.top + frame_.height * (1 - y_(series.y[i]))};
+    };
+    for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i)
+      if (x_.shows(series.x[i]) && y_.shows(series.y[i])) {
+        shown.push_back(i);
+        curve.add(spot(i));
+      } else
+        curve.interrupt();
+    if (series.line)
+      drawing_.lines(curve.lines(), pen(series, color));
+    for (const std::size_t i : shown) {
+      if (series.markers)
+        marker(series, color, spot(i));
+      if (i < series.notes.size() && !series.notes[i].empty())
+        note(series.notes[i], color, spot(i));
+    }
+  }
+
+  const Plot &plot_;
+  Scale x_, y_;
+  Drawing drawing_;
+  Frame frame_ = {};
+  std::vector<LegendPlace> legend_;
+};
 } // namespace
 
 std::vector<double> nice_ticks(double lower, double upper, int n)
@@ -247,49 +381,8 @@ std::string tick_text(double tick, double distance)
   return fmt::format("{:.{}f}", tick, decimals);
 }
 
-std::string svg(const Plot &plot)
+std::string draw_plot(const Plot &plot, ImageFormat format)
 {
-  const Scale x = scale_of(plot, plot.x, &Series::x, 0);
-  const Scale y = scale_of(plot, plot.y, &Series::y, 0.06);
-  // The legend stands above the frame in rows, so that it never covers a curve.
-  int rows = 0, column = 0;
-  std::string legend;
-  const int top = plot.title.empty() ? 8 : 30;
-  if (plot.series.size() > 1) {
-    rows = 1;
-    for (std::size_t s = 0; s < plot.series.size(); ++s) {
-      const int width = 40 + int(7 * plot.series[s].label.size());
-      if (column > 0 && left_margin + column + width > plot.width - right_margin) {
-        ++rows;
-        column = 0;
-      }
-      const int px = left_margin + column, py = top + 16 * rows - 4;
-      if (!plot.series[s].line)
-        legend += marker(plot.series[s], colors[s % colors.size()], px + 11, py - 4);
-      else
-        legend += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{} {}h22\"/>",
-                              colors[s % colors.size()],
-                              plot.series[s].dashed ? " stroke-dasharray=\"7 4\"" : "", px, py - 4);
-      legend += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px + 27, py,
-                            escape_xml(plot.series[s].label));
-      column += width;
-    }
-  }
-  const double frame_top = top + 16 * rows + 4;
-  const Frame frame{left_margin, frame_top, double(plot.width - left_margin - right_margin),
-                    plot.height - frame_top - bottom_margin};
-
-  std::string text =
-      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-                  "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n"
-                  "<style>.grid{{stroke:#e3e6ea;fill:none}}.frame{{stroke:#555;fill:none}}"
-                  ".curve{{fill:none;stroke-width:1.8;stroke-linejoin:round}}"
-                  ".title{{font-size:14px;font-weight:bold}}</style>\n"
-                  "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-                  plot.width, plot.height);
-  text += axes(plot, x, y, frame);
-  for (std::size_t s = 0; s < plot.series.size(); ++s)
-    text += curve(plot.series[s], colors[s % colors.size()], x, y, frame);
-  return text + legend + "</svg>\n";
+  return PlotPainter(plot, format).paint();
 }
 } // namespace ligament::program

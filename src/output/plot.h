@@ -1,5 +1,7 @@
-// Curves as SVG: axes with round ticks, SI prefixes, a legend.
+// Curves: axes with round ticks, SI prefixes, a legend; SVG or PNG.
 #pragma once
+
+#include "src/output/drawing.h"
 
 #include <string>
 #include <vector>
@@ -32,8 +34,8 @@ struct Plot
   int width = 720, height = 400; // pixels
 };
 
-/// A complete <svg> element.
-std::string svg(const Plot &plot);
+/// A complete <svg> element, or a PNG file.
+std::string draw_plot(const Plot &plot, ImageFormat format = ImageFormat::svg);
 
 /// Round values that divide [lower, upper] into about n parts: multiples of 1, 2 or 5 times a power
 /// of ten.

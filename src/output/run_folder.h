@@ -6,6 +6,9 @@
 
 namespace ligament::program
 {
+/// With the folders above it; one that is there stays. EnvironmentError when the disk refuses.
+void make_folder(const std::string &path);
+
 struct RunFolder
 {
   std::string path;
@@ -17,6 +20,8 @@ struct RunFolder
   std::string log() const { return path + "/run.log"; }
   std::string history() const { return path + "/history.csv"; }
   std::string broken_bonds() const { return path + "/broken_bonds.csv"; }
+  /// Faces that initial cracks cut, in the same columns; only of runs with a crack.
+  std::string cut_faces() const { return path + "/cut_faces.csv"; }
   /// Motion of the particles at the last common times (see common_time_index) before fracture took
   /// over, the latest first.
   std::array<std::string, 3> snapshots() const
@@ -32,5 +37,8 @@ struct RunFolder
   void create() const;
   /// True when a run wrote its record here.
   bool holds_a_run() const;
+  /// The name of something that no run wrote here; empty in a folder of a run, or where one that
+  /// was killed at once may have been.
+  std::string foreign_entry() const;
 };
 } // namespace ligament::program

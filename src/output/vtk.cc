@@ -230,23 +230,42 @@ FieldSeries::FieldSeries(RunFolder folder, int dimension)
 {
 }
 
-void FieldSeries::write(double time, const ParticleFields &particles, const CellFields &cells,
-                        const std::vector<BrokenBond> &bonds)
+StateFiles FieldSeries::files(const BodyState &state, const std::string &name)
 {
-  const auto place = [&](int part, const char *name, const char *extension) {
-    const std::string file = fmt::format("{}_{:04}.{}", name, n_written_, extension);
-    entries_.push_back({time, part, "fields/" + file});
-    return folder_.fields() + "/" + file;
-  };
-  if (particles.size() > 0) {
-    write_particles_vtp(place(0, "particles", "vtp"), particles);
+  StateFiles files;
+  if (state.particles.size() > 0)
+    files.particles = "fields/particles_" + name + ".vtp";
+  if (state.cells.n_cells() > 0)
+    files.cells = "fields/cells_" + name + ".vtu";
+  return files;
+}
+
+void FieldSeries::write(const BodyState &state)
+{
+  const std::string name = state.name.empty() ? fmt::format("{:04}", n_numbered_++) : state.name;
+  const StateFiles files = FieldSeries::files(state, name);
+  if (!files.particles.empty()) {
+    write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
+    add(state.time, 0, files.particles);
     // Also while nothing is broken: a part must exist at every time or at none.
-    write_broken_bonds_vtp(place(2, "broken_bonds", "vtp"), bonds, dimension_);
+    const std::string bonds = "fields/broken_bonds_" + name + ".vtp";
+    write_broken_bonds_vtp(folder_.path + "/" + bonds, state.bonds, dimension_);
+    add(state.time, 2, bonds);
   }
-  if (cells.n_cells() > 0)
-    write_cells_vtu(place(1, "cells", "vtu"), cells);
-  ++n_written_;
+  if (!files.cells.empty()) {
+    write_cells_vtu(folder_.path + "/" + files.cells, state.cells);
+    add(state.time, 1, files.cells);
+  }
   write_collection();
+}
+
+void FieldSeries::add(double time, int part, const std::string &file)
+{
+  const auto same = [&](const Entry &e) { return e.time == time && e.part == part; };
+  entries_.erase(std::remove_if(entries_.begin(), entries_.end(), same), entries_.end());
+  const auto later =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry &e) { return e.time > time; });
+  entries_.insert(later, {time, part, file});
 }
 
 void FieldSeries::write_collection() const

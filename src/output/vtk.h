@@ -20,6 +20,12 @@ void write_cells_vtu(const std::string &path, const CellFields &cells);
 void write_broken_bonds_vtp(const std::string &path, const std::vector<BrokenBond> &bonds,
                             int dimension);
 
+/// Files of a state, relative to the output folder; empty: the state has no such part.
+struct StateFiles
+{
+  std::string particles, cells;
+};
+
 /// Collection of all times and parts; rewritten after every time so that it can be opened while the
 /// run goes on. Part 0 particles, 1 cells, 2 broken bonds.
 class FieldSeries
@@ -27,9 +33,12 @@ class FieldSeries
 public:
   FieldSeries(RunFolder folder, int dimension);
 
-  /// Writes fields/{particles,cells,broken_bonds}_NNNN.vt? and the .pvd. Empty parts are left out.
-  void write(double time, const ParticleFields &particles, const CellFields &cells,
-             const std::vector<BrokenBond> &bonds);
+  /// Writes fields/{particles,cells,broken_bonds}_NAME.vt? and the .pvd; a state without a name has
+  /// the next number. Empty parts are left out. Of two states of one time the later one written
+  /// counts.
+  void write(const BodyState &state);
+
+  static StateFiles files(const BodyState &state, const std::string &name);
 
 private:
   struct Entry
@@ -38,11 +47,12 @@ private:
     int part;
     std::string file; // relative to the .pvd
   };
+  void add(double time, int part, const std::string &file);
   void write_collection() const;
 
   RunFolder folder_;
   int dimension_;
-  int n_written_ = 0;
-  std::vector<Entry> entries_;
+  int n_numbered_ = 0;
+  std::vector<Entry> entries_; // in the order of their times
 };
 } // namespace ligament::program

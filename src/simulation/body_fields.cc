@@ -1,6 +1,7 @@
 #include "src/simulation/body_fields.h"
 
 #include <cmath>
+#include <unordered_map>
 
 namespace ligament::program
 {
@@ -40,28 +41,14 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
     return fields;
   const auto &state = body.zone->state;
   fields.reference = interleave(state.reference);
-  fields.fields.push_back(
-      {"displacement", "m", Field::Kind::vector, interleave(state.displacement)});
-  fields.fields.push_back({"velocity", "m/s", Field::Kind::vector, interleave(state.velocity)});
+  fields.fields.push_back(make_field("displacement", interleave(state.displacement)));
+  fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
   body.force->stresses(state, stress);
-  if (const auto *overlap = body.coupler->overlap()) // pads lack neighbours, their own tensor is
-                                                     // not complete: they show the mesh's
-  {
-    for (const auto &m : overlap->members)
-      if (m.pad) {
-        Vec<dim * fem::n_cell_nodes<dim>> u;
-        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-          u.template segment<dim>(a * dim) =
-              get(body.far->displacement, overlap->near_nodes[m.nodes[a]]);
-        const Strain<dim> strain = fem::strain_matrix<dim>(m.gradient) * u;
-        set(stress, m.particle, Strain<dim>(body.far->body().stiffness * strain));
-      }
-  }
   std::vector<double> tensor(6 * state.n_owned);
   for (int i = 0; i < state.n_owned; ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
-  fields.fields.push_back({"stress", "Pa", Field::Kind::tensor, std::move(tensor)});
+  fields.fields.push_back(make_field("stress", std::move(tensor)));
   return fields;
 }
 
@@ -101,16 +88,111 @@ CellFields cell_fields(const CoupledBody<dim> &body)
   for (int i = 0; i < mesh.n_nodes(); ++i)
     for (int k = 0; k < 6; ++k)
       tensor[6 * i + k] /= count[i];
-  fields.node_fields.push_back(
-      {"displacement", "m", Field::Kind::vector, interleave(body.far->displacement)});
-  fields.node_fields.push_back(
-      {"velocity", "m/s", Field::Kind::vector, interleave(body.far->velocity)});
-  fields.node_fields.push_back({"stress", "Pa", Field::Kind::tensor, std::move(tensor)});
+  fields.node_fields.push_back(make_field("displacement", interleave(body.far->displacement)));
+  fields.node_fields.push_back(make_field("velocity", interleave(body.far->velocity)));
+  fields.node_fields.push_back(make_field("stress", std::move(tensor)));
   return fields;
 }
 
+namespace
+{
+/// Broken and cut faces of every particle that has any, by global id.
+std::unordered_map<std::int64_t, int> open_faces(const std::vector<BrokenBond> &broken,
+                                                 const std::vector<BrokenBond> &cut)
+{
+  std::unordered_map<std::int64_t, int> count;
+  for (const auto *bonds : {&broken, &cut})
+    for (const BrokenBond &bond : *bonds)
+      for (const std::int64_t id : {bond.i, bond.j})
+        ++count[id];
+  return count;
+}
+
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time)
+std::vector<double> radii(const CoupledBody<dim> &body, const std::vector<std::int64_t> &ids)
+{
+  std::vector<double> radius(ids.size(), body.spacing / 2);
+  if (!body.seeds)
+    return radius;
+  std::unordered_map<std::int64_t, double> of_seed;
+  for (int k = 0; k < body.seeds->size(); ++k)
+    of_seed[body.seeds->id[k]] = body.seeds->radius[k];
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    radius[i] = of_seed.at(ids[i]);
+  return radius;
+}
+
+template <int dim>
+std::vector<Field> constant_cell_fields(const CoupledBody<dim> &body)
+{
+  std::vector<double> zone(body.far->mesh().n_cells(), double(ZoneNumber::far));
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &cell : overlap->cells)
+      zone[cell.cell] = double(cell.layer == 0 ? ZoneNumber::overlap : ZoneNumber::transition);
+  const std::vector<double> material(zone.size(), 0.);
+  return {make_field("material", material), make_field("zone", std::move(zone))};
+}
+} // namespace
+
+template <int dim>
+void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
+{
+  const auto &state = body.zone->state;
+  n_faces_.assign(state.n_owned, 0);
+  body.force->for_each_face(state, [&](const auto &face) {
+    if (face.bonded)
+      ++n_faces_[face.i];
+  });
+  for (const auto &broken : body.force->broken_bonds())
+    for (const int i : {broken.i, broken.j})
+      ++n_faces_[i];
+  auto cut = open_faces({}, body.cut_faces);
+  for (int i = 0; i < state.n_owned && !cut.empty(); ++i)
+    if (const auto found = cut.find(state.global_id[i]); found != cut.end())
+      n_faces_[i] += std::uint8_t(found->second);
+}
+
+template <int dim>
+void StateFields<dim>::add_particle_fields(const CoupledBody<dim> &body, BodyState &state)
+{
+  const std::vector<std::int64_t> ids = body.zone->state.global_id.list();
+  const std::size_t n = ids.size();
+  if (n_faces_.empty())
+    count_faces(body);
+  std::vector<double> material(n), zone(n, double(ZoneNumber::discrete)), share(n);
+  const auto open = open_faces(state.bonds, body.cut_faces);
+  for (std::size_t i = 0; i < n; ++i) {
+    material[i] = body.force->materials().number(int(i));
+    if (const auto found = open.find(ids[i]); found != open.end())
+      share[i] = double(found->second) / std::max<int>(n_faces_[i], 1);
+  }
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      zone[m.particle] = double(m.pad ? ZoneNumber::pad : ZoneNumber::overlap);
+  auto &fields = state.particles.fields;
+  fields.push_back(make_field("radius", radii(body, ids)));
+  fields.push_back(make_field("global_id", {ids.begin(), ids.end()}));
+  fields.push_back(make_field("material", std::move(material)));
+  fields.push_back(make_field("zone", std::move(zone)));
+  fields.push_back(make_field("broken_bond_share", std::move(share)));
+}
+
+template <int dim>
+void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
+{
+  for (auto *fields : {&state.particles.fields, &state.cells.node_fields})
+    if (const Field *stress = find_field(*fields, "stress"))
+      fields->push_back(make_field("equivalent_stress", equivalent_stress(stress->values)));
+  state.cuts = body.cut_faces;
+  if (state.cells.n_cells() > 0)
+    state.cells.cell_fields = constant_cell_fields(body);
+  if (state.particles.size() > 0)
+    add_particle_fields(body, state);
+}
+
+template <int dim>
+Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
+                  const Components<dim> &velocity)
 {
   Snapshot s;
   s.dimension = dim;
@@ -123,8 +205,8 @@ Snapshot snapshot(const CoupledBody<dim> &body, double time)
   for (int i = 0; i < state.n_owned; ++i)
     for (int c = 0; c < dim; ++c) {
       s.reference.push_back(state.reference[c][i]);
-      s.displacement.push_back(state.displacement[c][i]);
-      s.velocity.push_back(state.velocity[c][i]);
+      s.displacement.push_back(displacement[c][i]);
+      s.velocity.push_back(velocity[c][i]);
     }
   return s;
 }
@@ -165,8 +247,12 @@ template ParticleFields particle_fields(const CoupledBody<2> &);
 template ParticleFields particle_fields(const CoupledBody<3> &);
 template CellFields cell_fields(const CoupledBody<2> &);
 template CellFields cell_fields(const CoupledBody<3> &);
-template Snapshot snapshot(const CoupledBody<2> &, double);
-template Snapshot snapshot(const CoupledBody<3> &, double);
+template class StateFields<2>;
+template class StateFields<3>;
+template Snapshot snapshot<2>(const CoupledBody<2> &, double, const Components<2> &,
+                              const Components<2> &);
+template Snapshot snapshot<3>(const CoupledBody<3> &, double, const Components<3> &,
+                              const Components<3> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<2> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<3> &);
 template double crack_length(const CoupledBody<2> &, int);

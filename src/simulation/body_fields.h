@@ -7,7 +7,8 @@
 
 namespace ligament::program
 {
-/// Displacement, velocity, stress of all particles; empty without a zone.
+/// Displacement, velocity, stress of all particles; empty without a zone. ConstantFields has the
+/// others.
 template <int dim>
 ParticleFields particle_fields(const CoupledBody<dim> &body);
 
@@ -15,8 +16,25 @@ ParticleFields particle_fields(const CoupledBody<dim> &body);
 template <int dim>
 CellFields cell_fields(const CoupledBody<dim> &body);
 
+/// Completes states of a body by the fields that never change or that follow from others:
+/// equivalent stress, radius, id, material, zone, share of broken faces.
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time);
+class StateFields
+{
+public:
+  void complete(const CoupledBody<dim> &body, BodyState &state);
+
+private:
+  void add_particle_fields(const CoupledBody<dim> &body, BodyState &state);
+  void count_faces(const CoupledBody<dim> &body);
+
+  std::vector<std::uint8_t> n_faces_; // per particle, shared with others; found when first needed
+};
+
+/// A motion of the particles at `time` in s: m and m/s.
+template <int dim>
+Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
+                  const Components<dim> &velocity);
 
 /// All faces broken so far, in the order of breaking.
 template <int dim>

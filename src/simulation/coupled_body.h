@@ -6,6 +6,7 @@
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
 #include "particles/random_packing.h"
+#include "src/output/fields.h"
 #include "src/output/run_record.h"
 #include "src/scene/scene.h"
 
@@ -35,6 +36,7 @@ struct CoupledBody
   double regime_change = 0;              // J, taken by changes of regime so far
   std::int64_t equivalent_particles = 0; // of the pure discrete model
   std::int64_t n_cracked_faces = 0;      // cut by initial cracks
+  std::vector<BrokenBond> cut_faces;     // these, as the output lists broken ones
   std::map<std::string, Figure> figures;
   std::vector<SkippedPart> skipped;
 

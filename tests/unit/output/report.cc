@@ -2,10 +2,11 @@
 #include "src/output/report.h"
 
 #include "core/check.h"
-#include "src/output/canvas.h"
 #include "src/output/compare.h"
+#include "src/output/drawing.h"
 #include "src/output/format.h"
 #include "src/output/verdict.h"
+#include "src/output/vtk.h"
 #include "tests/unit/output/synthetic_run.h"
 #include "tests/unit/output/xml.h"
 
@@ -26,7 +27,7 @@ TEST(Report, HoldsEverythingInOneFile)
   record.skipped = {{"contact search", "nothing <is> broken"}};
   record.pictures = {{"pictures/peak.png", "At the peak"}, {"pictures/gone.png", "Lost"}};
   write_run_record(folder.record(), record);
-  const std::string png = Canvas(8, 8, false).png();
+  const std::string png = Drawing(8, 8, ImageFormat::png).file();
   core::write_file(folder.pictures() + "/peak.png", png);
   core::write_file(folder.resolved_scene(), "{\"title\": \"a & b\"}");
   SyntheticRun().write("report_reference");
@@ -45,6 +46,32 @@ TEST(Report, HoldsEverythingInOneFile)
     EXPECT_NE(text.find(part), std::string::npos) << part;
   EXPECT_EQ(text.find("<script"), std::string::npos);
   EXPECT_EQ(text.find("Lost"), std::string::npos);
+}
+
+// Another field of a run that has ended: its pictures replace those of the run.
+TEST(Report, DrawsOtherFieldsFromTheKeptStates)
+{
+  const RunFolder folder = SyntheticRun().write("redrawn");
+  BodyState state;
+  state.name = "peak";
+  state.particles.reference = {0, 0, 0, 1, 0, 0};
+  state.particles.fields = {make_field("displacement", {0, 0, 0, 1e-3, 0, 0}),
+                            make_field("velocity", {3, 4, 0, 0, 0, 0}),
+                            make_field("radius", {0.5, 0.5}), make_field("global_id", {0, 1})};
+  FieldSeries(folder, 2).write(state);
+  RunRecord record = read_run_record(folder.record());
+  record.pictures = {{"pictures/peak.png", "of the run"}};
+  EXPECT_THROW(write_report("redrawn", {"velocity"}), core::InputError);
+  record.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
+  record.magnification = 50;
+  write_run_record(folder.record(), record);
+  const std::string text = core::read_file(write_report("redrawn", {"velocity", "velocity_x"}));
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  EXPECT_NE(text.find("Velocity near the peak load, 1.00 ms"), std::string::npos);
+  EXPECT_NE(text.find("Velocity x near the peak load, 1.00 ms"), std::string::npos);
+  EXPECT_EQ(text.find("of the run<"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.pictures() + "/peak_velocity.png"));
+  EXPECT_THROW(write_report("redrawn", {"veloctiy"}), core::InputError);
 }
 
 TEST(Report, NeedsNoMoreThanTheRecord)

@@ -3,6 +3,9 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "src/output/broken_bonds.h"
+#include "src/output/run_pictures.h"
+#include "src/output/vtk_reader.h"
 #include "tests/unit/output/xml.h"
 
 #include <gtest/gtest.h>
@@ -217,12 +220,15 @@ TEST(Vtk, SeriesListsAllPartsOfAllTimes)
   std::filesystem::remove_all("series");
   const RunFolder folder{"series"};
   folder.create();
-  CellFields cell;
-  cell.reference = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-  cell.connectivity = {0, 1, 2, 3};
   FieldSeries series(folder, 2);
-  series.write(0, some_particles(2), cell, {});
-  series.write(0.5, some_particles(2), cell, {{0, 1, 0.25, {0, 0, 0}, {1, 0, 0}, 1, 0}});
+  BodyState state;
+  state.particles = some_particles(2);
+  state.cells.reference = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  state.cells.connectivity = {0, 1, 2, 3};
+  series.write(state);
+  state.time = 0.5;
+  state.bonds = {{0, 1, 0.25, {0, 0, 0}, {1, 0, 0}, 1, 0}};
+  series.write(state);
   int n = 0;
   for (const auto &element : tests::parse_xml(core::read_file(folder.pvd())))
     if (element.name == "DataSet") {
@@ -233,6 +239,83 @@ TEST(Vtk, SeriesListsAllPartsOfAllTimes)
       ++n;
     }
   EXPECT_EQ(n, 6); // three parts at two times
+}
+
+// States that a run kept come after the others but stand at their times, once.
+TEST(Vtk, NamedStatesAreSortedIn)
+{
+  std::filesystem::remove_all("named");
+  const RunFolder folder{"named"};
+  folder.create();
+  FieldSeries series(folder, 2);
+  BodyState state;
+  state.particles = some_particles(2);
+  for (const double time : {0., 1., 2.}) {
+    state.time = time;
+    series.write(state);
+  }
+  state.name = "peak";
+  state.time = 0.5;
+  series.write(state);
+  state.name = "end";
+  state.time = 2;
+  series.write(state);
+  std::vector<double> times;
+  std::string last;
+  for (const auto &element : tests::parse_xml(core::read_file(folder.pvd())))
+    if (element.name == "DataSet" && element.attributes.at("part") == "0") {
+      times.push_back(std::stod(element.attributes.at("timestep")));
+      last = element.attributes.at("file");
+    }
+  EXPECT_EQ(times, (std::vector<double>{0, 0.5, 1, 2}));
+  EXPECT_EQ(last, "fields/particles_end.vtp");
+}
+
+// What a run kept can be drawn later: the same fields, and the faces broken by then.
+TEST(Vtk, StatesAreReadBack)
+{
+  std::filesystem::remove_all("kept");
+  const RunFolder folder{"kept"};
+  folder.create();
+  BodyState state;
+  state.name = "peak";
+  state.time = 0.5;
+  state.particles = some_particles(20000);
+  state.particles.fields[0].storage = Field::Storage::float64;
+  for (const int dimension : {2, 3}) {
+    state.cells.dimension = dimension;
+    const int n = state.cells.nodes_per_cell();
+    state.cells.reference.assign(3 * n, 0.25);
+    state.cells.connectivity.clear();
+    for (int i = 0; i < n; ++i)
+      state.cells.connectivity.push_back(n - 1 - i);
+    state.cells.cell_fields = {make_field("zone", {4})};
+    FieldSeries(folder, dimension).write(state);
+    write_broken_bonds(
+        folder.broken_bonds(),
+        {{0, 1, 0.25, {0, 0, 0}, {1, 0, 0}, 1, 0}, {1, 2, 0.75, {0, 0, 0}, {1, 0, 0}, 1, 0}},
+        dimension);
+    const StateFiles files = FieldSeries::files(state, "peak");
+    const BodyState back =
+        read_state(folder, {"peak", "near the peak load", 0.5, files.particles, files.cells});
+    EXPECT_EQ(back.particles.reference, state.particles.reference);
+    for (const Field &field : state.particles.fields)
+      EXPECT_EQ(find_field(back.particles.fields, field.name)->values, field.values);
+    EXPECT_EQ(back.cells.dimension, dimension);
+    EXPECT_EQ(back.cells.connectivity, state.cells.connectivity);
+    EXPECT_EQ(find_field(back.cells.cell_fields, "zone")->values, (std::vector<double>{4}));
+    EXPECT_EQ(back.bonds.size(), 1u);
+  }
+  const std::string file = core::read_file("kept/fields/particles_peak.vtp");
+  for (const std::size_t length : {std::size_t(10), file.size() / 2, file.size() - 20}) {
+    core::write_file("kept/short.vtp", file.substr(0, length));
+    EXPECT_THROW(read_particles_vtp("kept/short.vtp"), core::InputError);
+  }
+  std::string damaged = file;
+  damaged[file.find("format=\"binary\">\n") + 100] ^= 1;
+  core::write_file("kept/damaged.vtp", damaged);
+  EXPECT_THROW(read_particles_vtp("kept/damaged.vtp"), core::InputError);
+  EXPECT_THROW(read_particles_vtp("kept/absent.vtp"), core::InputError);
 }
 
 TEST(Vtk, FullDiskAndWrongSizesAreNoticed)
