@@ -60,8 +60,7 @@ double tip_over_theory(const Cantilever &c)
   return sum / n / (bending + sheared);
 }
 
-/// 0.97 to 1.02 must hold. The theory does not know the clamped end: exact is 0.996 (nu 0.3) to
-/// 0.985 (0.49).
+/// 0.97 to 1.02 must hold. The theory does not know the clamped end, which is a little stiffer.
 std::vector<Result> measure(const std::string &name, const std::vector<Cantilever> &beams)
 {
   std::vector<Result> results;
