@@ -37,6 +37,22 @@ Vector<3> spin_times(const Spin<3> &w, const Vector<3> &a)
   return w.cross(a);
 }
 
+/// The next increment of the slip counts from here.
+template <int dim, typename State>
+void remember(Contact<dim> &c, const State &s, const particles::Particles<dim> &p)
+{
+  c.known = true;
+  c.last_between = s.between;
+  c.last_lever = s.lever;
+  c.last_normal = s.normal;
+  c.last_turn_i = Turn<dim>::of(p, c.face.i);
+  c.last_turn_j = Turn<dim>::of(p, c.face.j);
+  if constexpr (dim == 2) {
+    c.last_angle_i = p.rotation[0][c.face.i];
+    c.last_angle_j = p.rotation[0][c.face.j];
+  }
+}
+
 /// How a contact's distance will move in the next step, without and with a force along its normal.
 struct Outlook
 {
@@ -148,16 +164,7 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
     // Work of the mean force less the change of stored energy.
     frictional_work_ += 0.5 * s.stiffness * (carried + c.slip).dot(slid);
   }
-  c.known = true;
-  c.last_between = s.between;
-  c.last_lever = s.lever;
-  c.last_normal = s.normal;
-  c.last_turn_i = Turn<dim>::of(p, c.face.i);
-  c.last_turn_j = Turn<dim>::of(p, c.face.j);
-  if constexpr (dim == 2) {
-    c.last_angle_i = p.rotation[0][c.face.i];
-    c.last_angle_j = p.rotation[0][c.face.j];
-  }
+  remember(c, s, p);
 }
 
 template <int dim>
@@ -232,14 +239,9 @@ double Contacts<dim>::energy(const Particles &p) const
 template <int dim>
 void Contacts<dim>::add_moments(const Particles &p, Components<n_strains<dim>> &moments) const
 {
-  for (const auto &c : contacts_) {
-    const State s = state(c, p);
-    if (s.overlap <= 0)
-      continue;
-    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal);
-    ligament::add(moments, c.face.i, symmetric_product<dim>(s.lever, f));
-    ligament::add(moments, c.face.j, symmetric_product<dim>(s.between - s.lever, f));
-  }
+  for_each_moment(p, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
+    ligament::add(moments, i, symmetric_product<dim>(a, f));
+  });
 }
 
 template <int dim>
@@ -281,6 +283,8 @@ template <int dim>
 void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
 {
   Contact<dim> &c = contacts_[k];
+  if (c.known)
+    update_slip(c, state(c, p), p);
   const double before = compression_energy(c, p);
   if (j < 0) {
     frictional_work_ += before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
@@ -291,8 +295,10 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
   c.face.j = j;
   c.face.lever_j = get(p.reference, c.face.i) + c.face.lever_i - c.passed - get(p.reference, j);
   c.from_face = false;
-  c.known = false;
-  c.last_overlap = state(c, p).overlap;
+  const State s = state(c, p);
+  if (c.known)
+    remember(c, s, p);
+  c.last_overlap = s.overlap;
   frictional_work_ += before - compression_energy(c, p);
 }
 

@@ -71,6 +71,10 @@ public:
   /// Adds S a (x) t (N m, Voigt order) of the present normal and frictional forces.
   void add_moments(const Particles &particles, Components<n_strains<dim>> &moments) const;
 
+  /// visit(i, a, f): lever (m) and force (N) on particle i of every contact that is closed.
+  template <typename Visit>
+  void for_each_moment(const Particles &particles, Visit &&visit) const;
+
   const std::vector<Contact<dim>> &all() const { return contacts_; }
 
   /// Whether a pair of faces slid so far along each other that it may meet others.
@@ -104,4 +108,18 @@ private:
   std::vector<Contact<dim>> contacts_;
   double frictional_work_ = 0, step_error_ = 0;
 };
+
+template <int dim>
+template <typename Visit>
+void Contacts<dim>::for_each_moment(const Particles &p, Visit &&visit) const
+{
+  for (const auto &c : contacts_) {
+    const State s = state(c, p);
+    if (s.overlap <= 0)
+      continue;
+    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal);
+    visit(c.face.i, s.lever, f);
+    visit(c.face.j, Vector<dim>(s.lever - s.between), Vector<dim>(-f));
+  }
+}
 } // namespace ligament::dem

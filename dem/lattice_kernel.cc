@@ -113,9 +113,9 @@ void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
 
 template <int dim>
 void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
-                                const std::vector<RowSegment> &segments, double strength,
-                                const TractionScreen &screen, RowWindow &window,
-                                std::vector<RowRange> &exceeded,
+                                const std::vector<RowSegment> &segments,
+                                const BreakScreen &breaking, const TractionScreen &screen,
+                                RowWindow &window, std::vector<RowRange> &exceeded,
                                 const particles::AwakeRanges *ranges) const
 {
   exceeded.clear();
@@ -125,12 +125,13 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   s.with_forces = true;
   if (ranges)
     s.ranges = ranges;
-  const auto squared = [&](double traction) {
-    const double force = traction * area_;
-    return traction > 0 ? force * force : std::numeric_limits<double>::infinity();
+  const auto force = [&](double traction) {
+    return traction > 0 ? traction * area_ : std::numeric_limits<double>::infinity();
   };
-  s.constants.strength2 = squared(strength);
-  s.constants.limit2 = std::min(s.constants.strength2, squared(screen.traction));
+  const auto squared = [](double value) { return value * value; };
+  s.constants.strength = force(breaking.strength);
+  s.constants.tangent = breaking.tangent;
+  s.constants.limit2 = squared(std::min(force(breaking.least_traction()), force(screen.traction)));
   s.screen = screen;
   s.exceeded = &exceeded;
   sweep_rows(s);

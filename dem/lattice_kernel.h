@@ -5,6 +5,8 @@
 #include "dem/bond_network.h"
 #include "particles/rest_blocks.h"
 
+#include <cmath>
+
 namespace ligament::dem
 {
 /// The streams that the kernel reads and writes, one array per component.
@@ -30,13 +32,14 @@ struct LatticeConstants
 {
   int n_directions = 0;
   std::array<std::array<double, dim>, max_directions> normal{};
-  double half = 0;      // q = r/2, m
-  double shear = 0;     // 2G S/r, N/m
-  double area_r = 0;    // S/r, m
-  double bending = 0;   // k_b, N m
-  double twist = 0;     // k_t - k_b, N m
-  double strength2 = 0; // (strength S)^2, N^2; infinite when nothing breaks
-  double limit2 = 0;    // the same of what is looked for first: strength or screen
+  double half = 0;     // q = r/2, m
+  double shear = 0;    // 2G S/r, N/m
+  double area_r = 0;   // S/r, m
+  double bending = 0;  // k_b, N m
+  double twist = 0;    // k_t - k_b, N m
+  double strength = 0; // times S, N: of BreakScreen; infinite when nothing breaks
+  double tangent = 0;  // of BreakScreen
+  double limit2 = 0;   // force^2 on a face, N^2: of what is looked for first
 };
 
 /// Particles that each stage of the sweep takes at once.
@@ -56,6 +59,17 @@ struct TractionScreen
 
   void mark(int i) const { marks[i / block] = 1; }
   static constexpr int block = 256;
+};
+
+/// Bonds that could break: those under sigma + tangent |tau| >= strength with sigma > 0, the normal
+/// and the tangential traction of the face.
+struct BreakScreen
+{
+  double strength = 0; // Pa; 0: nothing breaks
+  double tangent = 0;
+
+  /// No traction below this one, in any direction, reaches the strength.
+  double least_traction() const { return strength / std::sqrt(1 + tangent * tangent); }
 };
 
 /// State and intermediate results of the rows at work, one stream per number; it slides along the
@@ -142,11 +156,10 @@ public:
 
   /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
   /// there is no lattice. With `ranges` only of the particles that are stepped, and the pressures
-  /// that they see; all others must be at rest, or held. With a strength above 0 (Pa), replaces
-  /// `exceeded` by the ranges of particles that have a forward bond under at least that tension;
-  /// ranges don't overlap.
+  /// that they see; all others must be at rest, or held. Replaces `exceeded` by ranges of particles
+  /// among which are those with a forward bond that could break; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-              double strength, const TractionScreen &screen, RowWindow &window,
+              const BreakScreen &breaking, const TractionScreen &screen, RowWindow &window,
               std::vector<RowRange> &exceeded,
               const particles::AwakeRanges *ranges = nullptr) const;
 

@@ -93,8 +93,8 @@ void add_parts(const BodyState &state, Picture &picture)
   }
   if (!materials)
     return;
-  auto inclusions = particles_where(state.particles,
-                                    [&](std::size_t i) { return materials->values[i] != 0; });
+  auto inclusions =
+      particles_where(state.particles, [&](std::size_t i) { return materials->values[i] != 0; });
   inclusions.color = inclusion_color;
   if (inclusions.radii.empty())
     return;
@@ -121,15 +121,15 @@ struct Side
                            : lower[c] + share[tangent++] * (upper[c] - lower[c]);
     return point;
   }
-  /// Points spread over the side, about `density` along the specimen's longest edge.
+  /// Points spread over the side, about `density` along the specimen's longest edge, at least three
+  /// along each.
   std::vector<std::array<double, 3>> places(int density, double outside = 0) const
   {
     std::array<int, 2> n = {1, 1};
     int tangent = 0;
     for (int c = 0; c < dim; ++c)
       if (c != axis)
-        n[tangent++] =
-            std::max(1, int(std::lround(density * (upper[c] - lower[c]) / size())));
+        n[tangent++] = std::max(3, int(std::lround(density * (upper[c] - lower[c]) / size())));
     std::vector<std::array<double, 3>> all;
     for (int a = 0; a < n[0]; ++a)
       for (int b = 0; b < n[1]; ++b)
@@ -182,9 +182,12 @@ std::string component_text(const PartialPoint &value, const std::string &unit, b
 {
   std::string text;
   for (int c = 0; c < 3; ++c)
-    if (value[c] && (*value[c] == 0) == zero)
-      text += (text.empty() ? " " : ", ") + std::string(1, "xyz"[c]) +
-              (zero ? "" : " " + quantity(*value[c], unit));
+    if (value[c] && (*value[c] == 0) == zero) {
+      const Prefix prefix = unit_prefix(std::abs(*value[c]), unit);
+      text += fmt::format("{}{}", text.empty() ? " " : ", ", "xyz"[c]);
+      if (!zero)
+        text += fmt::format(" {:.3g} {}{}", *value[c] / prefix.factor, prefix.symbol, unit);
+    }
   return text;
 }
 
@@ -206,11 +209,12 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
   if (direction != std::array<double, 3>{}) {
     for (const auto &place : side.places(dim == 2 ? 12 : 6))
       picture.arrows.push_back({place, direction, outward < 0, color});
-    picture.legend.push_back({load.boundary + ": " + load.kind +
-                                  component_text(load.value, unit, false),
-                              color, Mark::arrow});
+    picture.legend.push_back(
+        {load.boundary + ": " + load.kind + component_text(load.value, unit, false), color,
+         Mark::arrow});
   }
-  if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction) {
+  if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction)
+  {
     picture.segments.push_back(hatching(side));
     picture.legend.push_back({load.boundary + ": held in" + held, held_color, Mark::line});
   }

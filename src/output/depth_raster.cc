@@ -99,13 +99,12 @@ void DepthRaster::sphere(const Vertex &centre, double radius, const Palette &pal
 {
   const double r = fine * radius;
   const Color color = pick(palette, centre.t);
-  for_each_in_disc(fine * centre.x, fine * centre.y, r,
-                   [&](int pixel, double dx, double dy, double d2) {
-                     const double height = std::sqrt(r * r - d2);
-                     const double light = (-0.4 * dx - 0.5 * dy + 0.77 * height) / r;
-                     put(pixel, float(centre.z + height / fine), color,
-                         0.62 + 0.42 * std::max(light, 0.));
-                   });
+  for_each_in_disc(
+      fine * centre.x, fine * centre.y, r, [&](int pixel, double dx, double dy, double d2) {
+        const double height = std::sqrt(r * r - d2);
+        const double light = (-0.4 * dx - 0.5 * dy + 0.77 * height) / r;
+        put(pixel, float(centre.z + height / fine), color, 0.62 + 0.42 * std::max(light, 0.));
+      });
 }
 
 void DepthRaster::cell(const Vertex &centre, double radius, double reach, const Palette &palette)

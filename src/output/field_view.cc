@@ -160,10 +160,9 @@ public:
       std::array<double, 3> centre;
       const auto particle = particle_.find(id);
       for (int c = 0; c < 3; ++c)
-        centre[c] =
-            bond.centroid[c] + (u_ && particle != particle_.end()
-                                    ? magnify_ * u_->values[3 * particle->second + c]
-                                    : 0);
+        centre[c] = bond.centroid[c] + (u_ && particle != particle_.end()
+                                            ? magnify_ * u_->values[3 * particle->second + c]
+                                            : 0);
       add_outline(bond, centre);
     }
   }
@@ -178,9 +177,8 @@ private:
     static constexpr double along_t[] = {-1, 1, 1, -1}, along_s[] = {-1, -1, 1, 1};
     const auto corner = [&, &t = t, &s = s](int k) {
       for (int c = 0; c < 3; ++c)
-        lines_.points.push_back(centre[c] +
-                                half * (along_t[k % 4] * t[c] +
-                                        (dimension_ == 3 ? along_s[k % 4] * s[c] : 0)));
+        lines_.points.push_back(centre[c] + half * (along_t[k % 4] * t[c] +
+                                                    (dimension_ == 3 ? along_s[k % 4] * s[c] : 0)));
     };
     for (int k = 0; k < (dimension_ == 2 ? 1 : 4); ++k) {
       corner(k);

@@ -46,8 +46,7 @@ std::string quantity(double value, const std::string &unit)
 
 Prefix unit_prefix(double magnitude, const std::string &unit)
 {
-  const bool plain =
-      unit.empty() || unit == "1" || unit.find_first_of("^* ") != std::string::npos;
+  const bool plain = unit.empty() || unit == "1" || unit.find_first_of("^* ") != std::string::npos;
   return plain ? Prefix{1, ""} : si_prefix(magnitude);
 }
 

@@ -26,8 +26,8 @@ constexpr double smallest_particle = 0.6; // radius
 constexpr double axes_height = 64;        // 3D, of the small axes below the body
 
 /// Particles are filled as far as this from their centres, in radii: the corner of a square cell
-/// lies at 1.41, of a hexagonal one at 1.15.
-constexpr double reach = 1.35;
+/// lies at 1.41, of a hexagonal one at 1.15; those of random packings reach farther now and then.
+constexpr double reach = 1.5;
 
 const Drawing::Font text_font = {text_size};
 const Drawing::Font title_font = {title_size, ink, Drawing::Align::left, true};
@@ -45,8 +45,7 @@ public:
     if (has_bar_)
       width_ = std::max(bar_width + 90, Drawing::text_width(title_, text_font));
     for (const auto &entry : picture.legend)
-      width_ = std::max(width_,
-                        mark_width + mark_gap + Drawing::text_width(entry.text, text_font));
+      width_ = std::max(width_, mark_width + mark_gap + Drawing::text_width(entry.text, text_font));
   }
 
   double width() const { return width_ > 0 ? width_ + column_gap : 0; }
@@ -89,8 +88,9 @@ private:
     if (above)
       drawing.polygon({{x, top}, {middle, top - tip}, {x + bar_width, top}}, colors[n - 1]);
     if (below)
-      drawing.polygon({{x, top + length}, {middle, top + length + tip}, {x + bar_width, top + length}},
-                      colors[0]);
+      drawing.polygon(
+          {{x, top + length}, {middle, top + length + tip}, {x + bar_width, top + length}},
+          colors[0]);
     const double lower = range_[0] / prefix_.factor, upper = range_[1] / prefix_.factor;
     const auto ticks = nice_ticks(lower, upper, 5);
     for (const double tick : ticks) {
@@ -98,8 +98,8 @@ private:
       if (y < top - 1 || y > top + length + 1)
         continue;
       drawing.line({x + bar_width, y}, {x + bar_width + 6, y}, {ink, 1.5});
-      drawing.text({x + bar_width + 11, y + 0.36 * text_size},
-                   tick_text(tick, ticks[1] - ticks[0]), text_font);
+      drawing.text({x + bar_width + 11, y + 0.36 * text_size}, tick_text(tick, ticks[1] - ticks[0]),
+                   text_font);
     }
   }
 
@@ -167,7 +167,8 @@ struct Layout
     for (const auto &note : picture.notes)
       right = std::max(right, margin + Drawing::text_width(note, text_font));
     width = int(std::ceil(std::max(right, 300.) + margin));
-    const double notes_end = footer() + 34 + (picture.dimension == 3 ? axes_height : 0) + double(picture.notes.size()) * line_height;
+    const double notes_end = footer() + 34 + (picture.dimension == 3 ? axes_height : 0) +
+                             double(picture.notes.size()) * line_height;
     height = int(std::ceil(std::max(notes_end, top + column.height(project.height())) + 6));
   }
 
@@ -255,8 +256,7 @@ private:
   {
     const Palette colors = palette(layer.values, layer.color);
     for (std::size_t i = 0; i < layer.radii.size(); ++i) {
-      const Vertex centre =
-          layout_.project(&layer.positions[3 * i], place(layer.values, i));
+      const Vertex centre = layout_.project(&layer.positions[3 * i], place(layer.values, i));
       const double radius =
           std::max(layer.radii[i] * layout_.project.pixels_per_metre(), smallest_particle);
       if (picture_.dimension == 2)
@@ -339,8 +339,8 @@ private:
   void scale()
   {
     const double per_metre = layout_.project.pixels_per_metre();
-    const double wanted = picture_.dimension == 2 ? std::max(0.2 * layout_.project.width(), 40.)
-                                                  : 0.4 * axes_height;
+    const double wanted =
+        picture_.dimension == 2 ? std::max(0.2 * layout_.project.width(), 40.) : 0.4 * axes_height;
     const double length = nice_ticks(0, wanted / per_metre, 1)[1], pixels = length * per_metre;
     const Prefix prefix = si_prefix(length);
     const std::string text = fmt::format("{:g} {}m", length / prefix.factor, prefix.symbol);

@@ -93,7 +93,7 @@ struct Picture
   std::optional<ValueRange> range;
   std::vector<LegendEntry> legend;
   std::vector<std::string> notes; // lines below the picture
-  int width = 1400; // pixels at most for the body; the height follows from its shape
+  int width = 1400;               // pixels at most for the body; the height follows from its shape
   /// 3D: direction from which the specimen is seen.
   std::array<double, 3> view = {0.5, 0.35, 1};
 };

@@ -242,8 +242,7 @@ StateFiles FieldSeries::files(const BodyState &state, const std::string &name)
 
 void FieldSeries::write(const BodyState &state)
 {
-  const std::string name =
-      state.name.empty() ? fmt::format("{:04}", n_numbered_++) : state.name;
+  const std::string name = state.name.empty() ? fmt::format("{:04}", n_numbered_++) : state.name;
   const StateFiles files = FieldSeries::files(state, name);
   if (!files.particles.empty()) {
     write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
@@ -264,8 +263,8 @@ void FieldSeries::add(double time, int part, const std::string &file)
 {
   const auto same = [&](const Entry &e) { return e.time == time && e.part == part; };
   entries_.erase(std::remove_if(entries_.begin(), entries_.end(), same), entries_.end());
-  const auto later = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const Entry &e) { return e.time > time; });
+  const auto later =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry &e) { return e.time > time; });
   entries_.insert(later, {time, part, file});
 }
 

@@ -102,7 +102,8 @@ private:
     const auto encoded = [](std::size_t n) { return (n + 2) / 3 * 4; };
     const std::size_t start_size = 3 * sizeof(std::uint64_t);
     std::uint64_t start[3]; // number of blocks, size of a block, of the last one or 0
-    const std::string first = from_base64(std::string_view(text_).substr(begin, encoded(start_size)));
+    const std::string first =
+        from_base64(std::string_view(text_).substr(begin, encoded(start_size)));
     good(first.size() >= start_size);
     std::memcpy(start, first.data(), start_size);
     good(start[0] <= text_.size() && start[1] <= (1u << 30) && start[2] <= start[1]);

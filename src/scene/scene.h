@@ -48,7 +48,7 @@ struct Specimen
 
 struct FractureParameters
 {
-  std::string criterion = "none";  // none, maximum_tension
+  std::string criterion = "none";  // none, maximum_tension, face_tension
   std::optional<double> strength;  // Pa
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
 };
@@ -168,9 +168,9 @@ struct PictureParameters
 
 struct OutputParameters
 {
-  double field_interval = infinity; // s; infinite: never
-  double history_interval = 0;      // s; 0: duration/2000
-  double progress_interval = 2;     // s of wall time
+  double field_interval = infinity;        // s; infinite: never
+  double history_interval = 0;             // s; 0: duration/2000
+  double progress_interval = 2;            // s of wall time
   std::vector<PictureParameters> pictures; // empty: the stress along the load
   double magnification = 0;                // of displacements in pictures; 0: one that suits
 };

@@ -49,6 +49,7 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
       }
   if (load_ < 0)
     return;
+  is_answer_ = body.loads[load_].kind != core::BoundaryLoad<dim>::Kind::traction;
   axis_ = body.loads[load_].boundary / 2;
   sign_ = body.loads[load_].boundary % 2 ? 1 : -1;
   const Vector<dim> size = body.upper - body.lower;

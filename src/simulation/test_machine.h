@@ -23,6 +23,8 @@ public:
   Reading read(const CoupledBody<dim> &body, double time) const;
 
   bool has_load() const { return load_ >= 0; }
+  /// The load answers a prescribed motion: it falls when nothing carries it any more.
+  bool is_answer() const { return is_answer_; }
   /// Component of the measured force, 0 for x.
   int component() const { return component_; }
   /// Axis of the loaded side.
@@ -33,6 +35,7 @@ private:
 
   int load_ = -1; // index of the load that is read
   int component_ = 0, axis_ = 0;
+  bool is_answer_ = false;
   double sign_ = 1; // tension on the upper side is positive
   double area_ = 1, size_ = 1;
 };

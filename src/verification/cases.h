@@ -56,11 +56,14 @@ std::vector<Case> wave_cases();
 std::vector<Case> scheme_cases();
 std::vector<Case> wave_bench_cases();
 std::vector<Case> absorbing_cases();
+std::vector<Case> absorbing_steady_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
+std::vector<Case> cantilever_cases();
 std::vector<Case> stability_cases();
 std::vector<Case> contrast_cases();
 std::vector<Case> compression_cases();
+std::vector<Case> toughness_cases();
 std::vector<Case> random_scene_cases();
 
 /// All cases in the order in which they are printed.

@@ -19,7 +19,7 @@ int overlap_breaks(const RandomScene &scene, const SceneRuns &runs)
 {
   const auto input = parse_scene(scene.json.dump(), "scene");
   const auto zone = zone_shape<3>(*input.scene);
-  const bool stopped = runs.coupled.record.status == "guard";
+  const bool stopped = runs.coupled.record.status == "stopped";
   const double end = runs.coupled.record.simulated_time - (stopped ? 1.5 * runs.far_step : 0);
   const double depth = runs.overlap - 0.5 * runs.coupled.record.spacing;
   return int(std::count_if(runs.coupled.broken.begin(), runs.coupled.broken.end(),
@@ -130,7 +130,7 @@ double verdict_error(const SceneRuns &runs, int n_overlap_breaks)
   const bool sound = r.status == "done" && r.energy_residual && *r.energy_residual < 1e-2 &&
                      n_overlap_breaks == 0 && runs.coupled.n_warnings == 0;
   const bool says_stop = r.verdict.find("stopped") != std::string::npos;
-  return calm != sound || says_stop != (r.status == "guard" || r.status == "failed");
+  return calm != sound || says_stop != (r.status == "stopped");
 }
 
 /// K at the peak of the load over K_Ic.

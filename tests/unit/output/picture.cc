@@ -262,7 +262,8 @@ TEST(ShownField, EveryWordLeadsToAFieldAndNoOther)
     for (const std::string &word : shown_field_words(dimension)) {
       const ShownField shown = shown_field(word, dimension);
       EXPECT_NO_THROW(make_field(shown.field, {})) << word;
-      EXPECT_EQ(shown.component < 0 ? shown.field : shown.field + "_", word.substr(0, shown.field.size() + (shown.component >= 0)));
+      EXPECT_EQ(shown.component < 0 ? shown.field : shown.field + "_",
+                word.substr(0, shown.field.size() + (shown.component >= 0)));
     }
   EXPECT_EQ(shown_field("stress_xz", 3).component, 5);
   EXPECT_EQ(shown_field("velocity", 2).component, -1);

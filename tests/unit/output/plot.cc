@@ -73,7 +73,7 @@ TEST(Plot, StraightLineStaysStraight)
   const auto &first = points.front(), &last = points.back();
   const double slope = (last[1] - first[1]) / (last[0] - first[0]);
   EXPECT_GT(last[0], first[0] + plot.width / 2);
-  EXPECT_LT(slope, 0); // y points downwards on the screen
+  EXPECT_LT(slope, 0);         // y points downwards on the screen
   for (const auto &p : points) // an eighth of a pixel
     EXPECT_NEAR(p[1], first[1] + slope * (p[0] - first[0]), 0.13);
   EXPECT_NE(text.find("stress (MPa)"), std::string::npos);

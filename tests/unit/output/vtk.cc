@@ -291,10 +291,10 @@ TEST(Vtk, StatesAreReadBack)
       state.cells.connectivity.push_back(n - 1 - i);
     state.cells.cell_fields = {make_field("zone", {4})};
     FieldSeries(folder, dimension).write(state);
-    write_broken_bonds(folder.broken_bonds(),
-                       {{0, 1, 0.25, {0, 0, 0}, {1, 0, 0}, 1, 0},
-                        {1, 2, 0.75, {0, 0, 0}, {1, 0, 0}, 1, 0}},
-                       dimension);
+    write_broken_bonds(
+        folder.broken_bonds(),
+        {{0, 1, 0.25, {0, 0, 0}, {1, 0, 0}, 1, 0}, {1, 2, 0.75, {0, 0, 0}, {1, 0, 0}, 1, 0}},
+        dimension);
     const StateFiles files = FieldSeries::files(state, "peak");
     const BodyState back =
         read_state(folder, {"peak", "near the peak load", 0.5, files.particles, files.cells});

@@ -2,6 +2,8 @@
 #include "src/simulation/test_machine.h"
 #include "tests/support/small_plate.h"
 
+#include <cmath>
+
 using namespace ligament;
 using namespace ligament::program;
 using namespace ligament::tests;
@@ -72,6 +74,16 @@ TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
       EXPECT_NEAR(mean_displacement(small.body, 0, component), -12 * gradient(component, 0), 1e-12);
     }
   }
+}
+
+// Particles nearer than d/4 to a side are left out: the outermost row may lie more than d inside.
+TEST(TestMachine, FindsTheSideBeyondARowThatWasLeftOut)
+{
+  const double row = std::sqrt(0.75), half = 69.5 * row + 0.24;
+  SmallBody small(small_scene(
+      {"/far_field=none", "/specimen/size=[24, " + std::to_string(2 * half) + "]", pulled_ends}));
+  small.deform(uniaxial(1e-4));
+  EXPECT_NEAR(mean_displacement(small.body, 3, 1) / (1e-4 * half), 1, 1e-6);
 }
 
 TEST(TestMachine, FollowsTheFirstLoadAndItsLargestComponent)

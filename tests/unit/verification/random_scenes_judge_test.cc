@@ -177,7 +177,7 @@ TEST(Judgement, NothingBreaksUnderCompression)
   s.runs.coupled.broken = s.runs.mirror.broken = s.runs.half_step.broken = s.runs.discrete.broken;
   EXPECT_EQ(s.failing(), (Names{"broken_in_compression", "broken_in_compression_discrete"}));
   s = Sound(true);
-  s.runs.coupled.record.status = "guard";
+  s.runs.coupled.record.status = "stopped";
   s.runs.coupled.record.verdict = "stopped: tension in the overlap";
   EXPECT_EQ(s.failing(), Names{"stopped_in_compression"});
 }
@@ -189,7 +189,7 @@ TEST(Judgement, BreaksInTheOverlapAreSeen)
   s.runs.coupled.broken.push_back(face(0.7, 0, edge - 0.5 * s.runs.overlap));
   EXPECT_EQ(s.failing(), (Names{"unseen_overlap_breaks", "verdict"}));
   auto &record = s.runs.coupled.record;
-  record.status = "guard";
+  record.status = "stopped";
   record.verdict = "stopped: tension in the overlap";
   EXPECT_EQ(s.failing(), Names{"unseen_overlap_breaks"});
   record.simulated_time = 0.7; // in the very step
