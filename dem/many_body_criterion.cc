@@ -171,9 +171,17 @@ std::vector<Strain<dim>> ManyBodyForce<dim>::stresses_of(const std::vector<int> 
                                                          const std::vector<double> &pressure) const
 {
   std::vector<Strain<dim>> stress(few.size(), Strain<dim>::Zero());
+  // Most neighbours are among the few: a turn takes longer than the rest of a bond.
+  std::vector<Turn<dim>> turns;
+  for (const int i : few)
+    turns.push_back(Turn<dim>::of(p, i));
+  const auto turn_of = [&](int i) {
+    const auto place = std::lower_bound(few.begin(), few.end(), i);
+    return place != few.end() && *place == i ? turns[place - few.begin()] : Turn<dim>::of(p, i);
+  };
   for (std::size_t k = 0; k < few.size(); ++k)
     bonds_.for_each_bond_of(few[k], [&](BondId, const Bond<dim> &b) {
-      const BondMotion<dim> m = motion(b, p);
+      const BondMotion<dim> m = motion(b, p, turn_of(b.i), turn_of(b.j));
       const Vector<dim> f = bond_force(b, m, pressure);
       stress[k] += b.i == few[k] ? symmetric_product<dim>(m.a_i, f)
                                  : symmetric_product<dim>(m.a_j, Vector<dim>(-f));
