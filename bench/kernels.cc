@@ -89,14 +89,18 @@ double peak_bytes()
   return 1024. * double(usage.ru_maxrss);
 }
 
+/// A box of this size in m around the origin.
 template <int dim>
-particles::Packing<dim> make_block(particles::LatticeKind kind, double spacing)
+particles::Packing<dim> make_block(particles::LatticeKind kind, double spacing,
+                                   const Vector<dim> &size = Vector<dim>::Ones(),
+                                   const Spin<dim> &orientation = Spin<dim>::Zero())
 {
   particles::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.spacing = spacing;
-  lattice.lower.setConstant(-0.5);
-  lattice.upper.setConstant(0.5);
+  lattice.orientation = orientation;
+  lattice.lower = -size / 2;
+  lattice.upper = size / 2;
   return particles::make_lattice_packing<dim>(lattice);
 }
 
@@ -218,6 +222,75 @@ void measure(const std::string &name, const particles::Packing<dim> &packing, bo
   hwy::SetSupportedTargetsForTest(0);
 }
 
+/// Whole steps of boxes of about as many particles, in turns: what a shape costs. The first box,
+/// all of whose sides are alike, is the reference.
+template <int dim>
+void measure_shapes(const std::string &name, particles::LatticeKind kind,
+                    const std::vector<std::pair<std::string, Vector<dim>>> &shapes,
+                    const Spin<dim> &orientation = Spin<dim>::Zero())
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  struct Body
+  {
+    std::unique_ptr<particles::ParticleSolver<dim>> solver;
+    std::vector<double> rates;
+  };
+  std::vector<Body> bodies;
+  for (const auto &[shape, size] : shapes) {
+    const auto packing = make_block<dim>(kind, 1., size, orientation);
+    dem::FractureLaw fracture{dem::FractureLaw::Criterion::maximum_tension, 1e3};
+    bodies.push_back({std::make_unique<particles::ParticleSolver<dim>>(
+                          move(packing),
+                          std::make_unique<dem::ManyBodyForce<dim>>(
+                              packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture)),
+                      {}});
+  }
+  constexpr int turns = 5;
+  for (int turn = 0; turn < turns; ++turn)
+    for (Body &body : bodies) {
+      auto &solver = *body.solver;
+      body.rates.push_back(1e-6 * solver.state.size() * bench::rate([&] {
+                             solver.drift(1e-4);
+                             solver.compute_forces(0);
+                             solver.kick(1e-4);
+                           }));
+    }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::vector<double> ratios;
+    for (int turn = 0; turn < turns; ++turn)
+      ratios.push_back(bodies[b].rates[turn] / bodies[0].rates[turn]);
+    std::sort(bodies[b].rates.begin(), bodies[b].rates.end());
+    std::sort(ratios.begin(), ratios.end());
+    const double rate = bodies[b].rates[turns / 2];
+    print(fmt::format("{}, {}, {} particles, whole step with fracture check; reference: {}", name,
+                      shapes[b].first, bodies[b].solver->state.size(), shapes[0].first),
+          rate, "1e6 particle-steps/s", rate / ratios[turns / 2]);
+  }
+}
+
+void measure_all_shapes()
+{
+  using particles::LatticeKind;
+  const std::vector<std::pair<std::string, Vector<3>>> boxes = {
+      {"cube", {85.3, 85.3, 85.3}},
+      {"plate thin in z", {256.3, 150.3, 16.3}},
+      {"plate thin in y", {256.3, 16.3, 150.3}},
+      {"plate thin in x", {16.3, 256.3, 150.3}},
+      {"bar along x", {1550.3, 20.3, 20.3}},
+      {"bar along y", {20.3, 1550.3, 20.3}},
+      {"bar along z", {20.3, 20.3, 1550.3}}};
+  measure_shapes<3>("fcc", LatticeKind::fcc, boxes);
+  measure_shapes<3>("fcc, turned by (0.3, 0.5, 0.2)", LatticeKind::fcc, boxes, {0.3, 0.5, 0.2});
+  measure_shapes<3>("simple cubic", LatticeKind::simple_cubic, boxes);
+  const std::vector<std::pair<std::string, Vector<2>>> plates = {{"square plate", {875.3, 875.3}},
+                                                                 {"strip along x", {9570.3, 80.3}},
+                                                                 {"strip along y", {80.3, 9570.3}}};
+  measure_shapes<2>("hexagonal", LatticeKind::hexagonal, plates);
+  measure_shapes<2>("hexagonal, turned by 0.2", LatticeKind::hexagonal, plates, Spin<2>(0.2));
+  measure_shapes<2>("square", LatticeKind::square, plates);
+}
+
 /// One body of 1e7 particles: memory and the seconds of a step.
 template <int dim>
 void measure_largest(const std::string &name, particles::LatticeKind kind, double spacing)
@@ -304,8 +377,8 @@ void measure_plastic(const std::string &name, const particles::Packing<dim> &pac
 } // namespace
 
 /// Without arguments the bodies of 33 000 particles and lattices of 880 000; "random": random
-/// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles; "plastic": what
-/// breaking and yielding cost.
+/// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles; "shapes": plates
+/// and bars of lattices beside cubes; "plastic": what breaking and yielding cost.
 int main(int argc, char **argv)
 {
   using particles::LatticeKind;
@@ -314,6 +387,8 @@ int main(int argc, char **argv)
     measure_largest<2>("hexagonal", LatticeKind::hexagonal, 1 / 2943.);
   else if (what == "3d")
     measure_largest<3>("fcc", LatticeKind::fcc, 1 / 192.);
+  else if (what == "shapes")
+    measure_all_shapes();
   else if (what == "plastic") {
     measure_plastic<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 28.5));
     measure_plastic<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 169.));

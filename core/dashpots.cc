@@ -1,15 +1,44 @@
 #include "core/dashpots.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::core
 {
-template <int dim>
-Dashpots<dim>::Dashpots(const Coefficients &coefficients)
+double Dashpot::memory(double dt) const
 {
-  for (const auto &[place, coefficient] : coefficients)
-    if (coefficient > 0)
-      dashpots_.push_back({place[0], place[1], coefficient});
+  if (kind != Kind::node)
+    return time;
+  // Of tau^2 + tau dt/2 = (time^2 - dt^2)/8: nodes and steps then have the impedance of a wave to
+  // second order (theory.md eq. (A5)).
+  return dt < time ? std::sqrt(time * time / 8 - dt * dt / 16) - dt / 4 : 0;
+}
+
+template <int dim>
+Dashpots<dim>::Dashpots(const Places &places)
+{
+  for (const auto &[place, dashpots] : places) {
+    for (const Dashpot &d : dashpots)
+      if (d.coefficient > 0)
+        dashpots_.push_back(d);
+    if (dashpots_.size() > (places_.empty() ? 0 : places_.back().end))
+      places_.push_back({place[0], place[1], dashpots_.size()});
+  }
+  memory_.assign(dashpots_.size(), 0.);
+}
+
+template <int dim>
+void Dashpots<dim>::prepare(double dt)
+{
+  factors_.clear();
+  for (const Dashpot &d : dashpots_) {
+    const double c = d.coefficient, tau = d.memory(dt), keep = tau / (tau + dt);
+    factors_.push_back(
+        d.kind == Dashpot::Kind::layer
+            ? Factors{c * keep, -c * keep, 0, keep}
+            : Factors{c * (1 - keep), c * keep, d.kind == Dashpot::Kind::node ? c * tau : 0, keep});
+  }
+  dt_ = dt;
 }
 
 double layer_rate(double depth, double width, double speed)
@@ -17,6 +46,12 @@ double layer_rate(double depth, double width, double speed)
   constexpr double strength = 6;
   const double x = std::clamp(depth / width, 0., 1.);
   return strength * speed / width * x * x;
+}
+
+Dashpot layer_dashpot(double mass, double depth, double width, double speed)
+{
+  constexpr double memory = 0.25; // in times of a wave through the layer
+  return {Dashpot::Kind::layer, mass * layer_rate(depth, width, speed), memory * width / speed};
 }
 
 template class Dashpots<2>;

@@ -7,18 +7,38 @@
 
 namespace ligament::core
 {
-/// Forces -c v on single components of the velocity of particles or nodes. They act on the mean of
-/// the velocities before and after the kick, (v(-) + v(+))/2, which leaves the stable step of the
+/// A dashpot with a memory s of the velocity, s + tau ds/dt = v, for the waves of discrete bodies
+/// (theory.md eqs. (A5) to (A7)).
+struct Dashpot
+{
+  enum class Kind
+  {
+    node, // on the side: force -c (s + tau dv/dt)
+    face, // of a particle, whose centre lies behind the side: force -c s
+    layer // inside the side: force -c (v - s), nothing on a steady motion
+  };
+
+  Kind kind;
+  double coefficient; // c in kg/s
+  /// In s. Node: of a wave from one node to the next, tau follows from it and the step; else tau.
+  double time;
+
+  /// tau in s for steps of dt.
+  double memory(double dt) const;
+};
+
+/// Dashpots on single components of the velocity of particles or nodes. They act on the mean of the
+/// velocities before and after the kick, (v(-) + v(+))/2, which leaves the stable step of the
 /// leap-frog as it is and books their energy exactly (theory.md eqs. (A2), (A3)).
 template <int dim>
 class Dashpots
 {
 public:
-  /// c in kg/s of {index, component}.
-  using Coefficients = std::map<std::array<int, 2>, double>;
+  /// By {index, component}.
+  using Places = std::map<std::array<int, 2>, std::vector<Dashpot>>;
 
   Dashpots() = default;
-  explicit Dashpots(const Coefficients &coefficients);
+  explicit Dashpots(const Places &places);
 
   /// From velocities after the kick v += dt force / mass to those that the dashpots leave;
   /// inverse_mass(index) in 1/kg, 0 for what is held.
@@ -26,17 +46,30 @@ public:
   void act(double dt, const InverseMass &inverse_mass, const Components<dim> &force,
            Components<dim> &velocity);
 
-  /// Taken so far, in J.
+  /// Taken so far, what their memories keep included, in J.
   double energy() const { return energy_; }
 
 private:
-  struct Dashpot
+  struct Place
   {
     int index, component;
-    double coefficient;
+    std::size_t end; // of its dashpots, which begin where those before it end
   };
+
+  void prepare(double dt);
+
+  std::vector<Place> places_;
   std::vector<Dashpot> dashpots_;
-  double energy_ = 0;
+  std::vector<double> memory_; // s in m/s, per dashpot
+
+  // For steps of dt_: a dashpot's force is -(resistance v + past s + mass dv/dt) on the mean v, and
+  // its memory becomes v + keep (s - v).
+  struct Factors
+  {
+    double resistance, past, mass, keep;
+  };
+  std::vector<Factors> factors_;
+  double dt_ = 0, energy_ = 0;
 };
 
 template <int dim>
@@ -44,17 +77,36 @@ template <typename InverseMass>
 void Dashpots<dim>::act(double dt, const InverseMass &inverse_mass, const Components<dim> &force,
                         Components<dim> &velocity)
 {
-  for (const Dashpot &d : dashpots_) {
-    double &v = velocity[d.component][d.index];
-    const double w = inverse_mass(d.index), ratio = 0.5 * dt * d.coefficient * w;
-    // v(+) + v(-) = (v* + v(-))/(1 + ratio), v* the velocity that the kick has left.
-    const double twice_mean = (2 * v - dt * force[d.component][d.index] * w) / (1 + ratio);
-    v -= ratio * twice_mean;
-    energy_ += dt * d.coefficient * twice_mean * twice_mean / 4;
+  if (dt != dt_)
+    prepare(dt);
+  std::size_t begin = 0;
+  for (const Place &place : places_) {
+    double resistance = 0, past = 0, mass = 0;
+    for (std::size_t k = begin; k < place.end; ++k) {
+      resistance += factors_[k].resistance;
+      past += factors_[k].past * memory_[k];
+      mass += factors_[k].mass;
+    }
+    double &v = velocity[place.component][place.index];
+    const double w = inverse_mass(place.index), kick = dt * force[place.component][place.index] * w;
+    // Newton's law for the mean of v(-) = v - kick and v(+).
+    const double before = v - kick;
+    const double mean = (before * (1 + mass * w) + (kick - dt * past * w) / 2) /
+                        (1 + mass * w + dt * resistance * w / 2);
+    const double after = 2 * mean - before;
+    if (w > 0) {
+      energy_ += (v - after) / w * mean;
+      v = after;
+    }
+    for (; begin < place.end; ++begin)
+      memory_[begin] = mean + factors_[begin].keep * (memory_[begin] - mean);
   }
 }
 
 /// Damping rate of an absorbing layer in 1/s, `depth` m inside its inner border: rises with the
 /// square of the depth (theory.md eq. (A4)). Waves of `speed` m/s are those along its normal.
 double layer_rate(double depth, double width, double speed);
+
+/// What a particle or node in such a layer gets, mass in kg.
+Dashpot layer_dashpot(double mass, double depth, double width, double speed);
 } // namespace ligament::core

@@ -18,6 +18,15 @@ namespace
 {
 constexpr std::size_t buffer_size = 1 << 16;
 
+/// What a disk took before it was full would be half a line: the file ends where the last write
+/// that succeeded ended.
+void take_back(int descriptor, std::size_t bytes)
+{
+  const off_t end = ::lseek(descriptor, 0, SEEK_END) - off_t(bytes);
+  if (bytes > 0 && end >= 0 && ::ftruncate(descriptor, end) == 0)
+    ::lseek(descriptor, end, SEEK_SET);
+}
+
 /// A device or pipe must be written in place: renaming over it would destroy it.
 bool exists_but_is_not_a_file(const std::string &path)
 {
@@ -69,21 +78,25 @@ void OutputFile::write(std::string_view text)
 
 void OutputFile::write_through(std::string_view text)
 {
+  const std::size_t size = text.size();
   while (!text.empty()) {
     const ssize_t n = ::write(descriptor_, text.data(), text.size());
     if (n < 0 && errno == EINTR)
       continue;
-    if (n < 0)
+    if (n < 0) {
+      const int error = errno;
+      take_back(descriptor_, size - text.size());
+      errno = error;
       fail("write");
+    }
     text.remove_prefix(n);
   }
 }
 
 void OutputFile::flush()
 {
-  // Emptied first: after a failure the destructor must not try the same bytes again.
-  const std::string text = std::exchange(buffer_, {});
-  write_through(text);
+  write_through(buffer_); // kept when that fails: there may be room later
+  buffer_.clear();
 }
 
 void OutputFile::commit()

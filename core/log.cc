@@ -1,5 +1,8 @@
 #include "core/log.h"
 
+#include "core/check.h"
+#include "core/tell.h"
+
 #include <fmt/chrono.h>
 
 namespace ligament::core
@@ -18,9 +21,9 @@ void Log::info(const std::string &message)
 
 void Log::warning(const std::string &message)
 {
+  warnings_.push_back(message);
   line("warning", message);
-  if (echo_)
-    fmt::print(echo_, "warning: {}\n", message);
+  tell(echo_, "warning: " + message + "\n");
 }
 
 void Log::line(const char *level, const std::string &message)
@@ -30,7 +33,12 @@ void Log::line(const char *level, const std::string &message)
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string now = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  file_->write(fmt::format("{} {:10.3f} s {:<7} {}\n", now, elapsed, level, message));
-  file_->flush();
+  try {
+    file_->write(fmt::format("{} {:10.3f} s {:<7} {}\n", now, elapsed, level, message));
+    file_->flush();
+  } catch (const EnvironmentError &error) {
+    file_.reset();
+    tell(echo_, fmt::format("warning: {}; the log ends here\n", error.what()));
+  }
 }
 } // namespace ligament::core

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace ligament::core
 {
@@ -22,6 +23,8 @@ public:
 
   void info(const std::string &message);
   void warning(const std::string &message);
+  /// All warnings so far, in their order.
+  const std::vector<std::string> &warnings() const { return warnings_; }
 
   template <typename... Args>
   void info(fmt::format_string<Args...> format, Args &&...args)
@@ -39,6 +42,7 @@ private:
 
   std::optional<OutputFile> file_;
   std::FILE *echo_;
+  std::vector<std::string> warnings_;
   std::chrono::steady_clock::time_point start_;
 };
 } // namespace ligament::core

@@ -63,6 +63,22 @@ double consistent_bound(const fem::CondensedCell<dim> &shape)
   return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
+/// The far field's own, by the nodes that carry the cell.
+template <int dim>
+fem::CellMatrix<dim> whole_cell_stiffness(const fem::CondensedCell<dim> &shape,
+                                          const Vector<dim> &size, const fem::Body<dim> &body)
+{
+  const auto k = fem::cell_stiffness<dim>(size, body.stiffness, body.thickness);
+  if (!shape.hangs())
+    return k;
+  fem::CellMatrix<dim> shares;
+  for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+    for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
+      shares.template block<dim, dim>(dim * a, dim * b) =
+          shape.shares(a, b) * Eigen::Matrix<double, dim, dim>::Identity();
+  return shares.transpose() * k * shares;
+}
+
 template <int dim>
 class Assembly
 {
@@ -277,10 +293,12 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
 {
   const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
   const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
+  if (cell.layer > 0)
+    return whole_cell_stiffness(cell.shape, size, body);
   fem::CellMatrix<dim> k;
   k.setZero();
   for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-    w *= (cell.layer == 0 ? 1 - overlap.weight(x) : 1) * body.thickness;
+    w *= (1 - overlap.weight(x)) * body.thickness;
     const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
     k += w * b.transpose() * body.stiffness * b;
   });

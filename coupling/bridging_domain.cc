@@ -58,6 +58,7 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
   if (std::any_of(parameters.reference_strain.begin(), parameters.reference_strain.end(),
                   [](double e) { return e != 0; }))
     find_dead_load(bodies);
+  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(displacement_));
   take_velocities(bodies);
 }
 

@@ -60,6 +60,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   report_.overlap_particles = int(overlap_.members.size());
   report_.pad_particles = fine_.n_pads();
   report_.near_nodes = n;
+  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(displacement_));
   take_velocities(bodies);
 }
 

@@ -102,14 +102,14 @@ double Overlap<dim>::subtracted_share(const Vector<dim> &location,
   return pad ? 1 : 1 - weight(location);
 }
 
-// Pad particles: those whose cell the faces do not close (a neighbour is missing at the edge of the
-// packing; faces on the specimen's surface do close), and all their neighbours.
+// Open are the particles whose cell the faces do not close (a neighbour is missing at the edge of
+// the packing; faces on the specimen's surface do close); the edge are these and their neighbours.
 template <int dim>
-std::vector<char> Overlap<dim>::find_pads(const particles::Particles<dim> &particles,
-                                          const particles::ParticleForce<dim> &force) const
+std::vector<char> Overlap<dim>::find_edge(const particles::Particles<dim> &particles,
+                                          const particles::ParticleForce<dim> &force)
 {
   const int n = particles.n_owned;
-  std::vector<char> pad(n, 0);
+  std::vector<char> open(n, 0), at_edge(n, 0);
   std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
   std::vector<double> surface(n, 0.);
   std::vector<std::vector<int>> neighbours(n);
@@ -122,11 +122,14 @@ std::vector<char> Overlap<dim>::find_pads(const particles::Particles<dim> &parti
   // A cell that lacks a sliver of a face is open: its strain is wrong by the sliver's share.
   for (int i = 0; i < n; ++i)
     if (closure[i].norm() > 1e-12 * surface[i]) {
-      pad[i] = 1;
+      open[i] = at_edge[i] = 1;
       for (const int j : neighbours[i])
-        pad[j] = 1;
+        at_edge[j] = 1;
     }
-  return pad;
+  for (int i = 0; i < n; ++i)
+    if (at_edge[i])
+      edge.push_back(i);
+  return open;
 }
 
 template <int dim>
@@ -134,9 +137,11 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
                                 const particles::ParticleForce<dim> &force)
 {
   const int n = particles.n_owned;
+  const std::vector<char> open = find_edge(particles, force);
   std::vector<char> pad(n, 0);
   if (parameters.has_pads)
-    pad = find_pads(particles, force);
+    for (const int i : edge)
+      pad[i] = 1;
   else
     depth = std::numeric_limits<double>::max();
 
@@ -156,6 +161,7 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     Member &m = members.emplace_back(); // the rest with its cell, in find_cells
     m.particle = i;
     m.pad = pad[i];
+    m.open = open[i];
     m.cell = cell; // of the mesh until then
     if (pad[i])
       depth = std::max(depth, distance_to_edge(x));
@@ -264,6 +270,26 @@ Overlap<dim>::shape_gradients(const Cell &cell, const Vector<dim> &x) const
 {
   return fem::shape_gradients<dim>(mesh.cell_lower[cell.cell], mesh.cell_size[cell.cell], x) *
          cell.shape.shares;
+}
+
+template <int dim>
+particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Nodal<dim> &u) const
+{
+  particles::CoupledEdge<dim> coupled{edge, {}, {}};
+  std::vector<int> open; // members
+  for (std::size_t k = 0; k < members.size(); ++k)
+    if (members[k].open) {
+      open.push_back(int(k));
+      coupled.open.push_back(members[k].particle);
+    }
+  coupled.gradient = [this, &u, open = std::move(open)](int k) {
+    const Member &m = members[open[k]];
+    Eigen::Matrix<double, dim, dim> gradient = Eigen::Matrix<double, dim, dim>::Zero();
+    for (int a = 0; a < n_cell_nodes; ++a)
+      gradient += u.row(m.nodes[a]).transpose() * m.gradient.col(a).transpose();
+    return gradient;
+  };
+  return coupled;
 }
 
 template class Overlap<2>;

@@ -12,6 +12,10 @@
 
 namespace ligament::coupling
 {
+/// dim numbers per near node.
+template <int dim>
+using Nodal = Eigen::Matrix<double, Eigen::Dynamic, dim, Eigen::RowMajor>;
+
 template <int dim>
 struct OverlapParameters
 {
@@ -59,6 +63,7 @@ public:
   {
     int particle;
     bool pad;                                          // moves with the mesh
+    bool open;                                         // lacks faces at the edge of the packing
     double weight;                                     // a at its centre
     double position;                                   // s at its centre
     int cell;                                          // index into `cells`
@@ -83,8 +88,9 @@ public:
   std::vector<int> near_nodes;         // mesh node of every near node; hanging nodes are none
   std::vector<char> is_overlap_node;   // per near node: node of a cell of layer 0
   std::vector<int> member_of_particle; // index into members, or -1
-  double depth = 0;                    // m
-  double cell_size = 0;                // m, smallest edge of the overlap's cells
+  std::vector<int> edge; // particles whose cells are open, and their neighbours: pads, if there are
+  double depth = 0;      // m
+  double cell_size = 0;  // m, smallest edge of the overlap's cells
   const fem::Mesh<dim> &mesh;
   const OverlapParameters<dim> parameters;
 
@@ -102,12 +108,16 @@ public:
   /// particles. Only where all of them lie in the overlap, else 0; wholly where one is pad.
   double subtracted_share(const Vector<dim> &location, const std::vector<int> &particles) const;
 
+  /// What the discrete law is told of the edge; the mesh's displacement U (m, of the near nodes) is
+  /// read whenever the law asks for its gradient. Both must outlive it.
+  particles::CoupledEdge<dim> coupled_edge(const Nodal<dim> &u) const;
+
   /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);
 
 private:
-  std::vector<char> find_pads(const particles::Particles<dim> &particles,
-                              const particles::ParticleForce<dim> &force) const;
+  std::vector<char> find_edge(const particles::Particles<dim> &particles,
+                              const particles::ParticleForce<dim> &force);
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
   void find_cells();

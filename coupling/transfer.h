@@ -5,10 +5,6 @@
 
 namespace ligament::coupling
 {
-/// dim numbers per near node.
-template <int dim>
-using Nodal = Eigen::Matrix<double, Eigen::Dynamic, dim, Eigen::RowMajor>;
-
 /// Phi and Phi^T over the members of an overlap. "Member" arrays follow the order of cells;
 /// particle arrays are those of the zone.
 template <int dim>

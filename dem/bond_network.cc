@@ -1,5 +1,7 @@
 #include "dem/bond_network.h"
 
+#include <limits>
+
 namespace ligament::dem
 {
 namespace
@@ -22,6 +24,51 @@ int lattice_direction(const particles::Face<dim> &face, const particles::Packing
       return int(k);
   }
   return -1;
+}
+
+/// A lattice direction of the packing in the place that the row kernel wants it in.
+struct KernelDirection
+{
+  int index; // in the packing
+  bool reversed;
+};
+using KernelDirections = std::vector<KernelDirection>;
+
+KernelDirections kernel_directions(const std::vector<particles::LatticeDirection<2>> &directions)
+{
+  KernelDirections all;
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    all.push_back({int(k), false});
+  return all;
+}
+
+/// Those of a face-centred cubic lattice as a, b, e - a - b, e - b, e - a, e with a, b
+/// perpendicular to each other (Basis<6> of lattice_kernel_3d.cc); others as they are.
+KernelDirections kernel_directions(const std::vector<particles::LatticeDirection<3>> &directions)
+{
+  const int n = int(directions.size());
+  KernelDirections all;
+  for (int k = 0; k < n; ++k)
+    all.push_back({k, false});
+  if (n != 6)
+    return all;
+  const auto normal = [&](int k) { return directions[k].normal; };
+  const auto has_direction = [](double dot) { return std::abs(dot) > 0.25; };
+  const Vector<3> a = normal(0);
+  Vector<3> b = a, e = a;
+  for (int k = 1; k < n; ++k)
+    if (!has_direction(normal(k).dot(a)))
+      b = normal(k);
+  for (int k = 1; k < n; ++k)
+    if (const double dot = normal(k).dot(a); has_direction(dot) && dot * normal(k).dot(b) > 0)
+      e = std::copysign(1, dot) * normal(k);
+  const Vector<3> wanted[6] = {a, b, e - a - b, e - b, e - a, e};
+  KernelDirections found;
+  for (const Vector<3> &w : wanted)
+    for (int k = 0; k < n; ++k)
+      if (const double dot = normal(k).dot(w); std::abs(std::abs(dot) - 1) < 1e-12)
+        found.push_back({k, dot < 0});
+  return found.size() == 6 ? found : all;
 }
 
 /// 1 for particles of other materials than the first one and for their neighbours in it.
@@ -69,10 +116,14 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Mate
   const DemMaterial &material = materials.base();
   const int n = packing.size(), n_dir = int(packing.directions.size());
   core::require(n_dir <= max_directions, "the packing has more lattice directions than supported");
-  for (const auto &d : packing.directions)
-    directions_.push_back({d.normal, d.area, d.distance,
+  std::vector<int> place(n_dir); // of the packing's directions in directions_
+  for (const auto &[index, reversed] : kernel_directions(packing.directions)) {
+    const auto &d = packing.directions[index];
+    place[index] = int(directions_.size());
+    directions_.push_back({reversed ? Vector<dim>(-d.normal) : d.normal, d.area, d.distance,
                            material.bending_stiffness<dim>(d.area, d.distance, packing.thickness),
                            material.twisting_stiffness(d.area, d.distance)});
+  }
 
   std::vector<std::array<int, 2 * max_directions>> offset(n);
   for (auto &o : offset)
@@ -82,14 +133,15 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Mate
     if (face.cracked)
       continue;
     ++n_bonds_;
-    const int k =
+    const int direction =
         off_lattice[face.i] || off_lattice[face.j] ? -1 : lattice_direction(face, packing);
-    if (k < 0) {
+    if (direction < 0) {
       if (materials.differ(face.i, face.j))
         between_materials_.push_back(int(irregular_.size()));
       irregular_.push_back(make_bond(face, materials, packing.thickness));
       continue;
     }
+    const int k = place[direction];
     const bool along = face.normal.dot(directions_[k].normal) > 0;
     const int i = along ? face.i : face.j, j = along ? face.j : face.i;
     mask_[i] |= 1u << k;
@@ -105,6 +157,9 @@ BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Mate
 template <int dim>
 void BondNetwork<dim>::index_table()
 {
+  core::require(irregular_.size() <= std::size_t(std::numeric_limits<int>::max()) / 2,
+                "/discrete_zone: the packing has more than 1e9 bonds off the lattice, which cannot "
+                "be numbered; make the zone smaller or /discrete_zone/spacing larger");
   std::vector<int> n_bonds_of(n_particles(), 0);
   for (const auto &b : irregular_)
     ++n_bonds_of[b.i], ++n_bonds_of[b.j];

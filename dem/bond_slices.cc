@@ -153,7 +153,7 @@ void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::Larg
 }
 
 template <int dim>
-void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
+void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
                              const TractionScreen &screen, core::LargeArray &records,
                              std::vector<int> &exceeded, const SliceNearness *nearness) const
 {
@@ -165,8 +165,9 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, double strength,
     const double least_strain = traction / (2 * shear_modulus_) * (1 - round_off);
     return traction > 0 ? least_strain * least_strain : SliceSweep<dim>::never;
   };
-  add_slice_forces({table_, arrays, records.data(), squared(strength), all_particles_, &exceeded,
-                    nearness, nullptr, squared(screen.traction), screen});
+  add_slice_forces({table_, arrays, records.data(), squared(breaking.least_traction()),
+                    all_particles_, &exceeded, nearness, nullptr, squared(screen.traction), screen,
+                    breaking.strength / (2 * shear_modulus_), breaking.tangent});
 }
 
 template <int dim>

@@ -53,13 +53,14 @@ struct SliceSweep
   const SliceTable<dim> &table;
   const LatticeArrays<dim> &arrays; // the mask is not read
   double *records;
-  double limit2 = 0; // (strength / 2G)^2, of the weakest bond
+  double limit2 = 0; // (traction / 2G)^2 below which no bond breaks
   bool replace;      // forces and torques are overwritten, not added to
   std::vector<int> *exceeded;
   const SliceNearness *nearness = nullptr; // null: all slices are swept
   double *energy = nullptr;                // of the particles, J
   double screen2 = never;                  // (traction / 2G)^2 at which the screen marks
   TractionScreen screen = {};
+  double strain = 0, tangent = 0; // strength / 2G and tangent of BreakScreen
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
@@ -70,8 +71,7 @@ void load_records(const SliceSweep<3> &sweep);
 /// Adds lambda theta of the bonds to arrays.pressure.
 void add_pressures(const SliceSweep<2> &sweep);
 void add_pressures(const SliceSweep<3> &sweep);
-/// Forces and torques at arrays.pressure; notes the particles of slices with a bond under more than
-/// the limit.
+/// Forces and torques at arrays.pressure; notes the particles with a bond that could break.
 void add_slice_forces(const SliceSweep<2> &sweep);
 void add_slice_forces(const SliceSweep<3> &sweep);
 /// Adds to each particle's energy its half of every bond's, bending and twist included.
@@ -103,11 +103,11 @@ public:
   void add_pressures(const LatticeArrays<dim> &arrays, core::LargeArray &records,
                      const SliceNearness *nearness = nullptr) const;
 
-  /// Adds the forces at arrays.pressure. With a strength above 0 (Pa) replaces `exceeded` by
-  /// particles among which are those of all bonds under at least that tension. The screen's marks
-  /// are set for both particles of a bond.
-  void forces(const LatticeArrays<dim> &arrays, double strength, const TractionScreen &screen,
-              core::LargeArray &records, std::vector<int> &exceeded,
+  /// Adds the forces at arrays.pressure. Replaces `exceeded` by particles among which are those of
+  /// all bonds that could break; its strength is that of a bond of the base material. The screen's
+  /// marks are set for both particles of a bond.
+  void forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
+              const TractionScreen &screen, core::LargeArray &records, std::vector<int> &exceeded,
               const SliceNearness *nearness = nullptr) const;
 
   /// Adds to each particle's energy (J) its half of every bond's.

@@ -9,8 +9,9 @@ namespace ligament::dem
 {
 template <int dim>
 ContactSearch<dim>::ContactSearch(const particles::Packing<dim> &packing, double face_area)
-    : spacing_(packing.spacing), skin_(packing.spacing / 4), face_area_(face_area),
-      largest_(packing.spacing), diameter_(packing.diameter), on_surface_(packing.size(), 0)
+    : flanks_(packing), spacing_(packing.spacing), skin_(packing.spacing / 4),
+      face_area_(face_area), largest_(packing.spacing), diameter_(packing.diameter),
+      on_surface_(packing.size(), 0)
 {
   for (const double diameter : diameter_)
     largest_ = std::max(largest_, diameter);
@@ -59,6 +60,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
     searched_at_.push_back(get(p.displacement, i));
   const double reach = largest_ + 2 * skin_;
   contacts.drop_distant(p, reach);
+  flanks_.pass_on_joints(p, contacts);
 
   std::set<std::pair<int, int>> known;
   const auto key = [](int i, int j) { return std::pair<int, int>(std::min(i, j), std::max(i, j)); };
@@ -103,7 +105,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
       for (const int j : it->second)
         if (p.global_id[i] < p.global_id[j] &&
             (position(j) - x).norm() < rest_distance(p, i, j) + 2 * skin_ &&
-            !known.count(key(i, j)))
+            !known.count(key(i, j)) && !flanks_.face_each_other(i, j))
           found.push_back({i, j});
     }
     bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
@@ -116,8 +118,9 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
   for (const auto &[i, j] : found) {
     if (known.count(key(i, j)))
       continue;
-    const Vector<dim> n = (position(j) - position(i)).normalized();
-    const double distance = rest_distance(p, i, j), size = (diameter(i) + diameter(j)) / 2;
+    const Vector<dim> between = position(j) - position(i), n = between.normalized();
+    const double distance = std::min(rest_distance(p, i, j), between.norm()),
+                 size = (diameter(i) + diameter(j)) / 2;
     const Vector<dim> lever = distance * diameter(i) / (2 * size) * n;
     const double area = face_area_ * std::pow(size / spacing_, dim - 1);
     contacts.add({i, j, n, lever, lever - distance * n, area, distance, 0, 0}, false);

@@ -3,6 +3,7 @@
 
 #include "dem/bond_network.h"
 #include "dem/contacts.h"
+#include "dem/cut_flanks.h"
 
 namespace ligament::dem
 {
@@ -13,8 +14,8 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// New contacts have the mean diameter of their particles as distance (d on lattices), or the
-  /// distance in the reference where that is less, and a face in proportion to `face_area` (m^2),
-  /// which belongs to d.
+  /// distance in the reference or at present where that is less, and a face in proportion to
+  /// `face_area` (m^2), which belongs to d. They press with nothing when they are found.
   ContactSearch(const particles::Packing<dim> &packing, double face_area);
 
   /// Particle i lies on a surface from now on; the next search is due at once.
@@ -22,7 +23,8 @@ public:
 
   /// Adds contacts between surface particles nearer than their distance + 2 skin that share neither
   /// bond nor contact, once a surface particle has moved by the skin of d/4 since the last search;
-  /// drops those found before that went apart. The order depends on global ids alone.
+  /// drops those found before that went apart. The order depends on global ids alone. Particles
+  /// across the same initial cut meet in its joints only, which go on from particle to particle.
   void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
 private:
@@ -31,6 +33,7 @@ private:
   /// Centre distance at which two particles touch.
   double rest_distance(const Particles &particles, int i, int j) const;
 
+  CutFlanks<dim> flanks_;
   double spacing_, skin_, face_area_, largest_;
   std::vector<double> diameter_;
   std::vector<bool> on_surface_;

@@ -2,6 +2,9 @@
 
 #include "dem/surface_loads.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace ligament::dem
 {
 namespace
@@ -33,14 +36,64 @@ Vector<3> spin_times(const Spin<3> &w, const Vector<3> &a)
 {
   return w.cross(a);
 }
+
+/// The next increment of the slip counts from here.
+template <int dim, typename State>
+void remember(Contact<dim> &c, const State &s, const particles::Particles<dim> &p)
+{
+  c.known = true;
+  c.last_between = s.between;
+  c.last_lever = s.lever;
+  c.last_normal = s.normal;
+  c.last_turn_i = Turn<dim>::of(p, c.face.i);
+  c.last_turn_j = Turn<dim>::of(p, c.face.j);
+  if constexpr (dim == 2) {
+    c.last_angle_i = p.rotation[0][c.face.i];
+    c.last_angle_j = p.rotation[0][c.face.j];
+  }
+}
+
+/// How a contact's distance will move in the next step, without and with a force along its normal.
+struct Outlook
+{
+  double moves;      // m, the overlap grows by
+  double compliance; // m/N, less so much per newton of pressure
+};
+
+template <int dim>
+Outlook outlook(const particles::Particles<dim> &p, int i, int j, const Vector<dim> &normal,
+                const Vector<dim> &lever_i, const Vector<dim> &lever_j, double dt)
+{
+  Outlook o{0, 0};
+  const auto add = [&](int k, const Vector<dim> &lever, double sign) {
+    const Spin<dim> arm = cross(lever, normal);
+    const double mass = p.inverse_mass(k), inertia = p.inverse_inertia(k);
+    const double v = normal.dot(get(p.velocity, k) + dt * mass * get(p.force, k)) +
+                     arm.dot(get(p.spin, k) + dt * inertia * get(p.torque, k));
+    o.moves += sign * dt * v;
+    o.compliance += dt * dt * (mass + inertia * arm.squaredNorm());
+  };
+  add(i, lever_i, 1);
+  add(j, lever_j, -1);
+  return o;
+}
+
+/// The force f with f (moved + next(f)) = 2 error: over the two steps beside it, it does the work
+/// that the change of the contact left out. 0 where the motion turns back before.
+double correcting_force(double error, double moved, const Outlook &next, double largest)
+{
+  const double sum = moved + next.moves;
+  const double square = sum * sum - 8 * next.compliance * error;
+  if (square < 0 || sum == 0)
+    return 0;
+  return std::clamp(4 * error / (sum + std::copysign(std::sqrt(square), sum)), -largest, largest);
+}
 } // namespace
 
 template <int dim>
 void Contacts<dim>::add(const Bond<dim> &face, bool from_face)
 {
-  Contact<dim> c;
-  c.face = face;
-  c.from_face = from_face;
+  Contact<dim> c{face, from_face, 0, 0, 0};
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
   c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
                               materials_.of(face.j).shear_modulus(), c.share_i);
@@ -49,17 +102,44 @@ void Contacts<dim>::add(const Bond<dim> &face, bool from_face)
 }
 
 template <int dim>
+void Contacts<dim>::add_joint(const Bond<dim> &face, int cut, const Vector<dim> &cut_normal,
+                              const Vector<dim> &centre_j)
+{
+  add(face, true);
+  contacts_.back().home = centre_j;
+  contacts_.back().cut = cut;
+  contacts_.back().cut_normal = std::copysign(1, cut_normal.dot(face.normal)) * cut_normal;
+}
+
+// Of a joint, 2 G S/r0 is 2 G A/h: A = S n.N the face's area projected on the cut, h = r0 n.N the
+// distance of the centres across it.
+template <int dim>
 typename Contacts<dim>::State Contacts<dim>::state(const Contact<dim> &c, const Particles &p) const
 {
-  const Vector<dim> x = centre_distance<dim>(p, c.face.i, c.face.j);
-  const double r = x.norm();
-  return {x / r, r, c.face.distance - r, 2 * c.shear_modulus * c.face.area / c.face.distance};
+  State s;
+  s.between = centre_distance<dim>(p, c.face.i, c.face.j);
+  s.stiffness = 2 * c.shear_modulus * c.face.area / c.face.distance;
+  if (!c.is_joint()) {
+    const double r = s.between.norm();
+    s.normal = s.between / r;
+    s.lever = c.share_i * s.between;
+    s.overlap = c.face.distance - r;
+    return s;
+  }
+  const Turn<dim> turn_i = Turn<dim>::of(p, c.face.i), turn_j = Turn<dim>::of(p, c.face.j);
+  const BondMotion<dim> m(c.face, turn_i, turn_j, get(p.displacement, c.face.i),
+                          get(p.displacement, c.face.j));
+  s.normal =
+      (2 * c.cut_normal + turn_i.change(c.cut_normal) + turn_j.change(c.cut_normal)).normalized();
+  const Vector<dim> apart = m.du - c.passed;
+  s.overlap = -s.normal.dot(apart);
+  s.lever = m.a_i + apart / 2;
+  return s;
 }
 
 template <int dim>
 void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles &p)
 {
-  const Vector<dim> x = s.distance * s.normal;
   const double stored = c.slip.norm();
   // The slip follows the face: turned into its plane, of the same length.
   c.slip -= s.normal * s.normal.dot(c.slip);
@@ -67,11 +147,12 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
     c.slip *= stored / c.slip.norm();
   Vector<dim> increment = Vector<dim>::Zero();
   if (c.known) {
-    const Vector<dim> middle = (x + c.last_distance) / 2, n = middle.normalized();
-    const Spin<dim> turn =
-        c.share_i * turned_since(p, c.face.i, c.last_turn_i, c.last_angle_i) +
-        (1 - c.share_i) * turned_since(p, c.face.j, c.last_turn_j, c.last_angle_j);
-    increment = x - c.last_distance - spin_times(turn, middle);
+    const Vector<dim> n = (s.normal + c.last_normal).normalized();
+    const Vector<dim> lever_i = (s.lever + c.last_lever) / 2,
+                      lever_j = lever_i - (s.between + c.last_between) / 2;
+    increment = s.between - c.last_between -
+                spin_times(turned_since(p, c.face.i, c.last_turn_i, c.last_angle_i), lever_i) +
+                spin_times(turned_since(p, c.face.j, c.last_turn_j, c.last_angle_j), lever_j);
     increment -= n * n.dot(increment);
   }
   const Vector<dim> carried = c.slip;
@@ -83,18 +164,45 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
     // Work of the mean force less the change of stored energy.
     frictional_work_ += 0.5 * s.stiffness * (carried + c.slip).dot(slid);
   }
-  c.known = true;
-  c.last_distance = x;
-  c.last_turn_i = Turn<dim>::of(p, c.face.i);
-  c.last_turn_j = Turn<dim>::of(p, c.face.j);
-  if constexpr (dim == 2) {
-    c.last_angle_i = p.rotation[0][c.face.i];
-    c.last_angle_j = p.rotation[0][c.face.j];
-  }
+  remember(c, s, p);
 }
 
 template <int dim>
-void Contacts<dim>::add_forces(Particles &p)
+void Contacts<dim>::add_force(const Contact<dim> &c, const State &s, const Vector<dim> &f,
+                              Particles &p) const
+{
+  ligament::add(p.force, c.face.i, f);
+  ligament::add(p.force, c.face.j, Vector<dim>(-f));
+  if (c.friction > 0 || c.is_joint()) { // else the force runs through the centres
+    ligament::add(p.torque, c.face.i, cross(s.lever, f));
+    ligament::add(p.torque, c.face.j, cross(Vector<dim>(s.between - s.lever), f));
+  }
+}
+
+// A contact that opens or closes between two steps: over that step the leap-frog's work (the mean
+// of both forces) and the energy differ by k/2 |o1 o2|. The force of this step is chosen so that it
+// makes good half of it in the step before and half in the next; what it misses there is booked.
+template <int dim>
+void Contacts<dim>::correct_step(Contact<dim> &c, const State &s, double dt, const Particles &p)
+{
+  if (c.last_overlap && *c.last_overlap != s.overlap) {
+    const double last = *c.last_overlap, moved = s.overlap - last;
+    step_error_ += 0.5 * c.correction * moved;
+    c.correction = 0;
+    if ((s.overlap > 0) != (last > 0)) {
+      const double error = std::copysign(0.5, s.overlap) * s.stiffness * s.overlap * last;
+      const Vector<dim> lever_j = s.lever - s.between;
+      c.correction = correcting_force(
+          error, moved, outlook<dim>(p, c.face.i, c.face.j, s.normal, s.lever, lever_j, dt),
+          s.stiffness * std::max(std::abs(last), std::abs(s.overlap)));
+      step_error_ += 0.5 * c.correction * moved - error;
+    }
+  }
+  c.last_overlap = s.overlap;
+}
+
+template <int dim>
+void Contacts<dim>::add_forces(Particles &p, double dt)
 {
   for (auto &c : contacts_) {
     const State s = state(c, p);
@@ -104,16 +212,11 @@ void Contacts<dim>::add_forces(Particles &p)
       else
         c.known = false; // apart: the next touch starts anew
     }
-    if (s.overlap <= 0)
-      continue;
-    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal); // on i
-    ligament::add(p.force, c.face.i, f);
-    ligament::add(p.force, c.face.j, Vector<dim>(-f));
-    if (c.friction > 0) {
-      const Spin<dim> torque = s.distance * cross(s.normal, f);
-      ligament::add(p.torque, c.face.i, Spin<dim>(c.share_i * torque));
-      ligament::add(p.torque, c.face.j, Spin<dim>((1 - c.share_i) * torque));
-    }
+    if (s.overlap > 0) // on i
+      add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
+    correct_step(c, s, dt, p);
+    if (c.correction != 0)
+      add_force(c, s, -c.correction * s.normal, p);
   }
 }
 
@@ -136,14 +239,9 @@ double Contacts<dim>::energy(const Particles &p) const
 template <int dim>
 void Contacts<dim>::add_moments(const Particles &p, Components<n_strains<dim>> &moments) const
 {
-  for (const auto &c : contacts_) {
-    const State s = state(c, p);
-    if (s.overlap <= 0)
-      continue;
-    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal), x = s.distance * s.normal;
-    ligament::add(moments, c.face.i, symmetric_product<dim>(c.share_i * x, f));
-    ligament::add(moments, c.face.j, symmetric_product<dim>((1 - c.share_i) * x, f));
-  }
+  for_each_moment(p, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
+    ligament::add(moments, i, symmetric_product<dim>(a, f));
+  });
 }
 
 template <int dim>
@@ -162,9 +260,46 @@ void Contacts<dim>::drop_distant(const Particles &p, double distance)
 {
   contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(),
                                  [&](const Contact<dim> &c) {
-                                   return !c.from_face && state(c, p).distance > distance;
+                                   return !c.from_face && !c.is_joint() &&
+                                          state(c, p).between.norm() > distance;
                                  }),
                   contacts_.end());
+}
+
+template <int dim>
+Vector<dim> Contacts<dim>::slide(const Contact<dim> &c, const Particles &p)
+{
+  const Turn<dim> turn_i = Turn<dim>::of(p, c.face.i), turn_j = Turn<dim>::of(p, c.face.j);
+  const BondMotion<dim> m(c.face, turn_i, turn_j, get(p.displacement, c.face.i),
+                          get(p.displacement, c.face.j));
+  const Vector<dim> apart = m.du - c.passed;
+  const Vector<dim> slide = apart + turn_i.inverse().change(apart);
+  return c.passed + slide - c.cut_normal * c.cut_normal.dot(slide);
+}
+
+// The new partner's point is the one that i's point has come to, as high above the cut as that was
+// in the reference.
+template <int dim>
+void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
+{
+  Contact<dim> &c = contacts_[k];
+  if (c.known)
+    update_slip(c, state(c, p), p);
+  const double before = compression_energy(c, p);
+  if (j < 0) {
+    frictional_work_ += before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
+    contacts_.erase(contacts_.begin() + k);
+    return;
+  }
+  c.passed = slide(c, p);
+  c.face.j = j;
+  c.face.lever_j = get(p.reference, c.face.i) + c.face.lever_i - c.passed - get(p.reference, j);
+  c.from_face = false;
+  const State s = state(c, p);
+  if (c.known)
+    remember(c, s, p);
+  c.last_overlap = s.overlap;
+  frictional_work_ += before - compression_energy(c, p);
 }
 
 template class Contacts<2>;

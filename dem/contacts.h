@@ -1,8 +1,10 @@
-// Touching faces: a penalty without tension, Coulomb friction, and the search for new contacts.
+// Touching faces: a penalty without tension, Coulomb friction, and the joints of initial cuts.
 #pragma once
 
 #include "dem/bond.h"
 #include "dem/materials.h"
+
+#include <optional>
 
 namespace ligament::dem
 {
@@ -11,16 +13,27 @@ template <int dim>
 struct Contact
 {
   Bond<dim> face;       // reference geometry of the face, if it had one
-  bool from_face;       // was a face of the packing; false: found by the search
+  bool from_face;       // was a face of the packing; false: found by the search, or passed on
   double share_i;       // q_i / r0: the contact point lies at share_i r from i
   double shear_modulus; // Pa, of both sides in series
   double friction;      // Coulomb's coefficient
+  // Smooth joint: the contact has the normal of the cut, not that of its face.
+  int cut = -1;                             // number of the initial cut; -1: no joint
+  Vector<dim> cut_normal = face.normal;     // unit, i -> j, reference
+  Vector<dim> home = Vector<dim>::Zero();   // m, reference: centre of the partner of the packing
+  Vector<dim> passed = Vector<dim>::Zero(); // m, reference: how far j had slid when it came to i
   // Friction: the elastic slip of j against i, and where both were when it was last updated.
   Vector<dim> slip = Vector<dim>::Zero(); // m
-  Vector<dim> last_distance = Vector<dim>::Zero();
+  Vector<dim> last_between = Vector<dim>::Zero(), last_lever = last_between,
+              last_normal = last_between;
   Turn<dim> last_turn_i, last_turn_j;
   double last_angle_i = 0, last_angle_j = 0; // 2D
   bool known = false;
+  // Opening and closing: theory.md eq. (E10).
+  std::optional<double> last_overlap; // m
+  double correction = 0;              // N, added to the pressure in the step of the change
+
+  bool is_joint() const { return cut >= 0; }
 };
 
 template <int dim>
@@ -33,9 +46,15 @@ public:
 
   void add(const Bond<dim> &face, bool from_face);
 
-  /// Adds forces and torques; updates slips and books the work of friction. Calling it again in the
-  /// same state changes neither.
-  void add_forces(Particles &particles);
+  /// A face of initial cut number `cut`, whose unit normal is given (either sense); centre of j in
+  /// the reference (m).
+  void add_joint(const Bond<dim> &face, int cut, const Vector<dim> &cut_normal,
+                 const Vector<dim> &centre_j);
+
+  /// Adds forces and torques; updates slips and books the work of friction and the step error. The
+  /// forces of everything else are there already; dt (s) is the step. Calling it again in the same
+  /// state changes neither.
+  void add_forces(Particles &particles, double dt);
 
   /// Compression and elastic slip, in J.
   double energy(const Particles &particles) const;
@@ -45,8 +64,16 @@ public:
 
   double frictional_work() const { return frictional_work_; }
 
+  /// Energy in J that the leap-frog lost (above 0) where contacts opened and closed between two
+  /// steps, after the correction: exactly what (E1) misses.
+  double step_error() const { return step_error_; }
+
   /// Adds S a (x) t (N m, Voigt order) of the present normal and frictional forces.
   void add_moments(const Particles &particles, Components<n_strains<dim>> &moments) const;
+
+  /// visit(i, a, f): lever (m) and force (N) on particle i of every contact that is closed.
+  template <typename Visit>
+  void for_each_moment(const Particles &particles, Visit &&visit) const;
 
   const std::vector<Contact<dim>> &all() const { return contacts_; }
 
@@ -56,17 +83,43 @@ public:
   /// Drops the contacts that the search found and that are farther apart than `distance` (m).
   void drop_distant(const Particles &particles, double distance);
 
+  /// How far j has slid along the cut against i since the reference, in m, reference axes.
+  static Vector<dim> slide(const Contact<dim> &joint, const Particles &particles);
+
+  /// Joint number k goes on between i and `j`, or ends when j < 0. What that changes of the energy
+  /// counts as frictional work.
+  void pass_on(std::size_t k, int j, const Particles &particles);
+
 private:
   struct State
   {
-    Vector<dim> normal;
-    double distance, overlap, stiffness; // m, m, N/m
+    Vector<dim> between;       // m, centre i to centre j
+    Vector<dim> normal;        // unit, i -> j
+    Vector<dim> lever;         // m, centre i to the point where both touch
+    double overlap, stiffness; // m, N/m
   };
   State state(const Contact<dim> &contact, const Particles &particles) const;
   void update_slip(Contact<dim> &contact, const State &state, const Particles &particles);
+  void add_force(const Contact<dim> &contact, const State &state, const Vector<dim> &force,
+                 Particles &particles) const;
+  void correct_step(Contact<dim> &contact, const State &state, double dt, const Particles &p);
 
   Materials materials_;
   std::vector<Contact<dim>> contacts_;
-  double frictional_work_ = 0;
+  double frictional_work_ = 0, step_error_ = 0;
 };
+
+template <int dim>
+template <typename Visit>
+void Contacts<dim>::for_each_moment(const Particles &p, Visit &&visit) const
+{
+  for (const auto &c : contacts_) {
+    const State s = state(c, p);
+    if (s.overlap <= 0)
+      continue;
+    const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal);
+    visit(c.face.i, s.lever, f);
+    visit(c.face.j, Vector<dim>(s.lever - s.between), Vector<dim>(-f));
+  }
+}
 } // namespace ligament::dem

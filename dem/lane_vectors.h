@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
@@ -130,6 +132,28 @@ HWY_INLINE Quaternion<V> add_product(const Quaternion<V> &q, const Triple<V> &n,
 {
   return {hn::NegMulAdd(q.v.x, n.x, hn::NegMulAdd(q.v.y, n.y, hn::NegMulAdd(q.v.z, n.z, b.w))),
           add_cross(q.v, n, mul_add(q.w, n, b.v))};
+}
+
+/// Bit n: lane n is true.
+template <typename D>
+HWY_INLINE std::uint32_t lane_bits(D d, hn::Mask<D> mask)
+{
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
+
+/// Where the force f on a face has a tension, and sigma + tangent |tau| of it times the face
+/// reaches `strength`; along `normal`, of any length. To 1e-7 where tau is small.
+template <typename D, typename Vector, typename V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> reaches(D d, const Vector &f, const Vector &normal, V strength,
+                               double tangent)
+{
+  const V zero = hn::Zero(d);
+  const V tension = add_dot(f, normal, zero), length2 = add_dot(normal, normal, zero);
+  const V shear2 = hn::NegMulAdd(tension, tension, hn::Mul(add_dot(f, f, zero), length2));
+  const V reached = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(shear2, zero)), tension);
+  return hn::And(hn::Gt(tension, zero), hn::Ge(reached, hn::Mul(strength, hn::Sqrt(length2))));
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

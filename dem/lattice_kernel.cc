@@ -1,13 +1,32 @@
 #include "dem/lattice_kernel.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
 namespace ligament::dem
 {
-void RowWindow::reset(int n_streams, long stride, int length)
+namespace
 {
-  core::require(length <= stride, "a layer of the packing has too many particles");
+// The message is made only where it is needed: kernels ask in every step.
+void check_length(long least, long n_particles, long stride)
+{
+  if (std::min(least, n_particles) <= stride)
+    return;
+  throw core::InputError(
+      fmt::format("/discrete_zone: neighbours of the packing are {} particles apart in their "
+                  "order, and at most {} can be bridged; make the zone smaller across its "
+                  "longest side, or /discrete_zone/spacing larger",
+                  (least - window_length_for(0)) / 3, largest_reach));
+}
+} // namespace
+
+void RowWindow::reset(int n_streams, long stride, long least, int n)
+{
+  check_length(least, n, stride);
+  // Sliding takes little time when the window is twice as long as it must be.
+  const int length = int(std::min({2 * least, stride, long(n)}));
   if (n_streams != n_streams_ || stride != stride_ || length > length_) {
     constexpr int several_pages = 4096;
     data_ = core::LargeArray(n_streams * stride, length > several_pages);
@@ -22,6 +41,8 @@ void RowWindow::slide(int keep, int end)
 {
   if (end <= begin_ + length_)
     return;
+  if (end - keep > length_)
+    throw core::InputError("the row kernel's window is too short for its sweep");
   if (keep < begin_ + length_) // else a gap at rest lies in between
     for (int s = 0; s < n_streams_; ++s) {
       double *const first = data_.data() + s * stride_;
@@ -69,6 +90,7 @@ LatticeKernel<dim>::LatticeKernel(const std::vector<DirectionData<dim>> &directi
   for (const RowSegment &s : segments)
     for (int k = 0; k < n; ++k)
       reach_ = std::max({reach_, std::abs(s.forward[k]), std::abs(s.backward[k])});
+  check_length(window_length_for(reach_), n_particles, RowWindow::wide);
 }
 
 template <int dim>
@@ -91,9 +113,9 @@ void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
 
 template <int dim>
 void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
-                                const std::vector<RowSegment> &segments, double strength,
-                                const TractionScreen &screen, RowWindow &window,
-                                std::vector<RowRange> &exceeded,
+                                const std::vector<RowSegment> &segments,
+                                const BreakScreen &breaking, const TractionScreen &screen,
+                                RowWindow &window, std::vector<RowRange> &exceeded,
                                 const particles::AwakeRanges *ranges) const
 {
   exceeded.clear();
@@ -103,12 +125,13 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   s.with_forces = true;
   if (ranges)
     s.ranges = ranges;
-  const auto squared = [&](double traction) {
-    const double force = traction * area_;
-    return traction > 0 ? force * force : std::numeric_limits<double>::infinity();
+  const auto force = [&](double traction) {
+    return traction > 0 ? traction * area_ : std::numeric_limits<double>::infinity();
   };
-  s.constants.strength2 = squared(strength);
-  s.constants.limit2 = std::min(s.constants.strength2, squared(screen.traction));
+  const auto squared = [](double value) { return value * value; };
+  s.constants.strength = force(breaking.strength);
+  s.constants.tangent = breaking.tangent;
+  s.constants.limit2 = squared(std::min(force(breaking.least_traction()), force(screen.traction)));
   s.screen = screen;
   s.exceeded = &exceeded;
   sweep_rows(s);

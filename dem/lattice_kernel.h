@@ -5,6 +5,8 @@
 #include "dem/bond_network.h"
 #include "particles/rest_blocks.h"
 
+#include <cmath>
+
 namespace ligament::dem
 {
 /// The streams that the kernel reads and writes, one array per component.
@@ -30,13 +32,14 @@ struct LatticeConstants
 {
   int n_directions = 0;
   std::array<std::array<double, dim>, max_directions> normal{};
-  double half = 0;      // q = r/2, m
-  double shear = 0;     // 2G S/r, N/m
-  double area_r = 0;    // S/r, m
-  double bending = 0;   // k_b, N m
-  double twist = 0;     // k_t - k_b, N m
-  double strength2 = 0; // (strength S)^2, N^2; infinite when nothing breaks
-  double limit2 = 0;    // the same of what is looked for first: strength or screen
+  double half = 0;     // q = r/2, m
+  double shear = 0;    // 2G S/r, N/m
+  double area_r = 0;   // S/r, m
+  double bending = 0;  // k_b, N m
+  double twist = 0;    // k_t - k_b, N m
+  double strength = 0; // times S, N: of BreakScreen; infinite when nothing breaks
+  double tangent = 0;  // of BreakScreen
+  double limit2 = 0;   // force^2 on a face, N^2: of what is looked for first
 };
 
 /// Particles that each stage of the sweep takes at once.
@@ -58,20 +61,34 @@ struct TractionScreen
   static constexpr int block = 256;
 };
 
+/// Bonds that could break: those under sigma + tangent |tau| >= strength with sigma > 0, the normal
+/// and the tangential traction of the face.
+struct BreakScreen
+{
+  double strength = 0; // Pa; 0: nothing breaks
+  double tangent = 0;
+
+  /// No traction below this one, in any direction, reaches the strength.
+  double least_traction() const { return strength / std::sqrt(1 + tangent * tangent); }
+};
+
 /// State and intermediate results of the rows at work, one stream per number; it slides along the
 /// particles and stays in the cache, while the arrays of the body are passed over once.
 class RowWindow
 {
 public:
-  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle;
-  /// no multiples of 4096 bytes, so that these lie in different sets of the cache. Close together
-  /// they share large pages; the wide one is for layers with very many particles.
-  static constexpr long close = (1L << 16) + 24, wide = (1L << 20) + 24;
+  /// From one stream to the next. Constants, so that one pointer reaches all streams of a particle,
+  /// by an offset that fits the processor's instructions; no multiples of 4096 bytes, so that these
+  /// lie in different sets of the cache. Close together they share large pages; the wide one is for
+  /// layers with very many particles.
+  static constexpr long close = (1L << 16) + 24, wide = (1L << 23) + 24;
 
-  /// Room for `length` particles from 0 on. Memory is taken as it is touched.
-  void reset(int n_streams, long stride, int length);
+  /// Room for at least `least` particles, or for all n of them, from 0 on. Memory is taken as it is
+  /// touched. Throws core::InputError when the stride is too short for them.
+  void reset(int n_streams, long stride, long least, int n);
 
-  /// Makes room up to `end`, keeping what was written from `keep` on; the length bounds end - keep.
+  /// Makes room up to `end`, keeping what was written from `keep` on; throws core::InputError when
+  /// the room does not suffice.
   void slide(int keep, int end);
 
   /// Where stream 0 of particle 0 would lie; valid for particles in the window until the next
@@ -83,6 +100,15 @@ private:
   long stride_ = 0;
   int n_streams_ = 0, length_ = 0, begin_ = 0;
 };
+
+/// Particles that the window holds at least where neighbours are at most `reach` apart.
+constexpr long window_length_for(long reach)
+{
+  return 3 * reach + 2 * row_piece + most_lanes;
+}
+
+/// Largest offset between neighbours that the kernels can bridge: about a layer of the packing.
+inline constexpr long largest_reach = (RowWindow::wide - window_length_for(0)) / 3;
 
 /// Everything one sweep over the segments needs; passed through the run-time dispatch.
 template <int dim>
@@ -102,7 +128,7 @@ struct RowSweep
   TractionScreen screen = {};
 
   /// Particles that the window must hold at least.
-  long window_length() const { return 3L * reach + 2 * row_piece + most_lanes; }
+  long window_length() const { return window_length_for(reach); }
 };
 
 /// cos - 1 and sin of n angles, to round-off for any angle below 1e5.
@@ -116,6 +142,7 @@ template <int dim>
 class LatticeKernel
 {
 public:
+  /// Throws core::InputError when neighbours lie farther apart than largest_reach.
   LatticeKernel(const std::vector<DirectionData<dim>> &directions,
                 const std::vector<RowSegment> &segments, int n_particles, double shear_modulus,
                 bool volumetric);
@@ -129,11 +156,10 @@ public:
 
   /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
   /// there is no lattice. With `ranges` only of the particles that are stepped, and the pressures
-  /// that they see; all others must be at rest, or held. With a strength above 0 (Pa), replaces
-  /// `exceeded` by the ranges of particles that have a forward bond under at least that tension;
-  /// ranges don't overlap.
+  /// that they see; all others must be at rest, or held. Replaces `exceeded` by ranges of particles
+  /// among which are those with a forward bond that could break; ranges don't overlap.
   void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-              double strength, const TractionScreen &screen, RowWindow &window,
+              const BreakScreen &breaking, const TractionScreen &screen, RowWindow &window,
               std::vector<RowRange> &exceeded,
               const particles::AwakeRanges *ranges = nullptr) const;
 

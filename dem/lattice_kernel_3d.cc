@@ -204,9 +204,9 @@ public:
         hn::MulAdd(hn::Set(d, 2 * c_.bending), v2, hn::Mul(hn::Set(d, 2 * c_.twist), vn2)));
   }
 
-  /// True when the tension along the present normal of a forward face reaches the strength.
+  /// The particles with a forward face that could break.
   template <typename D>
-  HWY_INLINE bool exceeds(D d, long i, const Offsets &offsets) const
+  HWY_INLINE hn::Mask<D> could_break(D d, long i, const Offsets &offsets) const
   {
     const BondMask<D> mask(d, a_.mask, i);
     const auto zero = hn::Zero(d);
@@ -222,11 +222,9 @@ public:
                             k);
       const auto n = normal(d, k);
       const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
-      const auto tension = add_dot(t, mean, zero);
-      const auto limit = hn::Mul(hn::Set(d, c_.strength2), add_dot(mean, mean, zero));
-      found = hn::Or(found, hn::Ge(hn::Mul(tension, hn::Abs(tension)), limit));
+      found = hn::Or(found, reaches(d, t, mean, hn::Set(d, c_.strength), c_.tangent));
     });
-    return !hn::AllFalse(d, found);
+    return found;
   }
 
 private:

@@ -7,6 +7,7 @@
 #define LIGAMENT_DEM_LATTICE_ROWS_H
 #endif
 
+#include "dem/lane_vectors.h"
 #include "dem/lattice_kernel.h"
 
 #include <hwy/cache_control.h>
@@ -126,10 +127,7 @@ public:
   HWY_INLINE explicit RowPipeline(const RowSweep<dim> &sweep)
       : sweep_(sweep), bonds_(sweep), dilated_(*sweep.segments, sweep.ranges->pressed)
   {
-    // Sliding takes little time when the window is twice as long as it must be.
-    const long length = std::min(2 * sweep.window_length(), Bonds::stride);
-    sweep.window->reset(Bonds::n_streams, Bonds::stride,
-                        int(std::min(length, long(sweep.n_particles))));
+    sweep.window->reset(Bonds::n_streams, Bonds::stride, sweep.window_length(), sweep.n_particles);
   }
 
   HWY_INLINE void run()
@@ -218,7 +216,7 @@ private:
     });
   }
 
-  /// Where the limit was reached: marks of the screen, and bonds that exceed the strength.
+  /// Where the limit was reached: marks of the screen, and particles with bonds that could break.
   template <typename D>
   HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, const RowRange &range)
   {
@@ -226,8 +224,19 @@ private:
       sweep_.screen.mark(range.begin);
       sweep_.screen.mark(range.end - 1);
     }
-    if (std::isfinite(sweep_.constants.strength2) && bonds_.exceeds(d, i, offsets))
-      sweep_.exceeded->push_back(range);
+    if (!std::isfinite(sweep_.constants.strength))
+      return;
+    const std::uint32_t found = lane_bits(d, bonds_.could_break(d, i, offsets));
+    if (found == 0)
+      return;
+    int first = 0, last = int(hn::Lanes(d)) - 1;
+    while (!(found >> first & 1))
+      ++first;
+    while (!(found >> last & 1))
+      --last;
+    const RowRange lanes{std::max(range.begin, int(i) + first), int(i) + last + 1};
+    if (lanes.begin < lanes.end)
+      sweep_.exceeded->push_back(lanes);
   }
 
   HWY_INLINE void energies(const PieceCursor &piece)

@@ -50,6 +50,11 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materia
   for (const auto &face : packing.faces)
     if (face.cracked) {
       Bond<dim> b = BondNetwork<dim>::make_bond(face, materials_, packing.thickness);
+      if (face.cut >= 0) {
+        contacts_.add_joint(b, face.cut, packing.cuts[face.cut].normal(),
+                            get(packing.centre, face.j));
+        continue;
+      }
       // Closed faces press with nothing, not even with rounding: that would be a load from the
       // start.
       const Vector<dim> between = get(packing.centre, b.j) - get(packing.centre, b.i);
@@ -57,6 +62,7 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materia
       contacts_.add(b, true);
     }
   boundary_faces_ = std::move(packing.boundary_faces);
+  find_largest_size_factor();
 }
 
 template <int dim>
@@ -109,6 +115,12 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
   lay_out_slices();
   for (int i = 0; i < bonds_.n_particles(); ++i)
     lambda_per_volume_[i] *= weights[i];
+}
+
+template <int dim>
+void ManyBodyForce<dim>::set_coupled_edge(const Particles &p, particles::CoupledEdge<dim> edge)
+{
+  edge_ = EdgeCells<dim>(std::move(edge), boundary_faces_, materials_, p, energy_weights_);
 }
 
 template <int dim>
@@ -182,14 +194,6 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
 }
 
 template <int dim>
-double ManyBodyForce<dim>::tension(const Bond<dim> &b, const Particles &p,
-                                   const std::vector<double> &pressure) const
-{
-  const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
-  return bond_force(b, motion(b, p), pressure).dot(normal) / (b.weight * b.area);
-}
-
-template <int dim>
 void ManyBodyForce<dim>::find_other_pressure(const Particles &p, const SurfaceLoads<dim> &surface,
                                              Workspace &work) const
 {
@@ -214,12 +218,14 @@ void ManyBodyForce<dim>::find_pressure(const Particles &p, Workspace &work) cons
 {
   find_turns(p, work);
   find_other_pressure(p, surface_, work);
-  if (!materials_.has_no_dilatation())
-    kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
+  if (materials_.has_no_dilatation())
+    return;
+  kernel_.dilatation(arrays(p, work), bonds_.segments(), rows_);
+  edge_.complete_pressures(p, work.pressure);
 }
 
 template <int dim>
-void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface, double strength,
+void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface, bool may_break,
                                         Workspace &work) const
 {
   find_other_pressure(p, surface, work);
@@ -233,9 +239,9 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
-  kernel_.forces(a, bonds_.segments(), strength, screen, rows_, work.exceeded_rows,
-                 awake_ranges(work));
-  slices_.forces(a, strength > 0 ? screening_strength() : 0, screen, records_,
+  kernel_.forces(a, bonds_.segments(), may_break ? breaking_screen(false) : BreakScreen(), screen,
+                 rows_, work.exceeded_rows, awake_ranges(work));
+  slices_.forces(a, may_break ? breaking_screen(true) : BreakScreen(), screen, records_,
                  work.exceeded_particles, awake_slices(work));
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
@@ -248,13 +254,16 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
 template <int dim>
 void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
-  if (time != time_)
+  if (time != time_) {
     last_time_ = time_;
-  time_ = time;
+    time_ = time;
+    breaking_step_error_ += quarter_work_of_jumps(p);
+    jumps_.clear();
+  }
   surface_.set_time(time);
   if (rest_ && !rest_->all_awake())
     wake_loaded();
-  elastic_forces(p, surface_, strength(), work_);
+  elastic_forces(p, surface_, true, work_);
   if (plastic_) {
     surface_.book_work(p, work_.pressure); // with the reactions before the flow
     flow(p);
@@ -268,9 +277,13 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     add_contact_forces(p);
   }
   surface_.book_work(p, work_.pressure);
+  if (broken_at_ == time)
+    return;
   const auto exceeding = exceeding_bonds(p);
-  if (!exceeding.empty())
-    break_bonds(p, exceeding, time);
+  if (exceeding.empty())
+    return;
+  broken_at_ = time;
+  break_bonds(p, exceeding, time);
 }
 
 template <int dim>

@@ -6,6 +6,7 @@
 #include "dem/bond_slices.h"
 #include "dem/contact_search.h"
 #include "dem/contacts.h"
+#include "dem/edge_cells.h"
 #include "dem/fracture_law.h"
 #include "dem/interfaces.h"
 #include "dem/lattice_kernel.h"
@@ -31,6 +32,33 @@ struct BrokenBond
   double energy;                   // J, released
 };
 
+/// A bond under tension as a criterion looks at it.
+template <int dim>
+struct BondTension
+{
+  BondId id;
+  Bond<dim> bond;
+  Vector<dim> normal, traction; // of the face at present; Pa
+  double utilisation;           // tension over strength, or a bound of it; 0 without tension
+};
+
+/// How near the most loaded of some faces is to breaking.
+template <int dim>
+struct Utilisation
+{
+  double share = 0;                        // of the limit at which it breaks
+  Vector<dim> place = Vector<dim>::Zero(); // m, face point in the reference
+};
+
+/// Whether the faces of a particle are watched: those with a watched particle and without an
+/// exempt one.
+enum class Watch : char
+{
+  none,
+  watched,
+  exempt
+};
+
 template <int dim>
 class ManyBodyForce : public particles::ParticleForce<dim>
 {
@@ -41,9 +69,9 @@ public:
   ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
                 std::vector<core::BoundaryLoad<dim>> loads, const FractureLaw &fracture = {});
 
-  /// Also breaks the bonds that exceed the strength and books work and energies; in such a step the
-  /// force is the mean of those before and after, which closes the energy balance to second order.
-  /// Calling it again in the same state changes nothing more.
+  /// Also breaks the bonds that exceed the strength, once at every new time, and books work and
+  /// energies; in such a step the force is the mean of those before and after, which closes the
+  /// energy balance to second order. Calling it again in the same state changes nothing more.
   void compute(Particles &particles, double time) override;
 
   /// Loads wake the blocks that they act on when they begin, contacts theirs.
@@ -65,6 +93,11 @@ public:
 
   void set_energy_weights(const std::vector<double> &weights) override;
 
+  /// After set_energy_weights(). Stresses, tensions and the search for breaking bonds follow it.
+  void set_coupled_edge(const Particles &particles, particles::CoupledEdge<dim> edge) override;
+  /// Which faces never break, and the pressures of cells that lack faces.
+  const EdgeCells<dim> &edge_cells() const { return edge_; }
+
   void
   for_each_face(const Particles &particles,
                 const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
@@ -81,6 +114,18 @@ public:
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.
   double max_tension(const Particles &particles, const std::vector<int> &of) const;
 
+  /// Of the bonds of these particles the one that bears the largest share of its strength by the
+  /// criterion; of utilisation 0 where none is under tension, and without a criterion.
+  BondTension<dim> weakest_bond(const Particles &particles, const std::vector<int> &of) const;
+
+  /// Every compute() notes the faces that reach this share of their limit (above 0, at most 1, the
+  /// default) for utilisation().
+  void set_noted_share(double share);
+
+  /// The watched face nearest to its limit at the last compute(); one entry per particle. Its share
+  /// is 0 where no face reached the noted share.
+  Utilisation<dim> utilisation(const Particles &particles, const std::vector<Watch> &watch) const;
+
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
   Vector<dim> reaction(int load) const { return surface_.reaction(load); }
@@ -90,10 +135,10 @@ public:
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return fracture_energy_; }
-  /// Energy in J by which the leap-frog's invariant (kinetic energy 1/2 v(-) m v(+)) fell at the
-  /// steps that broke bonds: sum of dt^2/8 (F^2 after - F^2 before)/m, spins likewise; dt is the
-  /// time since the previous compute(). Belongs to the energy balance; second order in the step.
-  double breaking_step_error() const { return breaking_step_error_; }
+  /// Energy in J by which the leap-frog's invariant (kinetic energy 1/2 v(-) m v(+)) fell because
+  /// forces jumped, theory.md (E10): where bonds broke, and where contacts opened or closed.
+  /// Belongs to the energy balance; second order in the step.
+  double breaking_step_error() const { return breaking_step_error_ + contacts_.step_error(); }
   /// Energy in J that friction took.
   double frictional_work() const { return contacts_.frictional_work(); }
 
@@ -109,7 +154,7 @@ public:
   /// Energy in J that plastic flow took: with it the leap-frog's balance is closed.
   double plastic_dissipation() const { return plastic_dissipation_; }
 
-  /// Bonds break at this tension on the face from now on, in Pa.
+  /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength);
   const FractureLaw &fracture() const { return fracture_; }
   const Materials &materials() const { return materials_; }
@@ -120,8 +165,8 @@ private:
   {
     std::vector<double> pressure;             // lambda_i theta_i, Pa
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
-    std::vector<RowRange> exceeded_rows;
-    std::vector<int> exceeded_particles; // with bonds of the table that may exceed the strength
+    std::vector<RowRange> exceeded_rows; // with bonds that may reach the noted share of the limit
+    std::vector<int> exceeded_particles; // with bonds of the table that may
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
     double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
@@ -141,10 +186,6 @@ private:
   Vector<dim> bond_force(const Bond<dim> &bond, const BondMotion<dim> &motion,
                          const std::vector<double> &pressure) const;
 
-  /// Traction along the present normal of the face, in Pa.
-  double tension(const Bond<dim> &bond, const Particles &particles,
-                 const std::vector<double> &pressure) const;
-
   /// The pressures of other_particles_ from irregular bonds and loaded faces, and the slices'
   /// records.
   void find_other_pressure(const Particles &particles, const SurfaceLoads<dim> &surface,
@@ -159,11 +200,11 @@ private:
   /// Of contacts; what a threshold holds at rest stays without forces.
   void add_contact_forces(Particles &particles);
 
-  /// Turns and pressures of all particles.
+  /// Turns and pressures of all particles; of open cells at a coupled edge those of whole ones.
   void find_pressure(const Particles &particles, Workspace &work) const;
-  /// Overwrites forces and torques by those of bonds and loaded faces; notes what exceeds the
-  /// strength when it is above 0.
-  void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, double strength,
+  /// Overwrites forces and torques by those of bonds and loaded faces; notes what could break when
+  /// something `may_break`.
+  void elastic_forces(Particles &particles, SurfaceLoads<dim> &surface, bool may_break,
                       Workspace &work) const;
 
   /// visit(i) for the particles of blocks with plastic strains.
@@ -197,15 +238,31 @@ private:
   /// Yields where the stress asks for it; forces and pressures follow.
   void flow(Particles &particles);
 
-  /// Of lattice bonds in Pa; 0: nothing breaks.
-  double strength() const;
-  /// In terms of the first material's bonds: no bond of the table breaks at less strain.
-  double screening_strength() const;
-  /// Of a bond in Pa, which has one.
+  /// What the kernels look for; of the table's bonds in terms of the first material's.
+  BreakScreen breaking_screen(bool of_table) const;
+  /// Of a bond in Pa.
   double strength_of(const Bond<dim> &bond) const;
-  /// The bonds that exceed the strength, in the order of global ids.
+  double size_factor(const Bond<dim> &bond) const;
+  void find_largest_size_factor();
+  /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
+  BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
+                                const std::vector<double> &pressure) const;
+  /// The bonds whose bound reaches the noted share, in the order of global ids, after
+  /// elastic_forces().
+  std::vector<BondTension<dim>> suspected_bonds(const Particles &particles) const;
+  static std::pair<std::int64_t, std::int64_t> global_ids(const Bond<dim> &bond,
+                                                          const Particles &particles);
+  /// Averaged stresses (D10) in Pa of these particles, ascending.
+  std::vector<Strain<dim>> stresses_of(const std::vector<int> &few, const Particles &particles,
+                                       const std::vector<double> &pressure) const;
+  /// Utilisations by eq. (D12) in place of their bounds.
+  void find_principal_tension(std::vector<BondTension<dim>> &bonds, const Particles &particles,
+                              const std::vector<double> &pressure) const;
+  /// The bonds that break now, in this order.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
+  /// A quarter of the work in J that the jumps of the last break do over this step's motion.
+  double quarter_work_of_jumps(const Particles &particles) const;
   /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
   /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
@@ -228,6 +285,7 @@ private:
   std::vector<particles::BoundaryFace<dim>> boundary_faces_;
   Materials materials_;
   FractureLaw fracture_;
+  double noted_share_ = 1; // of the limit, see set_noted_share
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
   BondSlices<dim> slices_; // the irregular bonds, but those between materials
@@ -235,6 +293,7 @@ private:
   SurfaceLoads<dim> surface_;
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
+  EdgeCells<dim> edge_;
   bool searching_ = false;
   double largest_lever_share_ = 0; // of all particles: sum of S |a| / V over the bonds
   // Particles whose pressure has parts beside the lattice's, ascending.
@@ -247,11 +306,20 @@ private:
   mutable RowWindow rows_; // scratch: nothing in it outlives a call
   mutable core::LargeArray records_;
   std::vector<BrokenBond<dim>> broken_;
+  struct Jump
+  {
+    int i;
+    Vector<dim> force; // N, after less before
+    Spin<dim> torque;  // N m
+  };
+  std::vector<Jump> jumps_; // where bonds broke in the last step
   std::unique_ptr<PlasticBlocks<dim>> plastic_;
   double yield_traction_ = 0;       // Pa: no particle yields whose bonds all have less,
   double pressure_share_ = 0;       // and whose pressure (plane strain) is below this share of it
   std::optional<double> flowed_at_; // s
   double plastic_dissipation_ = 0;
+  double largest_size_factor_ = 1;  // of the bonds
+  std::optional<double> broken_at_; // s
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;
 };

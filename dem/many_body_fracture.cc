@@ -1,81 +1,10 @@
-// Breaking of bonds: criterion, energy released, contact in place of the bond.
+// Breaking of bonds: energy released, contact in place of the bond.
 #include "dem/many_body_force.h"
 
 #include <algorithm>
 
 namespace ligament::dem
 {
-template <int dim>
-void ManyBodyForce<dim>::set_strength(double strength)
-{
-  core::require(strength > 0, "the strength must be positive");
-  fracture_ = {FractureLaw::Criterion::maximum_tension, strength};
-}
-
-template <int dim>
-double ManyBodyForce<dim>::strength() const
-{
-  return fracture_.criterion == FractureLaw::Criterion::none ? 0. : fracture_.strength;
-}
-
-template <int dim>
-double ManyBodyForce<dim>::strength_of(const Bond<dim> &b) const
-{
-  const auto &of = fracture_.strengths;
-  return of.empty() ? fracture_.strength
-                    : std::min(of[materials_.number(b.i)], of[materials_.number(b.j)]);
-}
-
-template <int dim>
-double ManyBodyForce<dim>::screening_strength() const
-{
-  double least = fracture_.strength;
-  for (std::size_t m = 0; m < fracture_.strengths.size(); ++m)
-    least = std::min(least, fracture_.strengths[m] * materials_.base().shear_modulus() /
-                                materials_.all()[m].shear_modulus());
-  return least;
-}
-
-template <int dim>
-std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
-{
-  std::vector<BondId> found;
-  const auto test = [&](int i, bool lattice) {
-    bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i &&
-          tension(b, p, work_.pressure) >= strength_of(b))
-        found.push_back(id);
-    });
-  };
-  for (const RowRange &range : work_.exceeded_rows)
-    for (int i = range.begin; i < range.end; ++i)
-      test(i, true);
-  for (const int i : work_.exceeded_particles)
-    test(i, false);
-  if (strength() > 0)
-    bonds_.for_each_interface([&](BondId id, const Bond<dim> &b) {
-      if (tension(b, p, work_.pressure) >= strength_of(b))
-        found.push_back(id);
-    });
-  if (plastic_ && strength() > 0) // the kernels don't know plastic strains
-    for (const RowRange &range : plastic_->around_plastic())
-      for (int i = range.begin; i < range.end; ++i) {
-        test(i, true);
-        test(i, false);
-      }
-  const auto ids = [&](const BondId &id) {
-    const Bond<dim> b = bonds_.bond(id);
-    const auto i = p.global_id[b.i], j = p.global_id[b.j];
-    return std::pair(std::min(i, j), std::max(i, j));
-  };
-  std::sort(found.begin(), found.end(),
-            [&](const BondId &a, const BondId &b) { return ids(a) < ids(b); });
-  found.erase(std::unique(found.begin(), found.end(),
-                          [&](const BondId &a, const BondId &b) { return ids(a) == ids(b); }),
-              found.end());
-  return found;
-}
-
 template <int dim>
 double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const BondMotion<dim> &m,
                                        const Particles &p) const
@@ -150,38 +79,43 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
                        Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, released});
   }
   searching_ = true;
-  elastic_forces(p, surface_, 0., work_);
+  const auto noted_rows = work_.exceeded_rows; // what utilisation() looks at
+  const auto noted_particles = work_.exceeded_particles;
+  elastic_forces(p, surface_, false, work_);
+  work_.exceeded_rows = noted_rows;
+  work_.exceeded_particles = noted_particles;
   add_contact_forces(p);
   surface_.book_work(p, work_.pressure); // the supports' reactions changed, nothing moved
-  // Kinetic energy 1/2 v(-) m v(+) holds -dt^2/8 F^2/m against that of the mean velocity, which
-  // the mean force leaves as it is.
-  const double dt = time_ - last_time_;
-  const auto mean = [&](auto &now, const auto &before, double moment) {
-    for (std::size_t c = 0; c < now.size(); ++c)
-      for (std::size_t i = 0; i < now[c].size(); ++i) {
-        breaking_step_error_ += dt * dt / (8 * moment * p.mass[i]) * (now[c][i] - before[c][i]) *
-                                (now[c][i] + before[c][i]);
-        now[c][i] = 0.5 * (now[c][i] + before[c][i]);
-      }
-  };
-  mean(p.force, force_before, 1.);
-  mean(p.torque, torque_before, p.gyration);
+  // The mean of both forces acts. Over the step before, the force before would have made the work
+  // exact, over the next one that after: (E10).
+  jumps_.clear();
+  for (int i = 0; i < p.n_owned; ++i) {
+    const Jump jump = {i, get(p.force, i) - get(force_before, i),
+                       get(p.torque, i) - get(torque_before, i)};
+    if (jump.force.isZero(0) && jump.torque.isZero(0))
+      continue;
+    add(p.force, i, Vector<dim>(-0.5 * jump.force));
+    add(p.torque, i, Spin<dim>(-0.5 * jump.torque));
+    jumps_.push_back(jump);
+  }
+  breaking_step_error_ -= quarter_work_of_jumps(p);
 }
 
-template void ManyBodyForce<2>::set_strength(double);
-template void ManyBodyForce<3>::set_strength(double);
-template double ManyBodyForce<2>::strength() const;
-template double ManyBodyForce<2>::screening_strength() const;
-template double ManyBodyForce<3>::screening_strength() const;
-template double ManyBodyForce<2>::strength_of(const Bond<2> &) const;
-template double ManyBodyForce<3>::strength_of(const Bond<3> &) const;
+template <int dim>
+double ManyBodyForce<dim>::quarter_work_of_jumps(const Particles &p) const
+{
+  double power = 0;
+  for (const Jump &jump : jumps_)
+    power += jump.force.dot(get(p.velocity, jump.i)) + jump.torque.dot(get(p.spin, jump.i));
+  return 0.25 * (time_ - last_time_) * power;
+}
+
 template double ManyBodyForce<2>::bond_energy(const Bond<2> &, const BondMotion<2> &,
                                               const Particles &) const;
 template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const BondMotion<3> &,
                                               const Particles &) const;
-template double ManyBodyForce<3>::strength() const;
-template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
-template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;
+template double ManyBodyForce<2>::quarter_work_of_jumps(const Particles &) const;
+template double ManyBodyForce<3>::quarter_work_of_jumps(const Particles &) const;
 template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &, double);
 template void ManyBodyForce<3>::break_bonds(Particles &, const std::vector<BondId> &, double);
 template double ManyBodyForce<2>::local_energy(const Bond<2> &, const Particles &) const;

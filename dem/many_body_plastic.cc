@@ -249,7 +249,7 @@ void ManyBodyForce<dim>::flow(Particles &p)
   for (const auto &[i, tensor] : increments)
     update_flowed_volume(i, p.volume[i]);
   surface_.set_plastic([&](int i) { return plastic_->strain(i); });
-  elastic_forces(p, surface_, strength(), work_);
+  elastic_forces(p, surface_, true, work_);
   taken -= flowing_energy(p) + 0.5 * (time_ - last_time_) * power();
   plastic_dissipation_ += taken;
 }

@@ -75,7 +75,7 @@ void ManyBodyForce<dim>::clear_forces_at_rest(Particles &p) const
 template <int dim>
 void ManyBodyForce<dim>::add_contact_forces(Particles &p)
 {
-  contacts_.add_forces(p);
+  contacts_.add_forces(p, time_ - last_time_);
   if (rest_ && !rest_->is_exact() && !rest_->all_awake())
     clear_forces_at_rest(p);
 }

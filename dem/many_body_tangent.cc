@@ -196,6 +196,7 @@ void ManyBodyForce<dim>::stresses(const Particles &particles,
   for (auto &a : stress)
     for (int i = 0; i < bonds_.n_particles(); ++i)
       a[i] /= energy_weight(i) * particles.volume[i];
+  edge_.complete_stresses(particles, stress);
 }
 
 template <int dim>

@@ -109,22 +109,19 @@ public:
     sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, add_dot(f, f, zero)));
   }
 
-  /// Largest of tension |tension| - limit^2 along the present normal, times a square.
+  /// `strain`: the strength of a whole bond over 2G.
   template <typename Bonds>
-  static HWY_INLINE void largest_excess(D d, const Own &own, const Bonds &bond,
-                                        const Record<D> &other, V limit2, V &largest)
+  static HWY_INLINE hn::Mask<D> could_break(D d, const Own &own, const Bonds &bond,
+                                            const Record<D> &other, double strain, double tangent)
   {
     const Motion m(d, own, bond, other);
-    const V zero = hn::Zero(d);
     const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
     const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
     const V2 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
     const V2 n = m.lever_i - m.lever_j;
     const V2 mean = (n + n) + (own.change(n) + m.other.change(n));
-    const V tension = add_dot(f, mean, zero);
-    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), add_dot(n, n, zero));
-    const V limit = hn::Mul(hn::Mul(limit2, shear_r2), add_dot(mean, mean, zero));
-    largest = hn::Max(largest, hn::MulSub(tension, hn::Abs(tension), limit));
+    const V r = hn::Sqrt(add_dot(n, n, hn::Zero(d)));
+    return reaches(d, f, mean, hn::Mul(hn::Set(d, strain), hn::Mul(shear, r)), tangent);
   }
 
 private:

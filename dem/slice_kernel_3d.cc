@@ -123,10 +123,10 @@ public:
     sums.couple = add_cross(c * v, distance, sums.couple);
   }
 
-  /// Largest of tension |tension| - limit^2 along the present normal, times a square.
+  /// `strain`: the strength of a whole bond over 2G.
   template <typename Bonds>
-  static HWY_INLINE void largest_excess(D d, const Own &own, const Bonds &bond,
-                                        const Record<D> &other, V limit2, V &largest)
+  static HWY_INLINE hn::Mask<D> could_break(D d, const Own &own, const Bonds &bond,
+                                            const Record<D> &other, double strain, double tangent)
   {
     const Motion m(d, own, bond, other);
     const V s_r = bond.geometry(d, 6), shear = bond.stiffness(d, 0);
@@ -134,9 +134,8 @@ public:
     const V3 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
     const V3 n = m.lever_i - m.lever_j;
     const V3 mean = (n + n) + (own.change(n) + m.change(n));
-    const V tension = dot(f, mean), shear_r2 = hn::Mul(hn::Mul(shear, shear), dot(n, n));
-    const V limit = hn::Mul(hn::Mul(limit2, shear_r2), dot(mean, mean));
-    largest = hn::Max(largest, hn::MulSub(tension, hn::Abs(tension), limit));
+    const V r = hn::Sqrt(dot(n, n));
+    return reaches(d, f, mean, hn::Mul(hn::Set(d, strain), hn::Mul(shear, r)), tangent);
   }
 
 private:

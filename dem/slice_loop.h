@@ -198,7 +198,8 @@ public:
     for (int s = 0; s < table_.n_slices(); ++s) {
       if (is_left_out(s, Rest::awake))
         continue;
-      bool exceeded = false, reached = false;
+      bool reached = false;
+      std::uint32_t breaking = 0; // bits of lanes
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
         const typename Law::Own own(d, own_record(s, lane));
         typename Law::Sums sum;
@@ -207,12 +208,16 @@ public:
         sum.store(d, own, sums, lane);
         if (HWY_UNLIKELY(sum.exceeds(d))) {
           reached = true;
-          exceeded = exceeded || (sweep_.limit2 < sweep_.never && exceeds(s, lane));
+          if (sweep_.limit2 < sweep_.never)
+            breaking |= could_break(s, lane) << lane;
         }
       }
       finish_forces(s, sums);
-      if (HWY_UNLIKELY(exceeded))
-        for_each_lane(s, [&](int, int i) { sweep_.exceeded->push_back(i); });
+      if (HWY_UNLIKELY(breaking != 0))
+        for_each_lane(s, [&](int l, int i) {
+          if (breaking >> l & 1)
+            sweep_.exceeded->push_back(i);
+        });
       if (HWY_UNLIKELY(reached) && sweep_.screen.traction > 0)
         for_each_lane(s, [&](int, int i) { sweep_.screen.mark(i); });
     }
@@ -252,16 +257,17 @@ private:
       visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
   }
 
-  /// Whether a bond of the vector is under more tension than the limit.
-  HWY_NOINLINE bool exceeds(int s, int lane) const
+  /// Bits of the lanes whose particles have a bond that could break.
+  HWY_NOINLINE std::uint32_t could_break(int s, int lane) const
   {
     const SliceLanes d;
     const typename Law::Own own(d, own_record(s, lane));
-    const auto limit2 = hn::Set(d, sweep_.limit2);
-    auto largest = hn::Zero(d);
+    const auto zero = hn::Zero(d);
+    auto found = hn::Lt(zero, zero);
     for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
-      Law::largest_excess(d, own, b, record(b.neighbour()), limit2, largest);
-    return !hn::AllFalse(d, hn::Gt(largest, hn::Zero(d)));
+      found = hn::Or(
+          found, Law::could_break(d, own, b, record(b.neighbour()), sweep_.strain, sweep_.tangent));
+    return lane_bits(d, found);
   }
 
   HWY_INLINE void finish_forces(int s, const double (&sums)[Law::n_sums][slice_width]) const

@@ -69,7 +69,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
   double beta = 0;
   for (int s = 0; s < steps; ++s) {
     set_motion(p, v, amplitude);
-    elastic_forces(p, surface, 0., work);
+    elastic_forces(p, surface, false, work);
     get_force(p, y, amplitude);
     diagonal.push_back(v.dot(y));
     y -= diagonal.back() * v + beta * previous;

@@ -1,7 +1,8 @@
-// The factor c between toughness and strength: the first intact face ahead of a crack carries
-// sigma = c K_I / sqrt(d), found by a static solve in the near field of a crack tip.
+// The factor c between toughness and strength: where a crack runs, its faces carry
+// sigma = c K_I / sqrt(d) when they break, found by static solves in the near field of its tip.
 #pragma once
 
+#include "dem/fracture_law.h"
 #include "dem/material.h"
 #include "particles/lattice_packing.h"
 #include "particles/random_packing.h"
@@ -16,34 +17,48 @@ struct CrackAxes
   Vector<dim> normal = Vector<dim>::Unit(1);
 };
 
+/// The body around a crack tip. It carries the displacements of linear elastic fracture mechanics
+/// outside the radius, with the origin midway between the last cut and the first intact face;
+/// inside it is solved.
+struct CrackPatch
+{
+  /// Of the crack plane and of the tip's place in it (growth and normal axes), in d, against the
+  /// centre of the packing: a centre of inversion of a lattice.
+  Vector<2> shift = {0.1, 0};
+  double radius = 15;  // d
+  double depth = 4;    // d, 3D: a slab in plane strain between smooth walls
+  double t_stress = 0; // stress along the crack beside the singular field, in K_I/sqrt(d)
+};
+
+/// Raised whenever calibrate_toughness answers otherwise: what was kept before is found anew.
+inline constexpr int toughness_method = 1;
+
 /// c for mode I on a lattice at this orientation (LatticeParameters); strength = c K_Ic / sqrt(d)
-/// then lets a crack start at K_Ic whatever d. A patch of radius 30 d (3D: a slab of radius 8 d
-/// in plane strain) carries the displacements of linear elastic fracture mechanics outside, with
-/// the origin midway between the last cut and the first intact face; inside it is solved.
+/// then lets a crack run at K_Ic whatever d (theory.md section 1.6).
 ///
-/// Where a row lies in the crack plane all tips are alike. Otherwise tips differ (hexagonal, 30
-/// degrees off a row: 0.60 to 0.87) and c is the largest of a few at different places of the
-/// lattice: a straight crack then never starts below K_Ic, but it can start up to 45 % above it.
+/// The crack runs 6 d, face after face, with the stress along it that a crack of 2a = 80 d has
+/// under tension. A face that is harder than those before it breaks in their wave: c is the least
+/// of the largest factors in stretches of 1.5 d. In 3D it is the factor of the first face. Off the
+/// rows the mean of three cracks at different places of the lattice.
 template <int dim>
 double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
-                           const DemMaterial &material, const CrackAxes<dim> &crack = {});
+                           const DemMaterial &material, FractureLaw::Criterion criterion,
+                           const CrackAxes<dim> &crack = {});
 
-/// The same at one place: the crack plane shifted by `shift` (units of d, growth and normal axes)
-/// against the centre of inversion of the lattice, within `radius` (units of d).
-template <int dim>
-double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
-                        const DemMaterial &material, const CrackAxes<dim> &crack,
-                        const Vector<2> &shift, double radius);
-
-/// c for mode I on a random packing: the mean over 16 (3D: 4) crack tips, each in a sample of its
-/// own with the same relaxation and size ratio. Tips differ by some 10 %: a crack starts where it
-/// finds a weak one, and c says what a mean one carries. Within 8 d (3D: 5 d in a slab of 4 d).
+/// The same on a random packing: the mean over 8 cracks (3D: 4), each in a sample of its own with
+/// the same relaxation and size ratio. The packing's own seed is not read.
 template <int dim>
 double calibrate_toughness(const particles::RandomParameters<dim> &packing,
-                           const DemMaterial &material);
+                           const DemMaterial &material, FractureLaw::Criterion criterion);
 
-/// One tip, in the sample of this seed, within `radius` (units of d).
+/// The factor of the first face alone.
+template <int dim>
+double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+                        const DemMaterial &material, FractureLaw::Criterion criterion,
+                        const CrackAxes<dim> &crack, const CrackPatch &patch);
+/// In the sample of this seed.
 template <int dim>
 double crack_tip_factor(const particles::RandomParameters<dim> &packing, int seed,
-                        const DemMaterial &material, double radius);
+                        const DemMaterial &material, FractureLaw::Criterion criterion,
+                        const CrackPatch &patch);
 } // namespace ligament::dem

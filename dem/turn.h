@@ -22,6 +22,7 @@ struct Turn<2>
     const double angle = p.rotation[0][i], half = std::sin(angle / 2);
     return {-2 * half * half, std::sin(angle)};
   }
+  Turn inverse() const { return {cosine_minus_1, -sine}; }
   /// (R - I) a
   Vector<2> change(const Vector<2> &a) const
   {
@@ -39,6 +40,7 @@ struct Turn<3>
   {
     return {p.rotation[0][i], {p.rotation[1][i], p.rotation[2][i], p.rotation[3][i]}};
   }
+  Turn inverse() const { return {w, -v}; }
   /// (R - I) a
   Vector<3> change(const Vector<3> &a) const
   {

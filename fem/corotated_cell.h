@@ -6,9 +6,6 @@
 
 namespace ligament::fem
 {
-template <int dim>
-using CellMatrix = Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>;
-
 /// One column per node.
 template <int dim>
 using CellVectors = Eigen::Matrix<double, dim, n_cell_nodes<dim>>;

@@ -13,10 +13,6 @@ namespace ligament::fem
 {
 namespace
 {
-/// Impedance of a lumped mesh over that of the body, cos(k h/2), for waves of 12 cells along the
-/// normal: dashpots of the body's own would reflect tan(k h/4)^4 of the energy, 1.6e-3 at 8 cells.
-constexpr double mesh_impedance = 0.96592582628906829;
-
 /// Local numbers of the nodes of a cell's face, in lexicographic order.
 template <int dim>
 std::array<int, n_cell_nodes<dim> / 2> face_nodes(int face)
@@ -117,13 +113,14 @@ void FemSolver<dim>::update_own_cells()
 }
 
 template <int dim>
-std::vector<double> FemSolver<dim>::side_areas(int boundary) const
+std::vector<double> FemSolver<dim>::side_areas(int boundary, bool times_depth) const
 {
   std::vector<double> area(mesh_.n_nodes(), 0.);
   for (const CellFace<dim> &face : mesh_.boundary_faces)
     if (face.boundary == boundary && is_own_cell_[face.cell]) {
       const Vector<dim> &h = mesh_.cell_size[face.cell];
-      const double share = h.prod() / h[face.face / 2] * body_.thickness / (n_cell_nodes<dim> / 2);
+      const double share = h.prod() / (times_depth ? 1 : h[face.face / 2]) * body_.thickness /
+                           (n_cell_nodes<dim> / 2);
       for (const int a : face_nodes<dim>(face.face))
         area[mesh_.cells[face.cell][a]] += share;
     }
@@ -137,7 +134,7 @@ void FemSolver<dim>::find_dashpots()
   const double c_p = std::sqrt(body_.stiffness(0, 0) / body_.density);
   const double c_s =
       std::sqrt(body_.stiffness(n_strains<dim> - 1, n_strains<dim> - 1) / body_.density);
-  typename core::Dashpots<dim>::Coefficients coefficients;
+  typename core::Dashpots<dim>::Places dashpots;
   for (const auto &load : loads_) {
     if (!load.absorbing)
       continue;
@@ -145,23 +142,28 @@ void FemSolver<dim>::find_dashpots()
     const auto area = side_areas(load.boundary);
     if (std::none_of(area.begin(), area.end(), [](double a) { return a > 0; }))
       continue;
+    const auto volume = side_areas(load.boundary, true);
     double place = mesh_.nodes[0][axis];
     for (const auto &node : mesh_.nodes)
       place = load.boundary % 2 ? std::max(place, node[axis]) : std::min(place, node[axis]);
     for (int i = 0; i < mesh_.n_nodes(); ++i) {
       const double depth = load.absorbing_layer - std::abs(mesh_.nodes[i][axis] - place);
-      const double layer =
-          depth > 0 ? mass_[i] * core::layer_rate(depth, load.absorbing_layer, c_p) : 0;
-      core::require(!released_node_[i] || (area[i] == 0 && layer == 0),
+      core::require(!released_node_[i] || (area[i] == 0 && depth <= 0),
                     "the overlap or its transition reaches an absorbing side of the specimen or "
                     "its layer; keep the zone away from it or lower /coupling/transition_cells");
       for (int c = 0; c < dim; ++c)
-        if (!held_[c][i] && mass_[i] > 0)
-          coefficients[{i, c}] +=
-              layer + mesh_impedance * area[i] * body_.density * (c == axis ? c_p : c_s);
+        if (!held_[c][i] && mass_[i] > 0) {
+          const double speed = c == axis ? c_p : c_s;
+          auto &here = dashpots[{i, c}];
+          if (area[i] > 0)
+            here.push_back({core::Dashpot::Kind::node, area[i] * body_.density * speed,
+                            volume[i] / area[i] / speed});
+          if (depth > 0)
+            here.push_back(core::layer_dashpot(mass_[i], depth, load.absorbing_layer, c_p));
+        }
     }
   }
-  dashpots_ = core::Dashpots<dim>(coefficients);
+  dashpots_ = core::Dashpots<dim>(dashpots);
 }
 
 template <int dim>

@@ -134,7 +134,8 @@ private:
 
   void find_held_components();
   void update_own_cells();
-  std::vector<double> side_areas(int boundary) const; // of the own cells, per node, m^2
+  /// Of the own cells, per node, in m^2; times the cells' extent along the normal in m^3.
+  std::vector<double> side_areas(int boundary, bool times_depth = false) const;
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
   double load_force(const LoadedComponent &c) const; // on the body, in N

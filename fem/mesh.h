@@ -18,6 +18,9 @@ struct HangingNode
 };
 
 template <int dim>
+using CellMatrix = Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>;
+
+template <int dim>
 struct CellFace
 {
   int cell;
@@ -110,8 +113,13 @@ template <int dim>
 Eigen::Matrix<double, n_strains<dim>, dim * n_cell_nodes<dim>>
 strain_matrix(const Eigen::Matrix<double, dim, n_cell_nodes<dim>> &gradients);
 
-/// int B^T C B over a cell of the given size, times the thickness; 2-point Gauss in each direction.
+/// Numbers of strain modes that a cell has to itself.
 template <int dim>
-Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>
-cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness);
+inline constexpr int n_cell_modes = dim == 2 ? 4 : 12;
+
+/// Stiffness of a cell of the given size, times the thickness: int (B u + G a).C (B u + G a) at the
+/// a that make it least, 2-point Gauss in each direction (theory.md eq. (F8)). Bends without shear
+/// and at any Poisson's ratio; uniform strain is exact.
+template <int dim>
+CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness);
 } // namespace ligament::fem

@@ -1,5 +1,7 @@
 #include "fem/mesh.h"
 
+#include <Eigen/Cholesky>
+
 namespace ligament::fem
 {
 template <int dim>
@@ -57,22 +59,52 @@ strain_matrix(const Eigen::Matrix<double, dim, n_cell_nodes<dim>> &gradients)
   return b;
 }
 
-template <int dim>
-Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>
-cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness)
+namespace
 {
-  Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>> k;
+/// Strains of a cell's own modes at s in [-1, 1]^dim: what the corners' motion leaves out of a
+/// bending cell, and in 3D what it needs to keep its volume at every Gauss point.
+template <int dim>
+Eigen::Matrix<double, n_strains<dim>, n_cell_modes<dim>> mode_strains(const Vector<dim> &s)
+{
+  Eigen::Matrix<double, n_strains<dim>, n_cell_modes<dim>> g;
+  g.setZero();
+  int mode = 0;
+  for (int k = 0; k < dim; ++k)
+    g(k, mode++) = s[k];
+  for (int shear = dim; shear < n_strains<dim>; ++shear)
+    for (int k = 0; k < dim; ++k)
+      if (dim == 2 || k != shear - 3) // the shear in row 3 + k leaves out direction k
+        g(shear, mode++) = s[k];
+  if constexpr (dim == 3)
+    for (int k = 0; k < 3; ++k)
+      g.col(mode++).template head<3>().setConstant(s[(k + 1) % 3] * s[(k + 2) % 3]);
+  return g;
+}
+} // namespace
+
+template <int dim>
+CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness)
+{
+  constexpr int n = dim * n_cell_nodes<dim>, modes = n_cell_modes<dim>;
+  Eigen::Matrix<double, n + modes, n + modes> k; // of corners and modes
   k.setZero();
   const double weight = size.prod() * thickness / n_cell_nodes<dim>;
-  const double gauss[2] = {0.5 - std::sqrt(1. / 12), 0.5 + std::sqrt(1. / 12)};
   for (int q = 0; q < n_cell_nodes<dim>; ++q) {
-    Vector<dim> p;
+    Vector<dim> s;
     for (int d = 0; d < dim; ++d)
-      p[d] = size[d] * gauss[q >> d & 1];
-    const auto b = strain_matrix<dim>(shape_gradients<dim>(Vector<dim>::Zero(), size, p));
+      s[d] = (q >> d & 1 ? 1 : -1) / std::sqrt(3.);
+    const Vector<dim> p = size.cwiseProduct(s + Vector<dim>::Ones()) / 2;
+    Eigen::Matrix<double, n_strains<dim>, n + modes> b;
+    b << strain_matrix<dim>(shape_gradients<dim>(Vector<dim>::Zero(), size, p)),
+        mode_strains<dim>(s);
     k += weight * b.transpose() * c * b;
   }
-  return (k + k.transpose()) / 2;
+  // The modes belong to the cell alone: they are where its energy is least.
+  const Eigen::Matrix<double, modes, n> coupled = k.template bottomLeftCorner<modes, n>();
+  const Eigen::Matrix<double, modes, modes> own = k.template bottomRightCorner<modes, modes>();
+  const CellMatrix<dim> condensed =
+      k.template topLeftCorner<n, n>() - coupled.transpose() * own.ldlt().solve(coupled);
+  return (condensed + condensed.transpose()) / 2;
 }
 
 template Vec<4> shape_values<2>(const Vector<2> &, const Vector<2> &, const Vector<2> &);
@@ -83,8 +115,6 @@ template Eigen::Matrix<double, 3, 8> shape_gradients<3>(const Vector<3> &, const
                                                         const Vector<3> &);
 template Eigen::Matrix<double, 3, 8> strain_matrix<2>(const Eigen::Matrix<double, 2, 4> &);
 template Eigen::Matrix<double, 6, 24> strain_matrix<3>(const Eigen::Matrix<double, 3, 8> &);
-template Eigen::Matrix<double, 8, 8> cell_stiffness<2>(const Vector<2> &, const Stiffness<2> &,
-                                                       double);
-template Eigen::Matrix<double, 24, 24> cell_stiffness<3>(const Vector<3> &, const Stiffness<3> &,
-                                                         double);
+template CellMatrix<2> cell_stiffness<2>(const Vector<2> &, const Stiffness<2> &, double);
+template CellMatrix<3> cell_stiffness<3>(const Vector<3> &, const Stiffness<3> &, double);
 } // namespace ligament::fem

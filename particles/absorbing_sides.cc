@@ -10,7 +10,7 @@ core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing, const Partic
                                        const std::vector<core::BoundaryLoad<dim>> &loads,
                                        double density, double wave_speed_p, double wave_speed_s)
 {
-  typename core::Dashpots<dim>::Coefficients coefficients;
+  typename core::Dashpots<dim>::Places dashpots;
   for (const auto &load : loads) {
     if (!load.absorbing)
       continue;
@@ -21,9 +21,11 @@ core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing, const Partic
       if (face.boundary == load.boundary) {
         is_reached = true;
         place = packing.centre[axis][face.i] + face.lever[axis];
-        for (int c = 0; c < dim; ++c)
-          coefficients[{face.i, c}] +=
-              face.area * density * (c == axis ? wave_speed_p : wave_speed_s);
+        for (int c = 0; c < dim; ++c) {
+          const double speed = c == axis ? wave_speed_p : wave_speed_s;
+          dashpots[{face.i, c}].push_back(
+              {core::Dashpot::Kind::face, face.area * density * speed, face.q / speed});
+        }
       }
     if (!is_reached)
       continue;
@@ -31,11 +33,11 @@ core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing, const Partic
       const double depth = load.absorbing_layer - std::abs(packing.centre[axis][i] - place);
       if (depth > 0)
         for (int c = 0; c < dim; ++c)
-          coefficients[{i, c}] +=
-              particles.mass[i] * core::layer_rate(depth, load.absorbing_layer, wave_speed_p);
+          dashpots[{i, c}].push_back(
+              core::layer_dashpot(particles.mass[i], depth, load.absorbing_layer, wave_speed_p));
     }
   }
-  return core::Dashpots<dim>(coefficients);
+  return core::Dashpots<dim>(dashpots);
 }
 
 template core::Dashpots<2> absorbing_dashpots(const Packing<2> &, const Particles<2> &,

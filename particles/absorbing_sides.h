@@ -8,8 +8,8 @@
 namespace ligament::particles
 {
 /// The outer faces of absorbing sides answer with density c_P v_n, density c_S v_t per area; in
-/// their layers all particles are damped (theory.md eqs. (A1), (A4)). Spins are not. Density in
-/// kg/m^3, speeds in m/s.
+/// their layers all particles are damped (theory.md eqs. (A1), (A4), (A7)). Spins are not. Density
+/// in kg/m^3, speeds in m/s.
 template <int dim>
 core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing, const Particles<dim> &particles,
                                        const std::vector<core::BoundaryLoad<dim>> &loads,

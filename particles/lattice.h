@@ -36,7 +36,8 @@ public:
   /// The real coordinates k with position(k) = x.
   Vector<dim> coordinates(const Vector<dim> &x) const { return inverse_ * (x - centre_) - shift_; }
 
-  Vector<dim> row_direction() const { return basis_.col(0); }
+  /// From a point to another, in m.
+  Vector<dim> step(const LatticeIndex<dim> &k) const { return basis_ * k.template cast<double>(); }
 
   /// A number, not negative and below 2^53, that is unique and grows along rows, then layers.
   /// Components lie within +-2^16 (3D) or +-2^25 (2D), else throws core::InputError.
@@ -47,7 +48,7 @@ public:
   double face_area;   // m^(dim-1)
   double cell_radius; // m, from the centre to the farthest corner of the cell
   Vector<dim> extent; // m, half the size of the cell along the axes
-  std::vector<LatticeNeighbour<dim>> forward;   // half of the neighbours, by growing index
+  std::vector<LatticeNeighbour<dim>> forward;   // half of the neighbours
   std::vector<LatticeNeighbour<dim>> reachable; // all points within 6 d, nearest first
 
 private:

@@ -2,10 +2,12 @@
 
 #include "core/check.h"
 #include "particles/clipped_cell.h"
+#include "particles/row_layout.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace ligament::particles
 {
@@ -24,14 +26,6 @@ LatticeKind lattice_kind(const std::string &name)
 
 namespace
 {
-/// A line of lattice points along the close-packed direction, and the numbers of its particles.
-template <int dim>
-struct Row
-{
-  LatticeIndex<dim> start;
-  std::vector<int> particle; // -1: no particle
-};
-
 template <int dim>
 class Packer
 {
@@ -42,7 +36,6 @@ public:
 private:
   using Index = LatticeIndex<dim>;
 
-  void lay_out_rows();
   void place_particles();
   void join_faces();
 
@@ -50,7 +43,6 @@ private:
   bool is_in_zone(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper) const;
   int particle_at(const Index &k) const;
   bool is_whole(int i) const { return irregular_of_[i] < 0; }
-  bool is_cracked(int i, int j) const;
   void add_lattice_face(int i, int j, int direction);
   void add_irregular_faces(int i, const Index &k);
 
@@ -62,8 +54,8 @@ private:
   std::array<std::array<bool, 2>, dim> coupled_;
   const core::BoxUnion<dim> parts_;
 
-  std::vector<Row<dim>> rows_;
-  Index first_row_, n_rows_; // component 0 unused
+  std::optional<RowLayout<dim>> layout_;
+  std::vector<std::vector<int>> particle_in_; // row, at its points; -1: no particle
   std::vector<int> irregular_of_;
   std::vector<ClippedCell<dim>> irregular_;
   Packing<dim> packing_;
@@ -82,58 +74,11 @@ Packer<dim>::Packer(const LatticeParameters<dim> &p)
     core::require(zone_upper_[a] - zone_lower_[a] > p.spacing,
                   "the discrete zone holds no particles: move it into the specimen or widen it");
   }
+  layout_.emplace(lattice_, zone_lower_, zone_upper_, p.small_layer);
   packing_.spacing = p.spacing;
   packing_.thickness = thickness_;
-  for (const LatticeNeighbour<dim> &n : lattice_.forward)
+  for (const LatticeNeighbour<dim> &n : layout_->forward())
     packing_.directions.push_back({n.direction, n.distance, lattice_.face_area * thickness_});
-}
-
-template <int dim>
-void Packer<dim>::lay_out_rows()
-{
-  Vector<dim> least = Vector<dim>::Constant(1e300), most = -least;
-  for (int corner = 0; corner < 1 << dim; ++corner) {
-    Vector<dim> x;
-    for (int a = 0; a < dim; ++a)
-      x[a] = (corner >> a & 1) ? zone_upper_[a] : zone_lower_[a];
-    least = least.cwiseMin(lattice_.coordinates(x));
-    most = most.cwiseMax(lattice_.coordinates(x));
-  }
-  for (int a = 0; a < dim; ++a) {
-    // Beyond this the numbers of lattice points don't fit their bits.
-    core::require(std::max(-least[a], most[a]) < (dim == 2 ? 1 << 29 : 1 << 19),
-                  "the specimen has too many particles in one direction: make the spacing larger");
-    first_row_[a] = int(std::floor(least[a])) - 1;
-    n_rows_[a] = int(std::ceil(most[a])) + 2 - first_row_[a];
-  }
-  const Vector<dim> step = lattice_.row_direction();
-  for (int c = 0; c < (dim == 3 ? n_rows_[dim - 1] : 1); ++c)
-    for (int b = 0; b < n_rows_[1]; ++b) {
-      Index k = first_row_;
-      k[0] = 0;
-      k[1] += b;
-      if (dim == 3)
-        k[dim - 1] += c;
-      const Vector<dim> x = lattice_.position(k);
-      double begin = -1e9, end = 1e9;
-      for (int a = 0; a < dim; ++a) {
-        double s = zone_lower_[a] - x[a], t = zone_upper_[a] - x[a];
-        if (std::abs(step[a]) < tolerance_) {
-          if (s > tolerance_ || t < -tolerance_)
-            end = begin - 1;
-          continue;
-        }
-        s /= step[a], t /= step[a];
-        begin = std::max(begin, std::min(s, t));
-        end = std::min(end, std::max(s, t));
-      }
-      Row<dim> row{k, {}};
-      if (begin <= end) {
-        row.start[0] = int(std::floor(begin)) - 1;
-        row.particle.assign(int(std::ceil(end)) + 2 - row.start[0], -1);
-      }
-      rows_.push_back(std::move(row));
-    }
 }
 
 template <int dim>
@@ -163,11 +108,11 @@ void Packer<dim>::place_particles()
 {
   const double d = lattice_.spacing;
   const Vector<dim> &extent = lattice_.extent;
-  for (Row<dim> &row : rows_) {
+  for (const auto &row : layout_->rows()) {
+    auto &particle = particle_in_.emplace_back(row.n_points, -1);
     bool in_run = false;
-    for (std::size_t n = 0; n < row.particle.size(); ++n, in_run = row.particle[n - 1] >= 0) {
-      Index k = row.start;
-      k[0] += int(n);
+    for (int n = 0; n < row.n_points; ++n, in_run = particle[n - 1] >= 0) {
+      const Index k = row.start + n * layout_->step();
       const Vector<dim> x = lattice_.position(k);
       // Where the centre is out of the zone, so is the cell.
       if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
@@ -195,9 +140,9 @@ void Packer<dim>::place_particles()
         packing_.volume.push_back(cell.volume * thickness_);
         irregular_.push_back(std::move(cell));
       }
-      row.particle[n] = packing_.size() - 1;
+      particle[n] = packing_.size() - 1;
       if (!in_run)
-        packing_.row_begin.push_back(row.particle[n]);
+        packing_.row_begin.push_back(particle[n]);
       packing_.global_id.push_back(Lattice<dim>::global_id(k));
       for (int a = 0; a < dim; ++a)
         packing_.centre[a].push_back(x[a]);
@@ -209,27 +154,8 @@ void Packer<dim>::place_particles()
 template <int dim>
 int Packer<dim>::particle_at(const Index &k) const
 {
-  int row = 0;
-  for (int a = dim - 1; a >= 1; --a) {
-    const int r = k[a] - first_row_[a];
-    if (r < 0 || r >= n_rows_[a])
-      return -1;
-    row = row * n_rows_[a] + r;
-  }
-  const int n = k[0] - rows_[row].start[0];
-  return n < 0 || n >= int(rows_[row].particle.size()) ? -1 : rows_[row].particle[n];
-}
-
-template <int dim>
-bool Packer<dim>::is_cracked(int i, int j) const
-{
-  if (shape_.cracks.empty())
-    return false;
-  const Vector<dim> a = get(packing_.centre, i), b = get(packing_.centre, j);
-  for (const CrackPlane<dim> &crack : shape_.cracks)
-    if (crack.is_crossed_by(a, b))
-      return true;
-  return false;
+  const auto [row, n] = layout_->place(k);
+  return row < 0 ? -1 : particle_in_[row][n];
 }
 
 template <int dim>
@@ -238,7 +164,7 @@ void Packer<dim>::add_lattice_face(int i, int j, int direction)
   const LatticeDirection<dim> &n = packing_.directions[direction];
   const double q = n.distance / 2;
   packing_.faces.push_back({i, j, n.normal, n.area, q, q, q * n.normal, -q * n.normal,
-                            is_whole(i) && is_whole(j) ? direction : -1, is_cracked(i, j)});
+                            is_whole(i) && is_whole(j) ? direction : -1, false});
 }
 
 template <int dim>
@@ -257,11 +183,11 @@ void Packer<dim>::add_irregular_faces(int i, const Index &k)
     if (j <= i || is_whole(j)) // those of whole cells are lattice faces
       continue;
     packing_.faces.push_back({i, j, n.direction, part.area * thickness_, n.distance / 2,
-                              n.distance / 2, lever, lever - n.distance * n.direction, -1,
-                              is_cracked(i, j)});
+                              n.distance / 2, lever, lever - n.distance * n.direction, -1, false});
   }
-  for (std::size_t m = 0; m < lattice_.forward.size(); ++m)
-    if (const int j = particle_at(k + lattice_.forward[m].offset); j >= 0 && is_whole(j))
+  const auto &forward = layout_->forward();
+  for (std::size_t m = 0; m < forward.size(); ++m)
+    if (const int j = particle_at(k + forward[m].offset); j >= 0 && is_whole(j))
       add_lattice_face(i, j, int(m));
   std::sort(packing_.faces.begin() + first_face, packing_.faces.end(),
             [](const auto &a, const auto &b) { return a.j < b.j; });
@@ -270,19 +196,19 @@ void Packer<dim>::add_irregular_faces(int i, const Index &k)
 template <int dim>
 void Packer<dim>::join_faces()
 {
-  packing_.faces.reserve(packing_.size() * lattice_.forward.size() + 8 * irregular_.size());
-  for (const Row<dim> &row : rows_)
-    for (std::size_t n = 0; n < row.particle.size(); ++n) {
-      const int i = row.particle[n];
+  const auto &forward = layout_->forward();
+  packing_.faces.reserve(packing_.size() * forward.size() + 8 * irregular_.size());
+  for (std::size_t r = 0; r < particle_in_.size(); ++r)
+    for (std::size_t n = 0; n < particle_in_[r].size(); ++n) {
+      const int i = particle_in_[r][n];
       if (i < 0)
         continue;
-      Index k = row.start;
-      k[0] += int(n);
+      const Index k = layout_->rows()[r].start + int(n) * layout_->step();
       if (!is_whole(i))
         add_irregular_faces(i, k);
       else
-        for (std::size_t m = 0; m < lattice_.forward.size(); ++m)
-          if (const int j = particle_at(k + lattice_.forward[m].offset); j >= 0)
+        for (std::size_t m = 0; m < forward.size(); ++m)
+          if (const int j = particle_at(k + forward[m].offset); j >= 0)
             add_lattice_face(i, j, int(m));
     }
 }
@@ -290,11 +216,11 @@ void Packer<dim>::join_faces()
 template <int dim>
 Packing<dim> Packer<dim>::pack()
 {
-  lay_out_rows();
   place_particles();
   core::require(packing_.size() > 0,
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
+  cut_faces(packing_, shape_.cracks);
   return std::move(packing_);
 }
 } // namespace

@@ -34,6 +34,9 @@ struct LatticeParameters : SpecimenParameters<dim>
 {
   LatticeKind kind = dim == 2 ? LatticeKind::hexagonal : LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero(); // rad; 2D angle, 3D rotation vector
+  /// Layers (2D: rows) of up to so many particles lie as the lattice has them; larger ones another
+  /// way where that pays (RowLayout). 0: the smallest layers.
+  long small_layer = 2000;
 };
 
 /// Packs the zone of the specimen.
@@ -48,10 +51,10 @@ struct LatticeParameters : SpecimenParameters<dim>
 /// are left out, and the cells at the edge keep their volume but have neither Face nor BoundaryFace
 /// there.
 ///
-/// Particles are numbered along rows, rows along layers, so that neighbours of a run of particles
-/// lie at constant index offsets. Faces are sorted by (i, j), i < j; on lattice faces that is also
-/// the order of the directions. Faces between two whole lattice cells have a direction, and
-/// q = d/2 and lever = q n exactly.
+/// Particles are numbered along rows, rows along layers (RowLayout), so that neighbours of a run of
+/// particles lie at constant index offsets. Faces are sorted by (i, j), i < j; on lattice faces
+/// that is also the order of the directions. Faces between two whole lattice cells have a
+/// direction, and q = d/2 and lever = q n exactly.
 ///
 /// A face is cracked when the segment between the centres crosses a crack, its rim included.
 /// Centres within 1e-9 d of the plane of the crack count as lying on its positive side: left of the

@@ -5,6 +5,18 @@
 namespace ligament::particles
 {
 template <int dim>
+void cut_faces(Packing<dim> &packing, const std::vector<CrackPlane<dim>> &cracks)
+{
+  packing.cuts = cracks;
+  if (cracks.empty())
+    return;
+  for (auto &face : packing.faces) {
+    face.cut = first_crossed<dim>(cracks, get(packing.centre, face.i), get(packing.centre, face.j));
+    face.cracked = face.cut >= 0;
+  }
+}
+
+template <int dim>
 void fill_particles(const Packing<dim> &packing, const std::vector<double> &densities,
                     Particles<dim> &particles)
 {
@@ -22,6 +34,8 @@ void fill_particles(const Packing<dim> &packing, const std::vector<double> &dens
   }
 }
 
+template void cut_faces(Packing<2> &, const std::vector<CrackPlane<2>> &);
+template void cut_faces(Packing<3> &, const std::vector<CrackPlane<3>> &);
 template void fill_particles(const Packing<2> &, const std::vector<double> &, Particles<2> &);
 template void fill_particles(const Packing<3> &, const std::vector<double> &, Particles<3> &);
 } // namespace ligament::particles

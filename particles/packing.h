@@ -2,6 +2,7 @@
 #pragma once
 
 #include "particles/particles.h"
+#include "particles/specimen_shape.h"
 
 namespace ligament::particles
 {
@@ -20,6 +21,7 @@ struct Face
   int direction;
   /// An initial crack runs through this face: it touches but carries no tension.
   bool cracked;
+  int cut = -1; // number of that crack in Packing::cuts; -1: the face has its own normal
 };
 
 /// Part of a cell's surface on the surface of the specimen.
@@ -56,6 +58,7 @@ struct Packing
   std::vector<Face<dim>> faces;
   std::vector<BoundaryFace<dim>> boundary_faces;
   std::vector<LatticeDirection<dim>> directions; // empty for random packings
+  std::vector<CrackPlane<dim>> cuts;             // initial cracks
   /// Name of a particle that does not depend on which part of the specimen is packed.
   std::vector<std::int64_t> global_id;
   /// Gap-free runs along the close-packed direction: run r holds particles
@@ -64,6 +67,10 @@ struct Packing
 
   int size() const { return int(volume.size()); }
 };
+
+/// Marks the faces whose centres' segment crosses one of the cracks, and keeps these.
+template <int dim>
+void cut_faces(Packing<dim> &packing, const std::vector<CrackPlane<dim>> &cracks);
 
 /// Particles at rest with the cells of the packing: mass = density V, inertia m d^2/8 (2D, disc) or
 /// m d^2/10 (3D, sphere) with the particle's own mass. Density in kg/m^3, or one for each material.

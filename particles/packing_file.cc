@@ -43,6 +43,8 @@ class Table
 public:
   explicit Table(const std::string &path) : path_(path), text_(core::read_file(path)), rest_(text_)
   {
+    if (text_.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark
+      rest_.remove_prefix(3);
     require(next(), "the file is empty: the first line names the columns x, y, z, r, material");
     for (std::size_t c = 0; c < fields_.size(); ++c)
       require(column_.emplace(fields_[c], c).second,

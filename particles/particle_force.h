@@ -65,6 +65,17 @@ public:
   virtual double compute(Particles<dim> &particles) = 0;
 };
 
+/// Where a packing ends inside the body: what lies beyond is a mesh, which moves the outermost
+/// particles; the cells of some of these lack faces towards neighbours that are not there.
+template <int dim>
+struct CoupledEdge
+{
+  std::vector<int> pads; // particles whose faces never break
+  std::vector<int> open; // of them those whose cells lack faces
+  /// Gradient of the mesh's displacement at the centre of open[k], at present.
+  std::function<Eigen::Matrix<double, dim, dim>(int k)> gradient;
+};
+
 /// Adds forces to all particles: one virtual call per step.
 template <int dim>
 class ParticleForce
@@ -93,6 +104,10 @@ public:
   /// particle, above 0, at most 1), each pair by the mean of its two. Masses are the caller's.
   /// For couplers that blend the energies of two models; to be called once, on the intact body.
   virtual void set_energy_weights(const std::vector<double> &weights) = 0;
+
+  /// What the law says of stress and fracture there goes by the mesh's motion from now on; forces
+  /// and energy stay as they are.
+  virtual void set_coupled_edge(const Particles<dim> &, CoupledEdge<dim>) {}
 
   /// Every quadratic term of the linearised energy of the present bonds, once.
   virtual void add_tangent(const Particles<dim> &particles,

@@ -60,7 +60,6 @@ private:
   void place_particles();
   void join_faces();
   void keep_seeds();
-  bool is_cracked(const Vector<dim> &a, const Vector<dim> &b) const;
 
   const SpecimenShape<dim> shape_;
   const double spacing_, thickness_;
@@ -146,13 +145,6 @@ void Packer<dim>::place_particles()
 }
 
 template <int dim>
-bool Packer<dim>::is_cracked(const Vector<dim> &a, const Vector<dim> &b) const
-{
-  return std::any_of(shape_.cracks.begin(), shape_.cracks.end(),
-                     [&](const CrackPlane<dim> &crack) { return crack.is_crossed_by(a, b); });
-}
-
-template <int dim>
 void Packer<dim>::join_faces()
 {
   std::vector<Part> own;
@@ -174,8 +166,7 @@ void Packer<dim>::join_faces()
         continue;
       const Vector<dim> &y = seeds_.centre[part.neighbour];
       packing_.faces.push_back({i, j, part.normal, area, part.distance,
-                                (y - x).norm() - part.distance, lever, lever - (y - x), -1,
-                                is_cracked(x, y)});
+                                (y - x).norm() - part.distance, lever, lever - (y - x), -1, false});
     }
   }
 }
@@ -204,6 +195,7 @@ RandomPacking<dim> Packer<dim>::pack()
   core::require(packing_.size() > 0,
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
+  cut_faces(packing_, shape_.cracks);
   int n_healed = 0;
   for (const int i : seed_of_)
     n_healed += seeds_.radius[i] < given_radius_[i];

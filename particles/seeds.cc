@@ -1,6 +1,7 @@
 #include "particles/seeds.h"
 
 #include "core/check.h"
+#include "core/counter_random.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,22 +10,7 @@ namespace ligament::particles
 {
 namespace
 {
-/// A bijection of 64 bits without visible pattern (the finaliser of SplitMix64; G. Steele, D. Lea,
-/// C. Flood 2014).
-std::uint64_t mix(std::uint64_t x)
-{
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebull;
-  return x ^ x >> 31;
-}
-
-/// Number `counter` of the stream of random numbers in [0, 1) that belongs to this seed and name.
-double random_number(int seed, std::int64_t name, int counter)
-{
-  constexpr std::uint64_t step = 0x9e3779b97f4a7c15ull;
-  const std::uint64_t key = mix(mix(step + std::uint64_t(seed)) + std::uint64_t(name) * step);
-  return double(mix(key + std::uint64_t(counter + 1) * step) >> 11) * 0x1p-53;
-}
+using core::random_number;
 
 /// Bits of one component of the number of a cube; names stay below 2^53, so that they pass through
 /// tables of doubles unharmed.

@@ -113,15 +113,27 @@ CrackPlane<dim>::CrackPlane(const CrackPoints<dim> &points, double tolerance)
 template <int dim>
 bool CrackPlane<dim>::is_crossed_by(const Vector<dim> &a, const Vector<dim> &b) const
 {
-  const double height_a = plane_.normal.dot(a) - plane_.offset;
-  const double height_b = plane_.normal.dot(b) - plane_.offset;
+  const double height_a = height(a), height_b = height(b);
   if ((height_a > -tolerance_) == (height_b > -tolerance_))
     return false;
-  const Vector<dim> x = a + height_a / (height_a - height_b) * (b - a);
-  for (const HalfSpace<dim> &edge : rim_)
-    if (edge.normal.dot(x) > edge.offset + tolerance_)
-      return false;
-  return true;
+  return is_beside(a + height_a / (height_a - height_b) * (b - a));
+}
+
+template <int dim>
+bool CrackPlane<dim>::is_beside(const Vector<dim> &x) const
+{
+  return std::all_of(rim_.begin(), rim_.end(), [&](const HalfSpace<dim> &edge) {
+    return edge.normal.dot(x) <= edge.offset + tolerance_;
+  });
+}
+
+template <int dim>
+int first_crossed(const std::vector<CrackPlane<dim>> &cracks, const Vector<dim> &a,
+                  const Vector<dim> &b)
+{
+  const auto crossed = std::find_if(cracks.begin(), cracks.end(),
+                                    [&](const auto &crack) { return crack.is_crossed_by(a, b); });
+  return crossed == cracks.end() ? -1 : int(crossed - cracks.begin());
 }
 
 template <int dim>
@@ -170,6 +182,10 @@ template class Void<2>;
 template class Void<3>;
 template class CrackPlane<2>;
 template class CrackPlane<3>;
+template int first_crossed(const std::vector<CrackPlane<2>> &, const Vector<2> &,
+                           const Vector<2> &);
+template int first_crossed(const std::vector<CrackPlane<3>> &, const Vector<3> &,
+                           const Vector<3> &);
 template struct SpecimenShape<2>;
 template struct SpecimenShape<3>;
 } // namespace ligament::particles

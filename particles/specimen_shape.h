@@ -50,11 +50,23 @@ public:
   /// positive side.
   bool is_crossed_by(const Vector<dim> &a, const Vector<dim> &b) const;
 
+  /// Height above the plane in m, positive on the positive side.
+  double height(const Vector<dim> &x) const { return plane_.normal.dot(x) - plane_.offset; }
+  /// Does the foot of x on the plane lie on the crack?
+  bool is_beside(const Vector<dim> &x) const;
+  /// Unit, to the positive side.
+  const Vector<dim> &normal() const { return plane_.normal; }
+
 private:
   double tolerance_;
   HalfSpace<dim> plane_; // its normal points to the positive side
   std::vector<HalfSpace<dim>> rim_;
 };
+
+/// Number of the first of these cracks that the segment a - b crosses; -1: of none.
+template <int dim>
+int first_crossed(const std::vector<CrackPlane<dim>> &cracks, const Vector<dim> &a,
+                  const Vector<dim> &b);
 
 template <int dim>
 struct SpecimenShape

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -130,6 +131,29 @@ std::string plain(const std::string &path)
   return text;
 }
 
+std::string lower_case(std::string text)
+{
+  for (char &c : text)
+    c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Where else to look for a topic: the keys whose texts or values name it.
+std::string that_speak_of(const std::string &topic, const std::vector<Found> &all)
+{
+  std::vector<std::string> keys;
+  for (const Found &f : all) {
+    std::string text = f.parameter->text;
+    for (const std::string &word : f.parameter->choices)
+      text += " " + word;
+    if (keys.size() < 5 && topic.size() > 2 &&
+        lower_case(text).find(lower_case(topic)) != text.npos)
+      keys.push_back(f.path);
+  }
+  return keys.empty() ? ", and none that speaks of it: a scene has no such thing"
+                      : "; these speak of it: " + listed(keys, "and");
+}
+
 std::vector<Found> select(const ParameterSection &root, const std::string &key)
 {
   std::vector<Found> all, selected;
@@ -149,8 +173,9 @@ std::vector<Found> select(const ParameterSection &root, const std::string &key)
       for (const std::string &name : {plain(f.path), f.parameter->key})
         if (seen.insert(name).second)
           names.push_back(name);
+    const std::string meant = did_you_mean(is_path ? wanted : wanted.substr(1), names);
     throw InputError(fmt::format("there is no key \"{}\"{}", key,
-                                 did_you_mean(is_path ? wanted : wanted.substr(1), names)));
+                                 meant.empty() ? that_speak_of(key, all) : meant));
   }
   return selected;
 }
@@ -265,10 +290,10 @@ void table(const ParameterSection &section, const std::string &path, const std::
   out += fmt::format("\n## {}\n\n{}.\n\n", path.empty() ? "/" : "`" + path + "`", text);
   if (!section.shorthand().empty())
     out += fmt::format("A bare word stands for `{{\"{}\": word}}`.\n\n", section.shorthand());
-  out += "| key | type | default | allowed | meaning |\n|---|---|---|---|---|\n";
+  out += "| key | type | default | allowed | usual | meaning |\n|---|---|---|---|---|---|\n";
   for (const Parameter &p : section.parameters())
-    out += fmt::format("| `{}` | {} | {} | {} | {}{} |\n", p.key, cell(p.type(0)),
-                       cell(default_text(p)), p.range(), cell(p.text),
+    out += fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", p.key, cell(p.type(0)),
+                       cell(default_text(p)), p.range(), p.usual_range(), cell(p.text),
                        p.only_dimension == 0 ? "" : fmt::format(" ({}D)", p.only_dimension));
   for (const Parameter &p : section.parameters())
     if (p.section)
@@ -317,6 +342,7 @@ std::string explain(const ParameterSection &root, const std::string &key)
     line("unit", p.unit_name);
     line("default", default_text(p));
     line("allowed", p.range());
+    line("usual", p.usual_range());
     if (p.only_dimension != 0)
       line("applies", fmt::format("in {}D", p.only_dimension));
   }
@@ -333,6 +359,7 @@ Json explain_json(const ParameterSection &root, const std::string &key)
                     {"unit", p.unit_name},
                     {"default", default_text(p)},
                     {"range", p.range()},
+                    {"usual", p.usual_range()},
                     {"text", p.text}});
   }
   return list;

@@ -3,6 +3,7 @@
 #include "core/parameters/spelling.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <optional>
@@ -26,6 +27,16 @@ void set_origin(JsonValue &value, const Place &place)
   }
 }
 
+bool is_utf8(const std::string &text)
+{
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error &) {
+    return false;
+  }
+}
+
 /// JSON where the text is JSON or means to be, else the text itself.
 JsonValue value_of(const std::string &text, const Place &place, std::vector<Diagnostic> &errors)
 {
@@ -37,6 +48,9 @@ JsonValue value_of(const std::string &text, const Place &place, std::vector<Diag
     value.kind = JsonKind::string;
     value.text = text;
     mistakes.clear();
+    if (!is_utf8(text))
+      mistakes.push_back({place, "", "a byte that is not UTF-8", "the resolved scene is JSON",
+                          "write the value in UTF-8"});
   }
   for (Diagnostic &mistake : mistakes) {
     mistake.place = place;

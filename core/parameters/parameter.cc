@@ -5,12 +5,35 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <sstream>
+
 namespace ligament::core
 {
 Parameter &Parameter::in(const std::string &name)
 {
   unit_name = name;
   unit = parse_unit(name).exponents;
+  return *this;
+}
+
+bool Band::holds(double value) const
+{
+  const double size = std::abs(value);
+  return size == 0 || (size >= low && size <= high);
+}
+
+bool Band::is_within_reason(double value) const
+{
+  return Band{low / reason, high * reason, {}}.holds(value);
+}
+
+Parameter &Parameter::usually(double low, double high, const std::string &units)
+{
+  band = Band{low, high, {}};
+  std::istringstream words(units);
+  for (std::string word; words >> word;)
+    band->units.push_back(word);
   return *this;
 }
 
@@ -81,6 +104,14 @@ std::string Parameter::range() const
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", upper->open ? "below" : "at most",
                         upper->value);
   return text;
+}
+
+std::string Parameter::usual_range() const
+{
+  if (!band)
+    return "";
+  return band->low == 0 ? fmt::format("up to {:g}", band->high)
+                        : fmt::format("{:g} to {:g}", band->low, band->high);
 }
 
 std::string Parameter::type(int dimension) const

@@ -33,6 +33,18 @@ struct Bound
   bool open; // the bound itself is not allowed
 };
 
+/// Values that inputs have in practice, in magnitude; 0 always belongs to them. What lies outside
+/// was probably meant in one of the units, and is beyond reason by a factor of `reason`.
+struct Band
+{
+  double low, high;
+  std::vector<std::string> units;
+  static constexpr double reason = 1e12;
+
+  bool holds(double value) const;
+  bool is_within_reason(double value) const;
+};
+
 /// Objects of which there may be several (a list) or none (an optional section). They are read and
 /// written one after the other through one prototype, to which the section of the key is bound.
 struct Elements
@@ -79,6 +91,7 @@ struct Parameter
   std::string unit_name;
   UnitExponents unit = {0, 0, 0, 0};
   std::optional<Bound> lower, upper;
+  std::optional<Band> band;
   std::vector<std::string> choices;
   std::map<std::string, double> words; // words that stand for a number
   std::optional<double> null_value;    // number that null stands for in a vector
@@ -94,6 +107,8 @@ struct Parameter
   Parameter &at_least(double bound) { return set(lower, bound, false); }
   Parameter &below(double bound) { return set(upper, bound, true); }
   Parameter &at_most(double bound) { return set(upper, bound, false); }
+  /// In SI; `units` in the order in which they are likely to be meant, separated by blanks.
+  Parameter &usually(double low, double high, const std::string &units);
   Parameter &one_of(std::vector<std::string> words);
   Parameter &word(const std::string &word, double value);
   Parameter &null_means(double value);
@@ -110,6 +125,8 @@ struct Parameter
   bool must_be_given(int dimension) const;
   /// "above 0, at most 1"; empty without bounds.
   std::string range() const;
+  /// "1e5 to 2e12"; empty without band.
+  std::string usual_range() const;
   /// "a number in m", "a list of 2 numbers in m", ...; dimension 0: whatever it may be.
   std::string type(int dimension) const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace ligament::core
@@ -39,8 +40,9 @@ std::string home_of(const ParameterSection &section, const std::string &key,
 class Reader
 {
 public:
-  Reader(int dimension, const ParameterSection &root, std::vector<Diagnostic> &errors)
-      : dimension_(dimension), root_(root), errors_(errors)
+  Reader(int dimension, const ParameterSection &root, std::vector<Diagnostic> &errors,
+         std::vector<Diagnostic> *warnings)
+      : dimension_(dimension), root_(root), errors_(errors), warnings_(warnings)
   {
   }
 
@@ -360,26 +362,75 @@ private:
   bool in_range(const Parameter &p, double value, const JsonValue &json, const std::string &path,
                 const std::string &label)
   {
-    const bool low = p.lower && (p.lower->open ? value <= p.lower->value : value < p.lower->value);
-    const bool high = p.upper && (p.upper->open ? value >= p.upper->value : value > p.upper->value);
-    if (!low && !high)
-      return true;
+    if (in_bounds(p, value))
+      return is_plausible(p, value, json, path, label);
     const std::string unit = p.unit_name.empty() ? "" : " " + p.unit_name;
     error(json.place, path, fmt::format("{} is {}{}, which is out of range", label, value, unit),
           p.text, fmt::format("give a value {}{}", p.range(), unit));
     return false;
   }
 
+  /// Doubts a value outside its band; false when no input can mean it.
+  bool is_plausible(const Parameter &p, double value, const JsonValue &json,
+                    const std::string &path, const std::string &label)
+  {
+    if (!p.band || p.band->holds(value))
+      return true;
+    const std::string message =
+        fmt::format("{} is {}{}", label, value, p.unit_name.empty() ? "" : " " + p.unit_name);
+    const std::string reason = fmt::format("{}; usual are {}{}", p.text, p.usual_range(),
+                                           p.unit_name.empty() ? "" : " " + p.unit_name);
+    const std::string remedy = probably_meant(p, json);
+    if (!p.band->is_within_reason(value)) {
+      error(json.place, path, message + ", which is beyond reason", reason, remedy);
+      return false;
+    }
+    // A list of components in the wrong unit is one mistake.
+    if (warnings_ && doubted_.insert(without_components(path)).second)
+      warnings_->push_back({json.place, path, message + ", which is unusual", reason, remedy,
+                            Diagnostic::Severity::warning});
+    return true;
+  }
+
+  static std::string without_components(std::string path)
+  {
+    for (std::size_t at = path.rfind('/');
+         at != path.npos && path.find_first_not_of("0123456789", at + 1) == path.npos;
+         at = path.rfind('/'))
+      path.resize(at);
+    return path;
+  }
+
+  /// The unit that was left out of a plain number, or what else to do.
+  static std::string probably_meant(const Parameter &p, const JsonValue &json)
+  {
+    if (json.is(JsonKind::number))
+      for (const std::string &unit : p.band->units)
+        if (const double value = parse_unit(unit).value * json.number;
+            value != 0 && p.band->holds(value) && in_bounds(p, value))
+          return fmt::format("did you mean \"{} {}\"?", json.text, unit);
+    return p.unit_name.empty() ? "check the value" : "check the value and its unit";
+  }
+
+  static bool in_bounds(const Parameter &p, double value)
+  {
+    const bool low = p.lower && (p.lower->open ? value <= p.lower->value : value < p.lower->value);
+    const bool high = p.upper && (p.upper->open ? value >= p.upper->value : value > p.upper->value);
+    return !low && !high;
+  }
+
   int dimension_;
   const ParameterSection &root_;
   std::vector<Diagnostic> &errors_;
+  std::vector<Diagnostic> *warnings_;
+  std::set<std::string> doubted_; // keys
 };
 } // namespace
 
 void read_parameters(const ParameterSection &section, const JsonValue &json,
                      const std::string &path, int dimension, const ParameterSection &root,
-                     std::vector<Diagnostic> &errors)
+                     std::vector<Diagnostic> &errors, std::vector<Diagnostic> *warnings)
 {
-  Reader(dimension, root, errors).section(section, json, path);
+  Reader(dimension, root, errors, warnings).section(section, json, path);
 }
 } // namespace ligament::core

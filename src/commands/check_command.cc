@@ -1,10 +1,13 @@
 #include "src/commands/commands.h"
 
 #include "particles/packing_file.h"
+#include "src/commands/check_volumes.h"
+#include "src/commands/cost_advice.h"
 #include "src/commands/peak_memory.h"
 #include "src/commands/scene_picture.h"
+#include "src/launcher/program.h"
 #include "src/output/run_folder.h"
-#include "src/simulation/damping.h"
+#include "src/simulation/make_zone.h"
 #include "src/simulation/recorder.h"
 
 #include <fmt/format.h>
@@ -17,51 +20,6 @@ namespace ligament::program
 {
 namespace
 {
-struct Prediction
-{
-  double seconds_per_step = 0; // of the whole body
-  double discrete_share = 0;   // of it, particles alone
-};
-
-/// Steps the body at rest for a moment: the same work per step as in the run.
-template <int dim>
-Prediction time_steps(const Scene &scene, CoupledBody<dim> &body, core::Timers &timers)
-{
-  using Clock = std::chrono::steady_clock;
-  auto bodies = body.bodies();
-  BodyDamping<dim> damping(scene.damping);
-  coupling::StepTime step;
-  step.dt = body.dt;
-  const auto advance = [&](int n) {
-    for (int i = 0; i < n; ++i, ++step.step) {
-      body.coupler->compute_forces(bodies, step);
-      damping.before_kick(body, step);
-      body.coupler->kick(bodies, step);
-      damping.after_kick(body, step);
-      body.coupler->drift(bodies, step);
-    }
-  };
-  const auto discrete_seconds = [&] {
-    double sum = 0;
-    for (const auto &row : timers.rows())
-      if (row.name == "discrete forces" || row.name == "discrete motion")
-        sum += row.seconds;
-    return sum;
-  };
-  const int block = 4 * body.coupler->step_ratio();
-  advance(block); // caches
-  const double discrete_before = discrete_seconds();
-  const auto start = Clock::now();
-  long n = 0;
-  double seconds = 0;
-  while (seconds < 0.5) {
-    advance(block);
-    n += block;
-    seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  }
-  return {seconds / n, (discrete_seconds() - discrete_before) / seconds};
-}
-
 std::string duration_text(double seconds)
 {
   if (seconds < 120)
@@ -91,11 +49,11 @@ int check(const CommandLine &line, const ReadResult &input)
       fmt::print("packing: {}\n", packing);
     }
   }
-  const auto prediction = time_steps(scene, body, timers);
+  const StepCost cost = measure_step_cost(scene, body, timers, 0.5);
   const double memory = peak_memory();
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
   const double output = output_seconds(scene, body, steps);
-  const double seconds = setup_seconds + steps * prediction.seconds_per_step + output;
+  const double seconds = setup_seconds + steps * cost.seconds_per_step + output;
   const int particles = body.zone ? body.zone->state.n_owned : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const auto *joined = body.coupler->overlap();
@@ -117,9 +75,14 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  predicted time       {:>12}{}\n", duration_text(seconds),
              scene.time.stop_when == "end" ? "" : ", less if it breaks earlier");
   double saving = 0;
+  std::optional<CostAdvice> advice;
   if (joined) {
-    saving = prediction.discrete_share * double(body.equivalent_particles) / particles;
+    saving = cost.saving(body.equivalent_particles, particles);
     fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements\n", saving);
+    if (saving < 1) {
+      advice = advise(input, body, cost);
+      fmt::print("{}", to_text(*advice, particles));
+    }
   }
   if (body.split)
     fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n",
@@ -135,20 +98,33 @@ int check(const CommandLine &line, const ReadResult &input)
                                    {"dt_critical", critical},
                                    {"steps", steps},
                                    {"memory_bytes", memory},
+                                   {"available_memory_bytes", available_memory()},
                                    {"predicted_seconds", seconds},
-                                   {"seconds_per_step", prediction.seconds_per_step},
+                                   {"seconds_per_step", cost.seconds_per_step},
                                    {"output_seconds", output},
                                    {"setup_seconds", setup_seconds},
                                    {"predicted_saving", saving},
+                                   {"advice", nullptr},
+                                   {"built", true},
+                                   {"not_checked", nlohmann::json::array()},
                                    {"errors", nlohmann::json::array()}};
-    fmt::print("{}\n", json.dump());
+    if (advice)
+      json["advice"] = to_json(*advice);
+    fmt::print("{}\n", json_text(json));
   }
-  return 0;
+  return int(ExitCode::done);
 }
 } // namespace
 
 int check_command(const CommandLine &line, const ReadResult &input)
 {
+  const bool particles = input.scene->zone.extent != DiscreteZone::Extent::none;
+  const SizeEstimate size =
+      estimate_size(*input.scene, particles ? mean_cell_volume(*input.scene) : 1);
+  if (!line.full && std::max(size.particles, size.cells) > largest_built) {
+    print_volumes(line, input, size);
+    return int(ExitCode::done);
+  }
   return input.scene->dimension == 2 ? check<2>(line, input) : check<3>(line, input);
 }
 } // namespace ligament::program

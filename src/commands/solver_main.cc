@@ -1,6 +1,7 @@
 // The program that computes: started by `ligament` with the same arguments.
-#include "core/check.h"
 #include "core/flush_denormals.h"
+#include "core/input_file.h"
+#include "core/keyed_error.h"
 #include "src/commands/commands.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
@@ -10,15 +11,29 @@ namespace
 using namespace ligament;
 using namespace ligament::program;
 
+/// What the launcher has read through a pipe lies in standard input now.
+ReadResult read_again(const CommandLine &line)
+{
+  return core::is_named_file(line.scene)
+             ? read_scene(line.scene, line.overrides)
+             : parse_scene(core::read_input("-"), scene_name(line.scene), line.overrides);
+}
+
 int dispatch(const CommandLine &line, int, char **)
 {
   require_one_rank(line.ranks);
   if (line.command == "verify")
     return verify_command(line);
-  const ReadResult input = read_scene(line.scene, line.overrides);
-  core::require(input.scene.has_value(), line.scene + ": the scene has errors; `ligament check` "
-                                                      "lists them");
-  return line.command == "run" ? run_command(line, input) : check_command(line, input);
+  const ReadResult input = read_again(line);
+  if (!input.scene)
+    return refuse(line, line.scene, input.errors, input.warnings);
+  try {
+    return line.command == "run" ? run_command(line, input) : check_command(line, input);
+  } catch (const core::KeyedError &error) {
+    const core::Diagnostic found = {core::place_of(input.json, error.key), error.key, error.message,
+                                    error.reason, error.remedy};
+    return refuse(line, line.scene, {found}, input.warnings);
+  }
 }
 } // namespace
 

@@ -1,4 +1,5 @@
 #include "src/commands/commands.h"
+#include "src/verification/random_scenes.h"
 #include "src/verification/stability.h"
 
 #include <fmt/format.h>
@@ -29,12 +30,40 @@ void print(const Result &result)
              result.must, result.aim ? fmt::format("{:.4g}", *result.aim) : "-",
              result.passed() ? "passed" : "FAILED");
 }
+
+std::vector<Case> select(const CommandLine &line)
+{
+  if (line.stability)
+    return select_stability(line.full);
+  if (!line.seeds.empty())
+    return {select_random_scenes(line.seeds, line.output)};
+  return select_cases(line.verify_case, line.full);
+}
+
+nlohmann::ordered_json to_json(const Result &result)
+{
+  nlohmann::ordered_json json = {{"name", result.name},
+                                 {"value", result.value},
+                                 {"must", result.must},
+                                 {"aim", nullptr},
+                                 {"passed", result.passed()}};
+  if (result.aim)
+    json["aim"] = *result.aim;
+  if (const auto &s = result.spread)
+    json["spread"] = {{"n", s->n},
+                      {"failing", s->n_failing},
+                      {"median", s->median},
+                      {"tenth", s->tenth},
+                      {"nine_tenths", s->nine_tenths},
+                      {"worst", s->worst},
+                      {"worst_seeds", s->worst_seeds}};
+  return json;
+}
 } // namespace
 
 int verify_command(const CommandLine &line)
 {
-  const auto cases =
-      line.stability ? select_stability(line.full) : select_cases(line.verify_case, line.full);
+  const auto cases = select(line);
   nlohmann::ordered_json json = {{"cases", nlohmann::json::array()}};
   int n = 0, n_failed = 0;
   fmt::print("  {:<44} {:>12}    {:<9} {:<9}\n", "figure", "value", "must", "aim");
@@ -45,13 +74,7 @@ int verify_command(const CommandLine &line)
       print(result);
       ++n;
       n_failed += !result.passed();
-      json["cases"].push_back({{"name", result.name},
-                               {"value", result.value},
-                               {"must", result.must},
-                               {"aim", nullptr},
-                               {"passed", result.passed()}});
-      if (result.aim)
-        json["cases"].back()["aim"] = *result.aim;
+      json["cases"].push_back(to_json(result));
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     fmt::print("  {:.1f} s\n", seconds.count());

@@ -1,5 +1,7 @@
 #include "src/launcher/command_line.h"
 
+#include "core/parameters/spelling.h"
+#include "core/tell.h"
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>
@@ -42,12 +44,18 @@ void declare(CLI::App &app, CommandLine &line)
       *app.add_subcommand("check", "everything but time stepping: errors, sizes, steps, cost");
   add_scene_options(check, line);
   check.add_flag("--draw", line.draw, "also draws zones and boundary conditions");
+  check.add_flag("--full", line.full,
+                 "builds the bodies whatever their size, instead of answering from volumes");
 
   CLI::App &compare = *app.add_subcommand("compare", "a run beside its reference");
   compare.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
   compare.add_option("reference", line.reference, "folder of the reference, or a CSV curve")
       ->required()
       ->type_name("REFERENCE");
+  compare
+      .add_option("--output,-o", line.output,
+                  "folder for plot and page; without it: the folder of the run")
+      ->type_name("DIR");
 
   CLI::App &sweep = *app.add_subcommand("sweep", "computes a study: many variants of a scene");
   sweep.add_option("study", line.study, "study file")->required()->type_name("STUDY");
@@ -82,6 +90,8 @@ void declare(CLI::App &app, CommandLine &line)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
+  report.add_option("--output,-o", line.output, "folder for it; without it: that of the run")
+      ->type_name("DIR");
 
   CLI::App &verify = *app.add_subcommand("verify", "runs the built-in cases: is this build right?");
   verify.add_option("case", line.verify_case, "one case; without it: all")->type_name("CASE");
@@ -90,15 +100,68 @@ void declare(CLI::App &app, CommandLine &line)
       .add_flag("--stability", line.stability,
                 "stability under stress; with --full 1e5 steps of each setting")
       ->excludes("case");
+  verify
+      .add_option("--seeds,--seed", line.seeds,
+                  "random_scenes: one seed, whose files and runs are kept, or a range; what the "
+                  "folder holds of a range is not computed again")
+      ->type_name("N or FIRST:LAST");
+  verify
+      .add_option("--output,-o", line.output, "random_scenes with --seeds: folder for the results")
+      ->type_name("DIR");
 
   for (CLI::App *command : app.get_subcommands({}))
     command->add_flag("--json", line.json, "ends with one JSON object on the last line");
 }
+
+/// All ways to write the options of a command.
+std::vector<std::string> option_names(const CLI::App &command)
+{
+  std::vector<std::string> names = {"--help"};
+  for (const CLI::Option *option : command.get_options())
+    for (const std::string &name : option->get_lnames())
+      names.push_back("--" + name);
+  return names;
+}
+
+/// CLI11 says what it did not expect; this adds what was probably meant.
+std::string explained(const CLI::ParseError &error, const CLI::App &app,
+                      const std::vector<std::string> &words)
+{
+  std::vector<std::string> commands;
+  for (const CLI::App *command : app.get_subcommands({}))
+    commands.push_back(command->get_name());
+  const auto verb = std::find_if(words.begin(), words.end(),
+                                 [](const std::string &word) { return word.rfind('-', 0) != 0; });
+  if (verb == words.end())
+    return "a command is missing: " + core::listed(commands);
+  const auto known = std::find(commands.begin(), commands.end(), *verb);
+  if (known == commands.end()) {
+    const std::string meant = core::did_you_mean(*verb, commands);
+    return fmt::format("there is no command \"{}\"{}", *verb,
+                       meant.empty() ? "; the commands are " + core::listed(commands, "and")
+                                     : meant);
+  }
+  const std::vector<std::string> options = option_names(*app.get_subcommand(*verb));
+  for (const std::string &word : words)
+    if (word.rfind("--", 0) == 0) {
+      const std::string name = word.substr(0, word.find('='));
+      if (std::find(options.begin(), options.end(), name) == options.end())
+        return fmt::format("\"{}\" has no option {}{}", *verb, name,
+                           core::did_you_mean(name, options));
+    }
+  return error.what();
+}
 } // namespace
 
-std::string error_json(const std::string &message)
+std::string json_text(const nlohmann::ordered_json &json, int indent)
 {
-  return nlohmann::json{{"errors", nlohmann::json::array({{{"message", message}}})}}.dump();
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string error_json(const std::string &status, const std::string &message)
+{
+  return json_text(
+      {{"status", status}, {"errors", nlohmann::ordered_json::array({{{"message", message}}})}});
 }
 
 CommandLine parse_command_line(int argc, const char *const *argv)
@@ -116,11 +179,12 @@ CommandLine parse_command_line(int argc, const char *const *argv)
     line.exit_code = error.get_exit_code() == 0 ? app.exit(error) : 2;
     if (*line.exit_code == 0)
       return line;
-    fmt::print(stderr, "error: {}\n  remedy: see ligament --help\n", error.what());
+    const std::string message = explained(error, app, {argv + 1, argv + argc});
+    core::tell(stderr, fmt::format("error: {}\n  remedy: see ligament --help\n", message));
     const bool json = std::any_of(
         argv, argv + argc, [](const char *word) { return std::string_view(word) == "--json"; });
     if (json)
-      fmt::print("{}\n", error_json(error.what()));
+      fmt::print("{}\n", error_json("wrong input", message));
   }
   return line;
 }

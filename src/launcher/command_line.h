@@ -1,6 +1,8 @@
 // The commands and options that users type; the launcher and the solver read the same ones.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +16,7 @@ struct CommandLine
 
   std::string scene;                  // run, check: file
   std::vector<std::string> overrides; // run, check: "/path=value", in their order
-  std::string output;                 // run, check, sweep: folder; empty: chosen from the name
+  std::string output;                 // folder for what is written; empty: chosen from the name
   int ranks = 1;                      // run, check
   bool draw = false;                  // check: also a picture
   std::string study;                  // sweep: file
@@ -27,8 +29,9 @@ struct CommandLine
   bool schema = false;                // explain: the JSON schema
   bool explain_study = false;         // explain: of study files
   std::string verify_case;            // verify; empty: all
-  bool full = false;                  // verify: also the slow ones
+  bool full = false;                  // verify: also the slow ones; check: builds whatever its size
   bool stability = false;             // verify: those of stability under stress
+  std::string seeds;                  // verify: of random scenes, into `output`; "17" or "1:1000"
 
   /// Set when nothing is left to do: help and version were printed, or a mistake (2).
   std::optional<int> exit_code;
@@ -38,6 +41,11 @@ struct CommandLine
 /// with --json, to standard output as an object with "errors").
 CommandLine parse_command_line(int argc, const char *const *argv);
 
-/// Text of {"errors": [message]} on one line, for mistakes that have no place in a scene.
-std::string error_json(const std::string &message);
+/// JSON as text, on one line without `indent`. Bytes that are not UTF-8 (file names may hold some)
+/// become U+FFFD.
+std::string json_text(const nlohmann::ordered_json &json, int indent = -1);
+
+/// Text of {"status": .., "errors": [message]} on one line, for what has no place in a scene:
+/// status "wrong input", "stopped" or "failed".
+std::string error_json(const std::string &status, const std::string &message);
 } // namespace ligament::program

@@ -1,10 +1,15 @@
 // The program that users type: answers help, version, explain and wrong input at once, leaves the
 // computing to the solver.
+#include "core/check.h"
+#include "core/input_file.h"
+#include "core/tell.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
 #include "src/launcher/sweep_command.h"
 #include "src/output/compare.h"
 #include "src/output/report.h"
+#include "src/output/run_folder.h"
+#include "src/output/run_record.h"
 #include "src/scene/read_scene.h"
 #include "src/sweep/study.h"
 
@@ -22,9 +27,12 @@ int compute(const CommandLine &line, int argc, char **argv)
   require_one_rank(line.ranks);
   const ReadResult result = read_scene(line.scene, line.overrides);
   for (const core::Diagnostic &d : result.warnings)
-    fmt::print(stderr, "{}\n", to_string(d));
-  if (result.scene)
+    core::tell(stderr, to_string(d) + "\n");
+  if (result.scene) {
+    if (!core::is_named_file(line.scene))
+      refill_standard_input(result.text);
     start_solver(argc, argv);
+  }
   return refuse(line, line.scene, result.errors, result.warnings);
 }
 
@@ -33,29 +41,64 @@ void print_explanation(const CommandLine &line)
   if (line.explain_study)
     fmt::print("{}", line.schema ? study_schema() : study_markdown());
   else if (line.schema)
-    fmt::print("{}\n", json_schema().dump(line.json ? -1 : 2));
+    fmt::print("{}\n", json_text(json_schema(), line.json ? -1 : 2));
   else if (line.markdown && !line.json)
     fmt::print("{}", reference_markdown());
   else if (line.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"keys", explain_json(line.key)}}.dump());
+    fmt::print("{}\n", json_text({{"keys", explain_json(line.key)}}));
   else
     fmt::print("{}", explain(line.key));
 }
 
-void print_comparison(const CommandLine &line)
+ExitCode code_of(bool complete)
 {
-  const CompareResult result = compare(line.run, line.reference);
-  fmt::print("{}", table(result));
-  if (line.json)
-    fmt::print("{}\n", to_json(result).dump());
+  return complete ? ExitCode::done : ExitCode::stopped_by_guard;
 }
 
-void print_report(const CommandLine &line)
+/// The table stands before anything is written; without a folder that was asked for, a plot less is
+/// a warning.
+ExitCode print_comparison(const CommandLine &line)
 {
-  const std::string file = write_report(line.run, line.fields);
-  fmt::print("{}\n", file);
+  CompareResult result = compare(line.run, line.reference);
+  fmt::print("{}", table(result));
+  std::fflush(stdout);
+  try {
+    write_comparison(result, line.output.empty() ? line.run : line.output);
+  } catch (const core::EnvironmentError &error) {
+    if (!line.output.empty())
+      throw;
+    core::tell(stderr, fmt::format("warning: no plot: {}; give a folder for it with --output\n",
+                                   error.what()));
+  }
   if (line.json)
-    fmt::print("{}\n", nlohmann::json{{"report", file}}.dump());
+    fmt::print("{}\n", json_text(to_json(result)));
+  return code_of(result.complete);
+}
+
+std::string report_of(const CommandLine &line)
+{
+  if (!line.output.empty())
+    return write_report(line.run, line.fields, line.output);
+  try {
+    return write_report(line.run, line.fields);
+  } catch (const core::EnvironmentError &error) {
+    throw core::EnvironmentError(error.what() +
+                                 std::string("; give a folder for it with --output"));
+  }
+}
+
+ExitCode print_report(const CommandLine &line)
+{
+  const std::string file = report_of(line);
+  const RunRecord record = read_run_record(RunFolder{line.run}.record());
+  fmt::print("{}\n", file);
+  if (!record.is_complete())
+    fmt::print("the run {}: {}\n", incompleteness(record), record.reason);
+  if (line.json)
+    fmt::print("{}\n", json_text({{"report", file},
+                                  {"status", record.status},
+                                  {"complete", record.is_complete()}}));
+  return code_of(record.is_complete());
 }
 
 int dispatch(const CommandLine &line, int argc, char **argv)
@@ -71,9 +114,9 @@ int dispatch(const CommandLine &line, int argc, char **argv)
   if (line.command == "explain")
     print_explanation(line);
   else if (line.command == "compare")
-    print_comparison(line);
+    return int(print_comparison(line));
   else
-    print_report(line);
+    return int(print_report(line));
   return int(ExitCode::done);
 }
 

@@ -10,15 +10,16 @@ enum class ExitCode
 {
   done = 0,
   wrong_input = 2,
-  stopped_by_guard = 3,
+  stopped_by_guard = 3, // or about a run that is not complete
   bad_environment = 4
 };
 
+using Dispatch = int (*)(const CommandLine &line, int argc, char **argv);
+
 /// The main function of a program: reads the command line, calls `dispatch`, and turns what that
 /// throws into a message on standard error, with --json into an object on standard output too, and
-/// into the exit code.
-int run_program(int argc, char **argv,
-                int (*dispatch)(const CommandLine &line, int argc, char **argv));
+/// into the exit code. A standard output that takes nothing is told, too.
+int run_program(int argc, char **argv, Dispatch dispatch);
 
 /// Prints all errors of an input file and returns the exit code for wrong input.
 int refuse(const CommandLine &line, const std::string &file,

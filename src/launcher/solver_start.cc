@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace ligament::program
@@ -36,6 +37,22 @@ void start_solver(int argc, char *const *argv)
   throw core::EnvironmentError(
       fmt::format("cannot start {}: {}; build or install both programs into the same folder",
                   solver, std::strerror(errno)));
+}
+
+void refill_standard_input(const std::string &text)
+{
+  const int memory = memfd_create("scene", 0);
+  std::size_t written = 0;
+  while (memory >= 0 && written < text.size()) {
+    const ssize_t n = write(memory, text.data() + written, text.size() - written);
+    if (n <= 0)
+      break;
+    written += std::size_t(n);
+  }
+  core::require<core::EnvironmentError>(
+      memory >= 0 && written == text.size() && lseek(memory, 0, SEEK_SET) == 0 &&
+          dup2(memory, STDIN_FILENO) == STDIN_FILENO,
+      fmt::format("cannot hand the scene to the solver: {}", std::strerror(errno)));
 }
 
 int launched_ranks()

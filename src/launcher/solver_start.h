@@ -12,6 +12,10 @@ std::string solver_path();
 /// Throws core::EnvironmentError when the solver cannot be started.
 [[noreturn]] void start_solver(int argc, char *const *argv);
 
+/// Lets standard input of this process, and of the solver that replaces it, hold this text: what
+/// came through a pipe can be read only once. Throws core::EnvironmentError.
+void refill_standard_input(const std::string &text);
+
 /// How many processes mpirun or srun has started beside this one; 1 without them.
 int launched_ranks();
 

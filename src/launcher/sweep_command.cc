@@ -1,5 +1,6 @@
 #include "src/launcher/sweep_command.h"
 
+#include "core/tell.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
 #include "src/sweep/summary.h"
@@ -33,7 +34,7 @@ int list_cases(const CommandLine &line, const CaseList &list, const std::string 
     json.push_back({{"name", c.name}, {"id", c.id}, {"state", state}, {"reason", c.refused}});
   }
   if (line.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"cases", json}, {"output", folder}}.dump());
+    fmt::print("{}\n", json_text({{"cases", json}, {"output", folder}}));
   return int(ExitCode::done);
 }
 
@@ -55,29 +56,34 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
   write_table(folder.table(), list, results);
   write_summary(folder, study, list, results, notes);
   for (const std::string &note : notes)
-    fmt::print(stderr, "{}\n", note);
-  const int failed = count(results, CaseEnd::Status::failed);
+    core::tell(stderr, note + "\n");
+  const int failed = count(results, CaseEnd::Status::failed),
+            stopped = count(results, CaseEnd::Status::stopped);
   fmt::print("{} cases: {} done, {} stopped by a guard, {} refused, {} failed\n", results.size(),
-             count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::guard),
+             count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::stopped),
              count(results, CaseEnd::Status::refused), failed);
   fmt::print("table: {}\nsummary: {}\n", folder.table(), folder.summary());
   if (line.json) {
     int reused = 0;
     for (const auto &[id, end] : ends)
       reused += end.reused;
-    fmt::print("{}\n", nlohmann::ordered_json{{"status", failed == 0 ? "done" : "failed"},
-                                              {"cases", results.size()},
-                                              {"done", count(results, CaseEnd::Status::done)},
-                                              {"guard", count(results, CaseEnd::Status::guard)},
-                                              {"refused", count(results, CaseEnd::Status::refused)},
-                                              {"failed", failed},
-                                              {"reused", reused},
-                                              {"table", folder.table()},
-                                              {"summary", folder.summary()},
-                                              {"output", folder.path()}}
-                           .dump());
+    fmt::print("{}\n", json_text({{"status", failed > 0    ? "failed"
+                                             : stopped > 0 ? "stopped"
+                                                           : "done"},
+                                  {"complete", failed == 0 && stopped == 0},
+                                  {"cases", results.size()},
+                                  {"done", count(results, CaseEnd::Status::done)},
+                                  {"stopped", count(results, CaseEnd::Status::stopped)},
+                                  {"refused", count(results, CaseEnd::Status::refused)},
+                                  {"failed", failed},
+                                  {"reused", reused},
+                                  {"table", folder.table()},
+                                  {"summary", folder.summary()},
+                                  {"output", folder.path()}}));
   }
-  return int(failed == 0 ? ExitCode::done : ExitCode::bad_environment);
+  return int(failed > 0    ? ExitCode::bad_environment
+             : stopped > 0 ? ExitCode::stopped_by_guard
+                           : ExitCode::done);
 }
 } // namespace
 

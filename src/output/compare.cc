@@ -1,6 +1,7 @@
 #include "src/output/compare.h"
 
 #include "core/files.h"
+#include "core/parameters/spelling.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/compared_side.h"
 #include "src/output/crack_path.h"
@@ -89,9 +90,7 @@ double mean_time(const std::vector<BrokenBond> &bonds)
 /// is on its way already, and a difference of a per mille in strength moves everything.
 constexpr double share_of_onset = 0.99;
 
-/// The latest states of the two runs at the same common time up to `limit`. Both look at the rows
-/// of their histories: with other intervals the times differ, and motions that grow cannot be
-/// compared.
+/// The latest states of the two runs at the same common time up to `limit`.
 std::optional<std::pair<Snapshot, Snapshot>>
 snapshots_of_one_time(const RunFolder &run, const RunFolder &reference, double limit)
 {
@@ -100,8 +99,7 @@ snapshots_of_one_time(const RunFolder &run, const RunFolder &reference, double l
       if (std::filesystem::exists(a) && std::filesystem::exists(b)) {
         std::pair pair(read_snapshot(a), read_snapshot(b));
         const double ta = pair.first.time, tb = pair.second.time;
-        if (common_time_index(ta) == common_time_index(tb) && std::abs(ta - tb) < 1e-3 * tb &&
-            std::max(ta, tb) <= limit)
+        if (std::abs(ta - tb) < 1e-9 * tb && std::max(ta, tb) <= limit)
           return pair;
       }
   return {};
@@ -117,18 +115,30 @@ public:
 
   CompareResult result()
   {
+    status();
+    find_limit();
     curves();
-    if (reference_.record) {
+    if (reference_.record)
       crack();
+    histories();
+    if (reference_.record) {
       fields();
       cost();
     } else
-      r_.notes.push_back("the reference is a curve: no crack path, fields or times to compare");
-    write_files();
+      note_what_a_curve_lacks();
+    draw();
     return std::move(r_);
   }
 
 private:
+  void note_what_a_curve_lacks()
+  {
+    r_.notes.push_back("the reference is a curve: no crack path, fields or times to compare");
+    if (const auto unknown = unknown_columns(reference_); !unknown.empty())
+      r_.notes.push_back("columns of the reference that compare does not know: " +
+                         core::listed(unknown, "and"));
+  }
+
   void line(const std::string &name, const std::string &run, const std::string &reference,
             const std::string &difference)
   {
@@ -137,6 +147,10 @@ private:
   static std::string text(const std::optional<double> &value, const char *unit)
   {
     return value ? quantity(*value, unit) : "-";
+  }
+  static std::string both(const std::optional<double> &l2, const std::optional<double> &max)
+  {
+    return l2 ? fmt::format("{:.2f} % / {:.2f} %", 100 * *l2, 100 * max.value_or(0)) : "-";
   }
   static std::string diameters(const std::optional<double> &value)
   {
@@ -147,13 +161,17 @@ private:
   {
     // The user's curve decides what can be compared; two runs have everything.
     const bool load = run_.values("load", "N") && reference_.values("load", "N");
-    const Measure &by_peak = load ? by_load : by_stress;
-    const auto a = peak(run_, by_peak), b = peak(reference_, by_peak);
-    r_.peak_load_error = relative_error(a, b);
-    line(load ? "peak load" : "peak stress", text(a, by_peak.y_unit), text(b, by_peak.y_unit),
-         percent(r_.peak_load_error));
-    if (!r_.peak_load_error)
+    const Measure &by_largest = load ? by_load : by_stress;
+    const bool peaks = peak(run_, by_largest) && peak(reference_, by_largest);
+    const auto a = largest(run_, by_largest), b = largest(reference_, by_largest);
+    const auto error = relative_error(a, b);
+    (peaks ? r_.peak_load_error : r_.largest_load_error) = error;
+    line(fmt::format("{} {}", peaks ? "peak" : "largest", load ? "load" : "stress"),
+         text(a, by_largest.y_unit), text(b, by_largest.y_unit), percent(error));
+    if (!error)
       r_.notes.push_back("peak: both curves need a column load (N) or stress (Pa) that is not 0");
+    else if (!peaks)
+      r_.notes.push_back("peak: there is none where nothing broke");
 
     const bool stress = has(run_, by_stress) && has(reference_, by_stress);
     measure_ = stress ? by_stress : by_load;
@@ -162,12 +180,95 @@ private:
     const char *unit = stress ? "Pa" : "N/m";
     line("stiffness", text(ka, unit), text(kb, unit), percent(r_.stiffness_error));
     if (!r_.stiffness_error)
-      r_.notes.push_back("stiffness: three points between 10 % and 50 % of the peak are needed, "
-                         "with strain and stress or displacement and load in both curves");
+      r_.notes.push_back("stiffness: strain and stress or displacement and load are needed in both "
+                         "curves, with three points on a line (to 2 %) between 10 % and 50 % of "
+                         "the largest load");
+    work(peaks);
+  }
 
-    const auto wa = work_at_peak(run_), wb = work_at_peak(reference_);
-    r_.energy_error = relative_error(wa, wb);
-    line("external work at the peak", text(wa, "J"), text(wb, "J"), percent(r_.energy_error));
+  void work(bool peaks)
+  {
+    std::optional<double> a, b;
+    if (peaks) {
+      a = work_at_largest(run_);
+      b = work_at_largest(reference_);
+    } else if (const auto run = run_.series({"external_work"}, "J"),
+               reference = reference_.series({"external_work"}, "J");
+               run && reference)
+    {
+      a = value_at(*run, last_common(*run, *reference));
+      b = value_at(*reference, last_common(*run, *reference));
+    }
+    r_.energy_error = relative_error(a, b);
+    line(peaks ? "external work at the peak" : "external work at the last common time",
+         text(a, "J"), text(b, "J"), percent(r_.energy_error));
+  }
+
+  double last_common(const TimeSeries &a, const TimeSeries &b) const
+  {
+    return a.time.empty() || b.time.empty()
+               ? 0
+               : std::min({a.time.back(), b.time.back(), still_until_});
+  }
+
+  void status()
+  {
+    const auto of = [this](const ComparedSide &side) -> std::string {
+      if (!side.record)
+        return "";
+      if (side.record->is_complete())
+        return "complete";
+      r_.complete = false;
+      const std::string how = incompleteness(*side.record);
+      r_.notes.push_back(fmt::format("{} {}{}{}", side.name, how,
+                                     side.record->reason.empty() ? "" : ": ", side.record->reason));
+      return how;
+    };
+    const std::string run = of(run_), reference = of(reference_);
+    if (!r_.complete)
+      line("run", run, reference, "");
+  }
+
+  /// Up to when states and histories are compared.
+  void find_limit()
+  {
+    for (const ComparedSide *side : {&run_, &reference_}) {
+      if (const auto onset = onset_time(*side))
+        still_until_ = std::min(still_until_, share_of_onset * *onset);
+      if (side->record && side->record->trusted_until) {
+        trusted_until_ = std::min(trusted_until_, *side->record->trusted_until);
+        r_.notes.push_back(fmt::format("{} left the range of its models at {}: what comes later "
+                                       "does not count",
+                                       side->name, quantity(*side->record->trusted_until, "s")));
+      }
+    }
+    still_until_ = std::min(still_until_, trusted_until_);
+  }
+
+  void histories()
+  {
+    const auto error = [this](const std::vector<const char *> &columns, const char *unit) {
+      const auto run = run_.series(columns, unit), reference = reference_.series(columns, unit);
+      if (!run || !reference)
+        return HistoryError();
+      r_.compared_until = last_common(*run, *reference);
+      return history_error(*run, *reference, *r_.compared_until);
+    };
+    r_.load_history = error({"load"}, "N");
+    r_.displacement_history = error({"displacement"}, "m");
+    r_.elastic_history = error({"potential_discrete", "potential_far", "blended"}, "J");
+    r_.kinetic_history = error({"kinetic_discrete", "kinetic_far"}, "J");
+    if (!r_.compared_until)
+      return;
+    const auto add = [this](const char *name, const HistoryError &e) {
+      if (e.mean)
+        line(name, "", "", both(e.mean, e.largest));
+    };
+    line("histories up to", "", "", quantity(*r_.compared_until, "s"));
+    add("  load, L2 / largest", r_.load_history);
+    add("  elongation, L2 / largest", r_.displacement_history);
+    add("  elastic energy, L2 / largest", r_.elastic_history);
+    add("  kinetic energy, L2 / largest", r_.kinetic_history);
   }
 
   void crack()
@@ -175,7 +276,7 @@ private:
     std::vector<BrokenBond> a, b;
     for (const auto &[side, bonds] : {std::pair(&run_, &a), std::pair(&reference_, &b)})
       if (std::filesystem::exists(side->folder->broken_bonds()))
-        *bonds = read_broken_bonds(side->folder->broken_bonds());
+        *bonds = part(read_broken_bonds(side->folder->broken_bonds()), trusted_until_, false);
     line("broken faces", grouped(std::int64_t(a.size())), grouped(std::int64_t(b.size())), "");
     if (a.empty() || b.empty()) {
       r_.notes.push_back("crack path: not in both runs a face broke");
@@ -197,7 +298,6 @@ private:
                          "and the potential energies");
       return;
     }
-    still_until_ = share_of_onset * std::min(*ta, *tb);
     const auto before = crack_distance(part(a, *ta, false), a, part(b, *tb, false), b, d);
     r_.crack_distance_mean_to_onset = before.mean;
     r_.crack_distance_max_to_onset = before.max;
@@ -226,15 +326,28 @@ private:
     r_.velocity_error_max = error.velocity_max;
     if (error.matched == 0)
       r_.notes.push_back("fields: no particle stands at the same place in both runs");
-    const auto both = [](const std::optional<double> &l2, const std::optional<double> &max) {
-      return l2 ? fmt::format("{:.2f} % / {:.2f} %", 100 * *l2, 100 * max.value_or(0)) : "-";
-    };
     const std::string matched = grouped(error.matched) + " particles";
     line("time of the fields below", quantity(pair->first.time, "s"),
          quantity(pair->second.time, "s"), "");
     line("displacement, L2 / largest", matched, "",
          both(error.displacement, error.displacement_max));
-    line("velocity, L2 / largest", matched, "", both(error.velocity, error.velocity_max));
+    velocities(pair->second.time, matched);
+  }
+
+  void velocities(double time, const std::string &matched)
+  {
+    const auto share = [time](const ComparedSide &side) -> std::optional<double> {
+      const auto kinetic = side.series({"kinetic_discrete", "kinetic_far"}, "J"),
+                 elastic = side.series({"potential_discrete", "potential_far", "blended"}, "J");
+      return kinetic && elastic ? ratio(value_at(*kinetic, time), value_at(*elastic, time))
+                                : std::nullopt;
+    };
+    const auto text = [](const std::optional<double> &s) {
+      return s ? fmt::format("{:.2g} %", 100 * *s) : "-";
+    };
+    r_.kinetic_share = share(reference_);
+    line("velocities: kinetic energy over elastic", text(share(run_)), text(r_.kinetic_share), "");
+    line("  velocity, L2 / largest", matched, "", both(r_.velocity_error, r_.velocity_error_max));
   }
 
   void cost()
@@ -249,7 +362,7 @@ private:
     line("wall time", duration(a.wall_seconds), duration(b.wall_seconds), factor(r_.time_ratio));
   }
 
-  void write_files()
+  void draw()
   {
     Plot plot;
     plot.title = run_.name + " against " + reference_.name;
@@ -262,24 +375,21 @@ private:
                                false, true});
     if (plot.series.size() < 2)
       r_.notes.push_back("plot: the curves have no pair of columns in common");
-    const std::string stem = run_.folder->path + "/compare_" + reference_.name;
-    r_.svg_file = stem + ".svg";
-    r_.html_file = stem + ".html";
-    const std::string drawing = draw_plot(plot);
-    core::write_file(r_.svg_file, drawing);
-
+    r_.file_name = "compare_" + reference_.name;
+    r_.plot = draw_plot(plot);
     std::vector<std::vector<std::string>> rows;
     for (const auto &l : r_.lines)
       rows.push_back({l.name, l.run, l.reference, l.difference});
-    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + drawing;
+    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + r_.plot;
     for (const auto &note : r_.notes)
       body += "<p>" + escape_xml(note) + "</p>\n";
-    core::write_file(r_.html_file, html_page(plot.title, body));
+    r_.page = html_page(plot.title, body);
   }
 
   ComparedSide run_, reference_;
   Measure measure_ = by_load;
-  double still_until_ = std::numeric_limits<double>::infinity(); // s
+  // s: what is later is not trusted; a crack is on its way.
+  double trusted_until_ = std::numeric_limits<double>::infinity(), still_until_ = trusted_until_;
   CompareResult r_;
 };
 } // namespace
@@ -287,5 +397,15 @@ private:
 CompareResult compare(const std::string &run_folder, const std::string &reference)
 {
   return Comparison(read_run(run_folder), read_reference(reference)).result();
+}
+
+void write_comparison(CompareResult &result, const std::string &folder)
+{
+  make_folder(folder);
+  const std::string stem = folder + "/" + result.file_name;
+  core::write_file(stem + ".svg", result.plot);
+  result.svg_file = stem + ".svg";
+  core::write_file(stem + ".html", result.page);
+  result.html_file = stem + ".html";
 }
 } // namespace ligament::program

@@ -35,7 +35,9 @@ nlohmann::json to_json(const CompareResult &r)
   const auto put = [&](const char *name, const std::optional<double> &value) {
     json[name] = value ? nlohmann::json(*value) : nlohmann::json();
   };
+  json["complete"] = r.complete;
   put("peak_load_error", r.peak_load_error);
+  put("largest_load_error", r.largest_load_error);
   put("stiffness_error", r.stiffness_error);
   put("crack_distance_mean", r.crack_distance_mean);
   put("crack_distance_max", r.crack_distance_max);
@@ -51,6 +53,16 @@ nlohmann::json to_json(const CompareResult &r)
   put("displacement_error_max", r.displacement_error_max);
   put("velocity_error", r.velocity_error);
   put("velocity_error_max", r.velocity_error_max);
+  put("kinetic_share", r.kinetic_share);
+  const auto put_history = [&](const std::string &name, const HistoryError &error) {
+    put((name + "_history_error").c_str(), error.mean);
+    put((name + "_history_error_max").c_str(), error.largest);
+  };
+  put_history("load", r.load_history);
+  put_history("displacement", r.displacement_history);
+  put_history("elastic", r.elastic_history);
+  put_history("kinetic", r.kinetic_history);
+  put("compared_until", r.compared_until);
   json["matched_particles"] = r.matched_particles;
   json["notes"] = r.notes;
   json["plot"] = r.svg_file;

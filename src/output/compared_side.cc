@@ -1,7 +1,9 @@
 #include "src/output/compared_side.h"
 
 #include "core/check.h"
+#include "core/parameters/spelling.h"
 #include "src/output/curve.h"
+#include "src/output/history.h"
 
 #include <algorithm>
 #include <cctype>
@@ -12,6 +14,10 @@ namespace ligament::program
 {
 namespace
 {
+/// What a curve can be compared by.
+constexpr const char *known_columns[] = {"time",   "load",   "displacement",
+                                         "stress", "strain", "external_work"};
+
 std::string name_of(const std::string &path)
 {
   auto normal = std::filesystem::path(path).lexically_normal();
@@ -32,7 +38,7 @@ ComparedSide read_run(const std::string &path)
   core::require(side.folder->holds_a_run(),
                 path + ": not the output folder of a run (no run.json in it)");
   side.record = read_run_record(side.folder->record());
-  side.curve = read_csv(side.folder->history());
+  side.curve = read_history(*side.folder, *side.record);
   return side;
 }
 
@@ -42,8 +48,23 @@ ComparedSide read_reference(const std::string &path)
     return read_run(path);
   core::require(std::filesystem::is_regular_file(path),
                 path + ": neither the output folder of a run nor a CSV file");
-  return {name_of(path), {}, {}, read_csv(path)};
+  ComparedSide side{name_of(path), {}, {}, read_csv(path)};
+  core::require(unknown_columns(side).size() < side.curve.columns().size(),
+                path + ": none of its columns is one that compare knows: " +
+                    core::listed({std::begin(known_columns), std::end(known_columns)}, "and"));
+  return side;
 }
+
+std::vector<std::string> unknown_columns(const ComparedSide &side)
+{
+  std::vector<std::string> unknown;
+  for (const Column &column : side.curve.columns())
+    if (std::find(std::begin(known_columns), std::end(known_columns), column.name) ==
+        std::end(known_columns))
+      unknown.push_back(column.name);
+  return unknown;
+}
+
 std::optional<std::vector<double>> ComparedSide::values(const char *column, const char *unit) const
 {
   if (!curve.has(column))
@@ -54,16 +75,40 @@ std::optional<std::vector<double>> ComparedSide::values(const char *column, cons
   return known ? std::optional(std::move(numbers)) : std::nullopt;
 }
 
-std::optional<std::size_t> ComparedSide::peak_row(const std::vector<double> &load) const
+std::optional<std::size_t> ComparedSide::largest_row(const std::vector<double> &load) const
 {
   const auto time = values("time", "s");
-  if (!record || !record->peak_time || !time)
+  if (!record || !record->largest_time || !time)
     return peak_index(load);
+  const double at = *record->largest_time;
   std::size_t row = 0;
   for (std::size_t i = 0; i < time->size(); ++i)
-    if (std::abs((*time)[i] - *record->peak_time) < std::abs((*time)[row] - *record->peak_time))
+    if (std::abs((*time)[i] - at) < std::abs((*time)[row] - at))
       row = i;
   return row;
+}
+
+std::optional<TimeSeries> ComparedSide::series(const std::vector<const char *> &columns,
+                                               const char *unit) const
+{
+  const auto time = values("time", "s");
+  std::vector<std::vector<double>> all;
+  for (const char *column : columns)
+    if (const auto numbers = values(column, unit))
+      all.push_back(*numbers);
+  if (!time || all.size() != columns.size())
+    return {};
+  TimeSeries result;
+  for (std::size_t i = 0; i < time->size(); ++i) {
+    double sum = 0;
+    for (const auto &numbers : all)
+      sum += numbers[i];
+    if (std::isfinite((*time)[i]) && std::isfinite(sum)) {
+      result.time.push_back((*time)[i]);
+      result.value.push_back(sum);
+    }
+  }
+  return result;
 }
 
 bool has(const ComparedSide &side, const Measure &m)
@@ -76,29 +121,29 @@ std::optional<double> stiffness(const ComparedSide &side, const Measure &m)
   if (!has(side, m))
     return {};
   auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
-  if (const auto peak = side.peak_row(y)) {
-    x.resize(*peak + 1);
-    y.resize(*peak + 1);
-  }
-  return fit_stiffness(x, y);
+  const auto row = side.largest_row(y);
+  return row ? fit_stiffness(x, y, *row) : std::nullopt;
+}
+
+std::optional<double> largest(const ComparedSide &side, const Measure &m)
+{
+  const bool load = std::string(m.y) == "load";
+  if (side.record && (load ? side.record->largest_load : side.record->largest_stress))
+    return load ? side.record->largest_load : side.record->largest_stress;
+  const auto values = side.values(m.y, m.y_unit);
+  const auto index = values ? side.largest_row(*values) : std::nullopt;
+  return index ? std::optional((*values)[*index]) : std::nullopt;
 }
 
 std::optional<double> peak(const ComparedSide &side, const Measure &m)
 {
-  const bool load = std::string(m.y) == "load";
-  if (side.record && (load ? side.record->peak_load : side.record->peak_stress))
-    return load ? side.record->peak_load : side.record->peak_stress;
-  const auto values = side.values(m.y, m.y_unit);
-  if (!values)
-    return {};
-  const auto index = peak_index(*values);
-  return index ? std::optional((*values)[*index]) : std::nullopt;
+  return side.record && !side.record->peak_load ? std::nullopt : largest(side, m);
 }
 
-std::optional<double> work_at_peak(const ComparedSide &side)
+std::optional<double> work_at_largest(const ComparedSide &side)
 {
   const auto load = side.values("load", "N");
-  const auto index = load ? side.peak_row(*load) : std::nullopt;
+  const auto index = load ? side.largest_row(*load) : std::nullopt;
   if (!index)
     return {};
   if (const auto work = side.values("external_work", "J"))
@@ -114,12 +159,14 @@ std::optional<double> work_at_peak(const ComparedSide &side)
 
 std::optional<double> onset_time(const ComparedSide &side)
 {
+  if (side.record && !side.record->peak_load)
+    return {};
   const auto time = side.values("time", "s"), load = side.values("load", "N"),
              discrete = side.values("potential_discrete", "J"),
              far = side.values("potential_far", "J"), blended = side.values("blended", "J");
   if (!time || !load || !discrete || !far || !blended)
     return {};
-  const auto peak = side.peak_row(*load);
+  const auto peak = side.largest_row(*load);
   if (!peak)
     return {};
   std::size_t onset = 0;

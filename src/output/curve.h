@@ -7,15 +7,35 @@
 
 namespace ligament::program
 {
-/// Index of the largest value in the direction of loading, which is the sign of the mean load;
-/// empty for an empty or all-zero curve.
-std::optional<std::size_t> peak_index(const std::vector<double> &load);
+/// A load below this share of its maximum has fallen: what comes later are rebounds.
+constexpr double fallen_share = 0.1;
 
-/// Slope of `load` over `displacement` by least squares over the points before the peak whose load
-/// lies between 10 % and 50 % of it; stress over mean strain gives Pa. Empty with fewer than three
-/// points or no spread.
+/// Number of values up to which the load is one: before it first falls, at or after row `from`,
+/// below 10 % of the largest magnitude so far, in whose direction it is measured. Magnitudes below
+/// 10 % of the largest of all are noise and don't count. All values when it never falls.
+std::size_t loading_rows(const std::vector<double> &load, std::size_t from = 0);
+
+/// Index of the largest magnitude of the first `n_rows` values; empty when none is above 0.
+std::optional<std::size_t> largest_index(const std::vector<double> &load, std::size_t n_rows);
+
+/// Of the whole loading, see loading_rows().
+inline std::optional<std::size_t> peak_index(const std::vector<double> &load)
+{
+  return largest_index(load, loading_rows(load));
+}
+
+/// Slope of `load` over `displacement` by least squares over the first rise of the load from 10 %
+/// to 50 % of load[peak]; stress over mean strain gives Pa. Empty with fewer than three points,
+/// without spread, or when the line misses the points by more than 2 % of the largest load among
+/// them in the mean square.
 std::optional<double> fit_stiffness(const std::vector<double> &displacement,
-                                    const std::vector<double> &load);
+                                    const std::vector<double> &load, std::size_t peak);
+inline std::optional<double> fit_stiffness(const std::vector<double> &displacement,
+                                           const std::vector<double> &load)
+{
+  const auto peak = peak_index(load);
+  return peak ? fit_stiffness(displacement, load, *peak) : std::nullopt;
+}
 
 /// Largest magnitude of the residual over the largest external work; empty without work.
 std::optional<double> relative_residual(const std::vector<double> &residual,

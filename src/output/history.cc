@@ -17,11 +17,17 @@ std::vector<Column> history_columns(int dimension)
   for (const char *energy :
        {"kinetic_discrete", "potential_discrete", "kinetic_far", "potential_far", "blended",
         "impulses", "breaking", "fracture", "friction", "damper_fine", "damper_gap", "damping",
-         "absorbed", "regime_change", "external_work", "residual"})
+        "absorbed", "regime_change", "external_work", "residual"})
     columns.push_back({energy, "J"});
   columns.push_back({"broken_bonds", "1"});
   columns.push_back({"crack_length", dimension == 2 ? "m" : "m^2"});
   return columns;
+}
+
+Table read_history(const RunFolder &folder, const RunRecord &record)
+{
+  const bool ended = record.status == "done" || record.status == "stopped";
+  return read_csv(folder.history(), ended ? TableEnd::whole : TableEnd::may_be_torn);
 }
 
 HistoryWriter::HistoryWriter(const std::string &path, std::vector<Column> columns,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "core/files.h"
+#include "src/output/run_folder.h"
+#include "src/output/run_record.h"
 #include "src/output/table.h"
 
 #include <string>
@@ -14,6 +16,10 @@ namespace ligament::program
 /// both), fracture, friction, damper_fine, damper_gap, damping, absorbed, regime_change,
 /// external_work, residual. crack_length is in m (2D) or m^2 (3D).
 std::vector<Column> history_columns(int dimension);
+
+/// history.csv of a run; what one that did not end by itself left in the middle of a line is left
+/// out. InputError when it cannot be read.
+Table read_history(const RunFolder &folder, const RunRecord &record);
 
 /// Appends rows; a row is on disk after at most `rows_per_flush` rows.
 class HistoryWriter

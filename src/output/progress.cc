@@ -1,5 +1,6 @@
 #include "src/output/progress.h"
 
+#include "core/tell.h"
 #include "src/output/format.h"
 
 #include <fmt/core.h>
@@ -53,10 +54,9 @@ void Progress::put(const ProgressState &state, bool last)
       progress_line(state, std::chrono::duration<double>(now - start_).count(), dimension_);
   if (terminal_)
     // Padded to cover what is left of a longer line.
-    fmt::print(stream_, "\r{:<{}}{}", line, width_, last ? "\n" : "");
+    core::tell(stream_, fmt::format("\r{:<{}}{}", line, width_, last ? "\n" : ""));
   else
-    fmt::print(stream_, "{}\n", line);
-  std::fflush(stream_);
+    core::tell(stream_, line + "\n");
   width_ = line.size();
   next_ =
       now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_));

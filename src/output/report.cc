@@ -171,16 +171,32 @@ std::string model(const RunRecord &r)
   add("steps", grouped(r.steps));
   add("simulated time", quantity(r.simulated_time, "s"));
   add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));
-  maybe("peak load", r.peak_load, "N");
-  maybe("peak stress", r.peak_stress, "Pa");
-  maybe("time of the peak", r.peak_time, "s");
-  maybe("stiffness", r.stiffness, "Pa");
+  const std::string most = r.peak_load ? "peak" : "largest";
+  maybe(most + " load", r.largest_load, "N");
+  maybe(most + " stress", r.largest_stress, "Pa");
+  maybe("time of the " + most + " load", r.largest_time, "s");
+  add("stiffness", r.stiffness ? quantity(*r.stiffness, "Pa") : "none: the load rises on no line");
+  maybe("load path gone since", r.broken_time, "s");
+  maybe("trusted until", r.trusted_until, "s");
   add("broken faces", grouped(r.broken_bonds));
+  if (r.overlap_particles > 0)
+    add("of them in the overlap", grouped(r.broken_in_overlap));
+  maybe("external work", r.external_work, "J");
   maybe(r.dimension == 2 ? "crack length" : "crack area", r.crack_length,
         r.dimension == 2 ? "m" : "m^2");
   for (const auto &[name, figure] : r.figures)
     add(name, quantity(figure.value, figure.unit));
   return "<h2>Figures</h2>\n" + html_table({"", ""}, rows);
+}
+
+std::string warnings(const RunRecord &record)
+{
+  if (record.warnings.empty())
+    return "";
+  std::string text = "<h2>Warnings</h2>\n<ul>\n";
+  for (const RunWarning &warning : record.warnings)
+    text += "<li>" + escape_xml(warning_text(record, warning)) + "</li>\n";
+  return text + "</ul>\n";
 }
 
 std::string skipped(const RunRecord &record)
@@ -197,7 +213,7 @@ std::string comparisons(const RunFolder &folder)
 {
   std::vector<std::string> files;
   for (const auto &entry : std::filesystem::directory_iterator(folder.path))
-    if (entry.path().extension() == ".svg" &&
+    if (entry.is_regular_file() && entry.path().extension() == ".svg" &&
         entry.path().filename().string().rfind("compare_", 0) == 0)
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -235,28 +251,30 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
 }
 } // namespace
 
-std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields)
+std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields,
+                         const std::string &target)
 {
   const RunFolder folder{run_folder};
   core::require(folder.holds_a_run(),
                 run_folder + ": not the output folder of a run (no run.json in it)");
   RunRecord record = read_run_record(folder.record());
+  const RunFolder place{target.empty() ? run_folder : target};
+  make_folder(place.path);
   if (!fields.empty())
-    record.pictures = write_pictures(folder, record, fields);
-  const bool bad = record.status == "guard" || record.status == "failed";
+    record.pictures = write_pictures(folder, record, fields, place);
 
   std::string body = paragraph("headline", headline(record));
-  body += paragraph(bad ? "verdict bad" : "verdict",
+  body += paragraph(is_stable(record) ? "verdict" : "verdict bad",
                     record.verdict.empty() ? verdict(record) : record.verdict);
-  body += pictures(folder, record);
+  body += warnings(record) + pictures(fields.empty() ? folder : place, record);
   if (std::filesystem::exists(folder.history())) {
-    const Table history = read_csv(folder.history());
+    const Table history = read_history(folder, record);
     body +=
         load_curve(history) + crack_growth(history, record.dimension) + energies(history, record);
   }
   body += comparisons(folder) + model(record) + timing(record) + skipped(record) +
           sources(folder, record);
-  core::write_file(folder.report(), html_page(record.title, body));
-  return folder.report();
+  core::write_file(place.report(), html_page(record.title, body));
+  return place.report();
 }
 } // namespace ligament::program

@@ -6,9 +6,10 @@
 
 namespace ligament::program
 {
-/// Writes report.html into the output folder from the files that lie there and returns its path.
-/// `fields` (words of shown_field()) are drawn anew from the states that the run kept and stand in
-/// place of its own pictures. InputError when the folder holds no run, or for another word.
-std::string write_report(const std::string &run_folder,
-                         const std::vector<std::string> &fields = {});
+/// Writes report.html from the files of the run into `target`, which is made if need be (empty: the
+/// folder of the run), and returns its path. `fields` (words of shown_field()) are drawn anew from
+/// the states that the run kept and stand in place of its own pictures. InputError when the first
+/// folder holds no run, or for another word; EnvironmentError when the disk refuses.
+std::string write_report(const std::string &run_folder, const std::vector<std::string> &fields = {},
+                         const std::string &target = "");
 } // namespace ligament::program

@@ -6,6 +6,9 @@
 
 namespace ligament::program
 {
+/// With the folders above it; one that is there stays. EnvironmentError when the disk refuses.
+void make_folder(const std::string &path);
+
 struct RunFolder
 {
   std::string path;
@@ -34,5 +37,8 @@ struct RunFolder
   void create() const;
   /// True when a run wrote its record here.
   bool holds_a_run() const;
+  /// The name of something that no run wrote here; empty in a folder of a run, or where one that
+  /// was killed at once may have been.
+  std::string foreign_entry() const;
 };
 } // namespace ligament::program

@@ -28,7 +28,7 @@ std::string caption(const ShownField &field, const BodyState &state)
 std::vector<PictureEntry> write_pictures(const RunFolder &folder,
                                          const std::vector<const BodyState *> &states,
                                          const std::vector<std::string> &fields, int dimension,
-                                         double magnification)
+                                         double magnification, std::vector<std::string> *missing)
 {
   std::vector<PictureEntry> entries;
   FieldView view;
@@ -39,15 +39,22 @@ std::vector<PictureEntry> write_pictures(const RunFolder &folder,
     for (std::size_t s = 0; s < states.size(); ++s) {
       const std::string file = fmt::format("pictures/{}_{}.png", states[s]->name, word);
       pictures[s].title = caption(view.field, *states[s]);
-      write_picture(folder.path + "/" + file, pictures[s]);
-      entries.push_back({file, pictures[s].title});
+      try {
+        write_picture(folder.path + "/" + file, pictures[s]);
+        entries.push_back({file, pictures[s].title});
+      } catch (const core::EnvironmentError &error) {
+        if (!missing)
+          throw;
+        missing->push_back(error.what());
+      }
     }
   }
   return entries;
 }
 
 std::vector<PictureEntry> write_pictures(const RunFolder &folder, const RunRecord &record,
-                                         const std::vector<std::string> &fields)
+                                         const std::vector<std::string> &fields,
+                                         const RunFolder &target)
 {
   for (const std::string &word : fields)
     shown_field(word, record.dimension); // before anything is read
@@ -58,7 +65,8 @@ std::vector<PictureEntry> write_pictures(const RunFolder &folder, const RunRecor
   std::vector<const BodyState *> all;
   for (const BodyState &state : states)
     all.push_back(&state);
-  return write_pictures(folder, all, fields, record.dimension, record.magnification);
+  make_folder(target.pictures());
+  return write_pictures(target, all, fields, record.dimension, record.magnification);
 }
 
 BodyState read_state(const RunFolder &folder, const StateEntry &entry)

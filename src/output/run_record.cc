@@ -1,6 +1,7 @@
 #include "src/output/run_record.h"
 
 #include "core/check.h"
+#include "core/disk_reserve.h"
 #include "core/files.h"
 
 #include <nlohmann/json.hpp>
@@ -44,6 +45,13 @@ void for_each_field(PictureEntry &r, Visit &&visit)
 }
 
 template <typename Visit>
+void for_each_field(RunWarning &r, Visit &&visit)
+{
+  visit("text", r.text);
+  visit("energy", r.energy);
+}
+
+template <typename Visit>
 void for_each_field(StateEntry &r, Visit &&visit)
 {
   visit("name", r.name);
@@ -83,12 +91,19 @@ void for_each_field(RunRecord &r, Visit &&visit)
   visit("wall_seconds", r.wall_seconds);
   visit("setup_seconds", r.setup_seconds);
   visit("discrete_seconds", r.discrete_seconds);
+  visit("largest_load", r.largest_load);
+  visit("largest_stress", r.largest_stress);
+  visit("largest_time", r.largest_time);
   visit("peak_load", r.peak_load);
   visit("peak_stress", r.peak_stress);
   visit("peak_time", r.peak_time);
   visit("stiffness", r.stiffness);
+  visit("broken_time", r.broken_time);
+  visit("trusted_until", r.trusted_until);
   visit("broken_bonds", r.broken_bonds);
+  visit("broken_in_overlap", r.broken_in_overlap);
   visit("crack_length", r.crack_length);
+  visit("external_work", r.external_work);
   visit("energy_residual", r.energy_residual);
   visit("figures", r.figures);
   visit("timing", r.timing);
@@ -96,6 +111,7 @@ void for_each_field(RunRecord &r, Visit &&visit)
   visit("magnification", r.magnification);
   visit("states", r.states);
   visit("pictures", r.pictures);
+  visit("warnings", r.warnings);
 }
 
 template <typename T>
@@ -192,7 +208,24 @@ void write_run_record(const std::string &path, const RunRecord &record)
   Json json;
   RunRecord copy = record;
   for_each_field(copy, Writer{json});
-  core::write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  json["complete"] = record.is_complete();
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  try {
+    core::write_file(path, text);
+  } catch (const core::EnvironmentError &) {
+    if (!core::release_reserve(path))
+      throw;
+    core::write_file(path, text);
+  }
+}
+
+std::string incompleteness(const RunRecord &record)
+{
+  if (record.status == "stopped")
+    return "was stopped by its guard";
+  if (record.status == "interrupted")
+    return "was interrupted";
+  return record.status == "running" ? "is not finished" : record.status;
 }
 
 RunRecord read_run_record(const std::string &path)

@@ -31,6 +31,14 @@ struct PictureEntry
   std::string caption;
 };
 
+/// What a run warned about.
+struct RunWarning
+{
+  std::string text;
+  /// J: what it took out of the energy balance, or released where the model does not hold.
+  std::optional<double> energy = {};
+};
+
 /// A state that the run kept with all fields.
 struct StateEntry
 {
@@ -47,7 +55,7 @@ struct RunRecord
   std::string version;
   std::string commit;
   std::string started;            // date and time, UTC
-  std::string status = "running"; // running, done, guard, failed
+  std::string status = "running"; // running, done, stopped (by a guard), interrupted, failed
   std::string reason;             // why it ended
   std::string kind;               // coupled, pure_dem, pure_fem
   int dimension = 2;
@@ -80,12 +88,18 @@ struct RunRecord
   std::string verdict;
   std::vector<SkippedPart> skipped;
 
-  std::optional<double> peak_load;   // N, reaction, positive in tension
-  std::optional<double> peak_stress; // Pa
-  std::optional<double> peak_time;   // s
+  /// Reaction in N, positive in tension, its stress in Pa and its time in s: the largest until the
+  /// load has fallen, see LoadCurve. It is a peak when something broke before.
+  std::optional<double> largest_load, largest_stress, largest_time;
+  std::optional<double> peak_load, peak_stress, peak_time;
   std::optional<double> stiffness;   // Pa, see fit_stiffness
+  std::optional<double> broken_time; // s, when the load path was gone
+  /// When the run left the range of its models, in s: nothing later counts.
+  std::optional<double> trusted_until;
   std::int64_t broken_bonds = 0;
+  std::int64_t broken_in_overlap = 0;    // of them, pads excepted
   std::optional<double> crack_length;    // m (3D: m^2)
+  std::optional<double> external_work;   // J, the largest of the run
   std::optional<double> energy_residual; // of the external work, see relative_residual
 
   /// Toughness factor c, strength, crack half length, ... by name.
@@ -93,7 +107,15 @@ struct RunRecord
   double magnification = 0; // of displacements in pictures; 0: they show none
   std::vector<StateEntry> states;
   std::vector<PictureEntry> pictures;
+  std::vector<RunWarning> warnings;
+
+  /// It came to the end that its scene asks for.
+  bool is_complete() const { return status == "done"; }
 };
+
+/// What to say of a run that is not complete: it "was stopped by its guard", "was interrupted",
+/// "failed", "is not finished".
+std::string incompleteness(const RunRecord &record);
 
 /// Replaces the file at once; EnvironmentError when the disk refuses.
 void write_run_record(const std::string &path, const RunRecord &record);

@@ -40,6 +40,11 @@ int common_time_index(double time)
   return int(std::floor(std::log(time) / std::log(1.02)));
 }
 
+double common_time(int index)
+{
+  return std::pow(1.02, index);
+}
+
 void write_snapshot(const std::string &path, const Snapshot &s)
 {
   Header header{{}, s.dimension, std::int64_t(s.size()), s.time, s.spacing};

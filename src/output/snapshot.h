@@ -21,10 +21,12 @@ struct Snapshot
   std::size_t size() const { return global_id.size(); }
 };
 
-/// Runs keep snapshots at common times 1.02^k seconds, k a whole number, so that runs of the same
+/// Runs keep snapshots at exactly the common times 1.02^k seconds, k a whole number, so that runs of the same
 /// scene with other meshes, steps or zones have states of the same times. Index k of the last
 /// common time up to `time` > 0, in s.
 int common_time_index(double time);
+/// In s.
+double common_time(int index);
 
 /// Binary with a checksum; replaced at once.
 void write_snapshot(const std::string &path, const Snapshot &snapshot);

@@ -111,7 +111,7 @@ std::vector<double> Table::column(const std::string &name, const std::string &si
   return values;
 }
 
-Table read_csv(const std::string &path)
+Table read_csv(const std::string &path, TableEnd end_of_table)
 {
   std::string text;
   try {
@@ -119,6 +119,11 @@ Table read_csv(const std::string &path)
   } catch (const core::EnvironmentError &error) {
     throw core::InputError(error.what());
   }
+
+  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark
+    text.erase(0, 3);
+  if (end_of_table == TableEnd::may_be_torn)
+    text.resize(text.rfind('\n') + 1); // npos + 1 is 0
 
   Table table;
   table.path_ = path;

@@ -13,6 +13,14 @@ struct Column
   std::string unit; // "1" for plain numbers
 };
 
+/// Whether the writer of a file came to its end. One that was stopped (a kill, a full disk) may
+/// have left half a line at the end of the file, without line feed.
+enum class TableEnd
+{
+  whole,
+  may_be_torn // what follows the last line feed is left out
+};
+
 /// Columns with names and units.
 class Table
 {
@@ -27,7 +35,7 @@ public:
   const std::vector<Column> &columns() const { return columns_; }
 
 private:
-  friend Table read_csv(const std::string &);
+  friend Table read_csv(const std::string &, TableEnd);
   int find(const std::string &name) const;
 
   std::string path_;
@@ -37,8 +45,9 @@ private:
 
 /// Reads a CSV file with a row of names and a row of units: history.csv, or a user's curve with
 /// load and displacement (or stress and strain). Separators: comma, semicolon or tab; lines that
-/// open with # are comments. InputError names file, line and column.
-Table read_csv(const std::string &path);
+/// open with # are comments; a byte order mark is passed over. InputError names file, line and
+/// column.
+Table read_csv(const std::string &path, TableEnd end = TableEnd::whole);
 
 /// Factor from a unit with an optional SI prefix ("kN", "MPa", "us", "mm", "%") to the SI unit
 /// asked for; InputError when it is not of that kind.

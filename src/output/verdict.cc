@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cctype>
 #include <vector>
 
@@ -44,6 +45,25 @@ std::string model_part(const RunRecord &r)
 }
 } // namespace
 
+std::string warning_text(const RunRecord &r, const RunWarning &warning)
+{
+  if (!warning.energy)
+    return warning.text;
+  std::string cost = quantity(*warning.energy, "J");
+  if (r.external_work && *r.external_work > 0)
+    cost += fmt::format(", {:.2g} of the external work", *warning.energy / *r.external_work);
+  return warning.text + " (" + cost + ")";
+}
+
+// Warnings with an energy are about the result, others about input and files.
+bool is_stable(const RunRecord &r)
+{
+  return r.is_complete() && r.energy_residual.value_or(0) <= largest_good_residual &&
+         !r.trusted_until && r.broken_in_overlap == 0 &&
+         std::none_of(r.warnings.begin(), r.warnings.end(),
+                      [](const RunWarning &w) { return w.energy.has_value(); });
+}
+
 std::optional<double> predicted_saving(const RunRecord &r)
 {
   if (r.particles == 0 || r.equivalent_particles == 0 || !r.discrete_seconds ||
@@ -59,11 +79,14 @@ std::string verdict(const RunRecord &r)
   std::vector<std::string> parts = {model_part(r)};
   if (r.energy_residual)
     parts.push_back(fmt::format("energy residual {:.1g}", *r.energy_residual));
-  if (r.status == "guard" || r.status == "failed")
-    parts.push_back(fmt::format("stopped: {}", r.reason));
-  else if (r.energy_residual && !(*r.energy_residual <= largest_good_residual))
+  if (r.status != "running" && !r.is_complete())
+    parts.push_back(fmt::format("it {}: {}", incompleteness(r), r.reason));
+  if (r.energy_residual && !(*r.energy_residual <= largest_good_residual))
     parts.push_back("the energies do not add up: do not trust this run");
-  else if (r.energy_residual && r.status == "done")
+  for (const RunWarning &warning : r.warnings)
+    if (warning.text != r.reason)
+      parts.push_back("warning: " + warning_text(r, warning));
+  if (r.energy_residual && is_stable(r))
     parts.push_back("nothing unstable");
   return join(parts);
 }
@@ -71,20 +94,23 @@ std::string verdict(const RunRecord &r)
 std::string headline(const RunRecord &r)
 {
   std::string text;
-  if (r.status == "running")
-    text = "The run is not finished: ";
-  if (r.peak_load) {
-    text += fmt::format("peak load {}", quantity(*r.peak_load, "N"));
-    if (r.peak_stress)
-      text += fmt::format(" ({})", quantity(*r.peak_stress, "Pa"));
-    if (r.peak_time)
-      text += fmt::format(" after {}", quantity(*r.peak_time, "s"));
+  if (!r.is_complete())
+    text = fmt::format("The run {}: ", incompleteness(r));
+  if (r.largest_load)
+    text += fmt::format("{} {}", r.peak_load ? "peak load" : "largest load",
+                        quantity(*r.largest_load, "N"));
+  if (r.largest_load && r.largest_stress)
+    text += fmt::format(" ({})", quantity(*r.largest_stress, "Pa"));
+  if (r.largest_load && r.largest_time)
+    text += fmt::format(" after {}", quantity(*r.largest_time, "s"));
+  if (r.largest_load)
     text += "; ";
-  }
   text += r.broken_bonds == 0 ? "nothing broke" : grouped(r.broken_bonds) + " broken faces";
   if (r.broken_bonds > 0 && r.crack_length)
     text += r.dimension == 2 ? ", crack length " + quantity(*r.crack_length, "m")
                              : ", crack area " + quantity(*r.crack_length, "m^2");
+  if (r.broken_in_overlap > 0)
+    text += fmt::format(", {} of them in the overlap", grouped(r.broken_in_overlap));
   text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
   return text + ".";
 }

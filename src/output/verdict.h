@@ -12,8 +12,15 @@ namespace ligament::program
 /// the time per particle and step that this run measured. Empty when a figure is missing.
 std::optional<double> predicted_saving(const RunRecord &record);
 
+/// A warning with the energy that it cost.
+std::string warning_text(const RunRecord &record, const RunWarning &warning);
+
+/// Complete, energies that add up, and nothing left the range of its model.
+bool is_stable(const RunRecord &record);
+
 /// For example "8 700 particles and 2 350 cells stood for 121 000 particles: 11.4 x faster than
-/// pure discrete elements would be at this rate; energy residual 3e-05; nothing unstable".
+/// pure discrete elements would be at this rate; energy residual 3e-05; nothing unstable". Repeats
+/// every warning; "nothing unstable" stands there only when is_stable().
 std::string verdict(const RunRecord &record);
 
 /// One sentence for the top of the report: what broke, at which load.

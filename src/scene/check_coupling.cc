@@ -87,6 +87,19 @@ void check_scheme(const Scene &scene, Findings &f)
               fmt::format("\"{}\" joins all velocities of the overlap in every step", name), "");
 }
 
+/// The fit balances forces at the inner end of the overlap, too: the cells behind it must be its
+/// own.
+void check_transition(const Scene &scene, Findings &f)
+{
+  const std::string key = "/coupling/transition_cells";
+  if (f.sound({key, "/coupling/scheme", "/coupling/patch_fit"}) &&
+      scene.coupling.scheme == coupling::Scheme::fine_scale_split && scene.coupling.patch_fit &&
+      scene.coupling.transition_cells == 0)
+    f.error(key, "\"transition_cells\" in /coupling is 0, with a patch fit",
+            "the fit needs a cell behind the overlap to balance the forces at its inner end",
+            "give at least 1, or \"patch_fit\": false");
+}
+
 /// Two models that lie over each other and are not joined.
 void check_no_scheme(const Scene &scene, Findings &f)
 {
@@ -108,6 +121,7 @@ void check_coupling(const Scene &scene, Findings &f)
   check_ratio(scene, f);
   check_coarse_mass(scene, f);
   check_scheme(scene, f);
+  check_transition(scene, f);
   check_no_scheme(scene, f);
 }
 } // namespace ligament::program

@@ -117,6 +117,7 @@ public:
                       fmt::format("the particles cannot show it: \"spacing\" is {} m", spacing_),
                       "make it longer, or the spacing smaller");
     in_zone(bounding_box(inside), "the crack " + key, points);
+    check_path(scene_, crack, points, f_);
   }
 
 private:

@@ -52,20 +52,39 @@ void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, 
     f.error(key + "/absorbing", fmt::format("\"absorbing\" in {}, which prescribes a motion", key),
             "an absorbing side moves as the waves ask; it can only carry a traction",
             "replace the motion by a traction, or remove \"absorbing\"");
+  if (!f.sound({key}))
+    return;
   for (std::size_t j = 0; j < k; ++j) {
     const LoadParameters &other = scene.loads[j];
-    if (other.boundary != load.boundary || !f.sound({key}))
+    if (other.boundary != load.boundary)
       continue;
     const bool other_holds = has_components(other.velocity) || has_components(other.displacement);
     if ((load.absorbing && (other.absorbing || other_holds)) || (other.absorbing && holds))
-      f.error(key + "/boundary",
-              fmt::format("\"boundary\" in {}: side \"{}\" absorbs waves and has another load "
-                          "that {}",
-                          key, load.boundary,
-                          load.absorbing && other.absorbing ? "absorbs them, too"
-                                                            : "prescribes its motion"),
-              fmt::format("/loads/{} acts on it already", j), "keep one of the two");
+      return f.error(
+          key + "/boundary",
+          fmt::format("\"boundary\" in {}: side \"{}\" absorbs waves and has another load "
+                      "that {}",
+                      key, load.boundary,
+                      load.absorbing && other.absorbing ? "absorbs them, too"
+                                                        : "prescribes its motion"),
+          fmt::format("/loads/{} acts on it already", j), "keep one of the two");
   }
+}
+
+/// What an earlier load does to the same component; one is enough to tell.
+void check_twice(const Scene &scene, std::size_t k, const std::string &key, Findings &f)
+{
+  const LoadParameters &load = scene.loads[k];
+  for (std::size_t j = 0; j < k; ++j)
+    for (int c = 0; c < scene.dimension; ++c)
+      if (scene.loads[j].boundary == load.boundary && acts_on(load, c) &&
+          acts_on(scene.loads[j], c))
+        return f.error(
+            key + "/boundary",
+            fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice", key,
+                        "xyz"[c], load.boundary),
+            fmt::format("/loads/{} acts on it already", j),
+            "keep one of the two, or set the component to null in one");
 }
 
 /// Whether several boxes leave no gap in this side of the specimen, down to a depth in m.
@@ -168,15 +187,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     check_absorbing(scene, k, key, f);
     if (!f.sound({key}))
       continue;
-    for (std::size_t j = 0; j < k; ++j)
-      for (int c = 0; c < scene.dimension; ++c)
-        if (scene.loads[j].boundary == load.boundary && acts_on(load, c) &&
-            acts_on(scene.loads[j], c) && f.sound({key}))
-          f.error(key + "/boundary",
-                  fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice",
-                              key, "xyz"[c], load.boundary),
-                  fmt::format("/loads/{} acts on it already", j),
-                  "keep one of the two, or set the component to null in one");
+    check_twice(scene, k, key, f);
     if (layout && f.sound({key}))
       check_against_overlap(load, key, *layout, f);
     if (layout && load.absorbing && f.sound({key}))

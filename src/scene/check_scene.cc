@@ -55,19 +55,23 @@ void check_models(const Scene &scene, Findings &f)
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }
 
-/// Keys that belong to another packing than the one that was chosen; their defaults do no harm.
+/// Keys that belong to another packing than the one that was chosen. Their defaults do no harm.
 void check_packing_keys(const Scene &scene, Findings &f)
 {
   const DiscreteZone &zone = scene.zone, plain;
   const std::string &packing = zone.packing;
   const auto refuse = [&](const std::string &name, const std::string &needed, bool differs) {
     const std::string key = zone_key + "/" + name;
-    if (packing != needed && differs && f.sound({key}))
-      f.error(key,
-              fmt::format("\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name,
-                          packing),
-              fmt::format("only the packing \"{}\" has one", needed),
-              fmt::format("remove it, or choose the packing \"{}\"", needed));
+    if (packing == needed || !f.sound_and_given({key}))
+      return;
+    const std::string message = fmt::format(
+        "\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name, packing);
+    const std::string reason = fmt::format("only the packing \"{}\" has one", needed),
+                      remedy = fmt::format("remove it, or choose the packing \"{}\"", needed);
+    if (differs)
+      f.error(key, message, reason, remedy);
+    else
+      f.warning(key, message, reason, remedy);
   };
   refuse("seed", "random", zone.seed != plain.seed);
   refuse("relaxation_sweeps", "random", zone.relaxation_sweeps != plain.relaxation_sweeps);
@@ -175,6 +179,7 @@ void check_scene(const Scene &scene, Findings &f)
     check_inclusions(scene, specimen, layout ? &*layout : nullptr, f);
   }
   check_loads(scene, layout ? &*layout : nullptr, f);
+  check_scales(scene, f);
   check_pictures(scene, f);
 }
 } // namespace ligament::program

@@ -32,11 +32,17 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
 /// Scheme, sizes and masses of a coupled scene with sound spacing and cell size.
 void check_coupling(const Scene &scene, Findings &findings);
 
+/// What is possible for each key, and not together: speeds, strains, numbers of steps.
+void check_scales(const Scene &scene, Findings &findings);
+
 /// Sizes of the far field's cells.
 void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 
 /// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
+
+/// Whether the crack, a sound one, can run straight ahead in the lattice of the zone.
+void check_path(const Scene &scene, const Crack &crack, const std::string &key, Findings &findings);
 
 /// Whether what lies in the box keeps its distance from the overlap: the mesh there is whole and of
 /// one material. `name` begins the message.

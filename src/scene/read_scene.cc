@@ -1,5 +1,7 @@
 #include "src/scene/read_scene.h"
 
+#include "core/check.h"
+#include "core/input_file.h"
 #include "core/json.h"
 #include "core/parameters/describe_parameters.h"
 #include "core/parameters/override.h"
@@ -12,8 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace ligament::program
 {
@@ -64,6 +64,16 @@ void check_choice_of_zone(const DiscreteZone &zone, int dimension, Findings &fin
                    "remove one of them");
 }
 
+/// Keys that mean nothing to the packing are not echoed: reading them again would be doubted.
+void leave_out_unused(const DiscreteZone &zone, nlohmann::ordered_json &json)
+{
+  if (zone.packing != "random")
+    for (const char *key : {"seed", "relaxation_sweeps", "size_ratio"})
+      json.erase(key);
+  if (zone.packing != "file")
+    json.erase("packing_file");
+}
+
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
@@ -95,7 +105,7 @@ template <typename Overrides>
 ReadResult parse(const std::string &text, const std::string &name, const Overrides &overrides)
 {
   ReadResult result;
-  core::JsonValue json = core::parse_json(text, name, result.errors);
+  core::JsonValue &json = result.json = core::parse_json(text, name, result.errors);
   // A value that a repeated key hides does not stop the search for other mistakes, bad syntax does.
   if (json.is(core::JsonValue::Kind::null) && !result.errors.empty())
     return result;
@@ -105,7 +115,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   for (const auto &o : overrides)
     core::apply_override(table, o, json, result.errors);
   const int dimension = dimension_of(json);
-  core::read_parameters(table, json, "", dimension, table, result.errors);
+  core::read_parameters(table, json, "", dimension, table, result.errors, &result.warnings);
   result.keys_are_right = result.errors.empty();
   apply_far_field_word(json, scene);
   if (json.is(core::JsonValue::Kind::object)) {
@@ -120,32 +130,52 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   if (!result.errors.empty())
     return result;
   result.resolved = core::echo(table, dimension);
+  leave_out_unused(scene.zone, result.resolved["discrete_zone"]);
   complete(scene);
   result.scene = std::move(scene);
   return result;
 }
 
+ReadResult refused(const std::string &file, const std::string &reason, const std::string &remedy)
+{
+  ReadResult result;
+  result.errors.push_back(
+      {core::Place{scene_name(file)}, "", "cannot read the scene", reason, remedy});
+  return result;
+}
+
+/// Relative paths in a scene start in its folder; in one that came through a pipe where we are.
+void locate_files(const std::string &file, Scene &scene)
+{
+  std::string &packing = scene.zone.packing_file;
+  if (!packing.empty() && core::is_named_file(file))
+    packing = (std::filesystem::path(file).parent_path() / packing).string();
+}
+
 template <typename Overrides>
 ReadResult read(const std::string &file, const Overrides &overrides)
 {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream)
-    text << stream.rdbuf();
-  if (!stream || !text) {
-    ReadResult result;
-    const core::Place place{file};
-    result.errors.push_back({place, "", "cannot read the scene",
-                             "there is no such file, or it may not be read", "check the path"});
-    return result;
+  std::string text;
+  try {
+    text = core::read_input(file);
+  } catch (const core::EnvironmentError &error) {
+    return refused(file, error.what(), "check the path");
   }
-  ReadResult result = parse(text.str(), file, overrides);
-  if (result.scene && !result.scene->zone.packing_file.empty())
-    result.scene->zone.packing_file =
-        (std::filesystem::path(file).parent_path() / result.scene->zone.packing_file).string();
+  if (text.find_first_not_of(" \t\r\n") == text.npos)
+    return refused(file, "it is empty",
+                   "write a scene into it; examples/cracked_plate/scene.json is one");
+  ReadResult result = parse(text, scene_name(file), overrides);
+  result.text = std::move(text);
+  if (result.scene)
+    locate_files(file, *result.scene);
   return result;
 }
 } // namespace
+
+std::string scene_name(const std::string &file)
+{
+  return file == "-" ? "standard input" : file;
+}
 
 ReadResult parse_scene(const std::string &text, const std::string &name,
                        const std::vector<std::string> &overrides)

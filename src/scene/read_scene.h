@@ -13,6 +13,8 @@ struct ReadResult
 {
   std::optional<Scene> scene; // without value when there are errors
   std::vector<core::Diagnostic> errors, warnings;
+  std::string text;     // as it was read
+  core::JsonValue json; // with the overrides: where each key stands
   /// Keys, types and bounds are right; what may be wrong then is how values go together.
   bool keys_are_right = false;
   /// Every value, defaults included, in SI units; reading it gives the same scene. Null with
@@ -20,9 +22,12 @@ struct ReadResult
   nlohmann::ordered_json resolved;
 };
 
-/// Reads the file (JSON with comments), applies the overrides ("/path=value") in their order and
-/// checks everything that can be checked without building the bodies. Does not throw for wrong
-/// input.
+/// What messages call the scene: its path, or "standard input" for "-".
+std::string scene_name(const std::string &file);
+
+/// Reads the file (JSON with comments; a pipe, or standard input for "-"), applies the overrides
+/// ("/path=value") in their order and checks everything that can be checked without building the
+/// bodies. Does not throw for wrong input.
 ReadResult read_scene(const std::string &file, const std::vector<std::string> &overrides = {});
 
 /// The same with values that were read elsewhere; their places appear in the messages.

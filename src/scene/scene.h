@@ -48,7 +48,7 @@ struct Specimen
 
 struct FractureParameters
 {
-  std::string criterion = "none";  // none, maximum_tension
+  std::string criterion = "none";  // none, maximum_tension, face_tension
   std::optional<double> strength;  // Pa
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
 };

@@ -11,25 +11,25 @@ using Section = core::ParameterSection;
 // clang-format off
 void declare_crack(Section &s, Crack &c)
 {
-  s.add("points", c.points, "the two ends (2D), or the corners of a convex plane polygon (3D)").in("m").required();
+  s.add("points", c.points, "the two ends (2D), or the corners of a convex plane polygon (3D)").in("m").usually(0, 1e4, "mm um").required();
 }
 
 void declare_hole(Section &s, Hole &h)
 {
-  s.add("centre", h.centre, "centre of the disc").in("m").required();
-  s.add("radius", h.radius, "radius of the disc; at least two spacings").in("m").above(0).required();
+  s.add("centre", h.centre, "centre of the disc").in("m").usually(0, 1e4, "mm um").required();
+  s.add("radius", h.radius, "radius of the disc; at least two spacings").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
 }
 
 void declare_notch(Section &s, Notch &n)
 {
-  s.add("lower", n.lower, "corner of the box with the smallest coordinates").in("m").required();
-  s.add("upper", n.upper, "corner of the box with the largest coordinates").in("m").required();
+  s.add("lower", n.lower, "corner of the box with the smallest coordinates").in("m").usually(0, 1e4, "mm um").required();
+  s.add("upper", n.upper, "corner of the box with the largest coordinates").in("m").usually(0, 1e4, "mm um").required();
 }
 
 void declare_specimen(Section &s, Specimen &p)
 {
-  s.add("size", p.size, "edge lengths of the box, which is centred at the origin").in("m").above(0).required();
-  s.add("thickness", p.thickness, "extent across the plane").in("m").above(0).only_in(2);
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required();
+  s.add("thickness", p.thickness, "extent across the plane").in("m").usually(1e-8, 1e4, "mm um nm").above(0).only_in(2);
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
@@ -37,24 +37,24 @@ void declare_specimen(Section &s, Specimen &p)
 
 void declare_fracture(Section &s, FractureParameters &f)
 {
-  s.add("criterion", f.criterion, "what breaks a bond: the normal stress on its face, or nothing").one_of({"none", "maximum_tension"});
-  s.add("strength", f.strength, "normal stress at which a bond breaks; either this or toughness").in("Pa").above(0);
-  s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").above(0);
+  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing").one_of({"none", "maximum_tension", "face_tension"});
+  s.add("strength", f.strength, "tension at which a bond breaks; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
 }
 
 void declare_material(Section &s, MaterialParameters &m)
 {
-  s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").above(0).required();
+  s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").usually(1e5, 2e12, "GPa MPa kPa").above(0).required();
   s.add("poissons_ratio", m.poissons_ratio, "nu, the same in both models").at_least(-0.2).at_most(0.49).required();
-  s.add("density", m.density, "mass per volume").in("kg/m^3").above(0).required();
+  s.add("density", m.density, "mass per volume").in("kg/m^3").usually(10, 3e4, "g/cm^3 t/m^3").above(0).required();
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
 }
 
 void declare_ball(Section &s, Hole &h)
 {
-  s.add("centre", h.centre, "its centre").in("m").required();
-  s.add("radius", h.radius, "its radius").in("m").above(0).required();
+  s.add("centre", h.centre, "its centre").in("m").usually(0, 1e4, "mm um").required();
+  s.add("radius", h.radius, "its radius").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
 }
 
 void declare_inclusion(Section &s, Inclusion &i)
@@ -67,8 +67,8 @@ void declare_inclusion(Section &s, Inclusion &i)
 template <typename Box>
 void declare_region(Section &s, Box &z)
 {
-  s.add("lower", z.lower, "corner with the smallest coordinates; null: reaches through the specimen").in("m").null_means(-infinity);
-  s.add("upper", z.upper, "corner with the largest coordinates; null: reaches through the specimen").in("m").null_means(infinity);
+  s.add("lower", z.lower, "corner with the smallest coordinates; null: reaches through the specimen").in("m").usually(0, 1e4, "mm um").null_means(-infinity);
+  s.add("upper", z.upper, "corner with the largest coordinates; null: reaches through the specimen").in("m").usually(0, 1e4, "mm um").null_means(infinity);
 }
 
 void declare_zone(Section &s, DiscreteZone &z)
@@ -77,8 +77,8 @@ void declare_zone(Section &s, DiscreteZone &z)
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
   s.list("boxes", z.boxes, "in place of region: several boxes; those that overlap or touch are one zone, others are separate zones", declare_region<ZoneBox>);
   s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file").one_of({"square", "hexagonal", "simple_cubic", "fcc", "random", "file"}).required_unless("extent is none");
-  s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").above(0).required_unless("extent is none");
-  s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").as_rotation();
+  s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").usually(1e-10, 1e2, "mm um nm").above(0).required_unless("extent is none");
+  s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();
   s.add("seed", z.seed, "random packing: which one").at_least(0).at_most(1000000000);
   s.add("relaxation_sweeps", z.relaxation_sweeps, "random packing: how often every particle moves to the centroid of its cell").at_least(0).at_most(1000);
   s.add("size_ratio", z.size_ratio, "random packing: largest over smallest radius").at_least(1).at_most(5);
@@ -89,7 +89,7 @@ void declare_zone(Section &s, DiscreteZone &z)
 
 void declare_far_field(Section &s, FarField &f)
 {
-  s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").above(0).required();
+  s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").usually(1e-9, 1e3, "mm um nm").above(0).required();
   s.add("levels", f.levels, "refinement levels: the largest cells have size h 2^levels").at_least(0).at_most(8);
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
@@ -110,7 +110,7 @@ void declare_coupling(Section &s, CouplingParameters &c)
   s.add("multiplier_cells", c.multiplier_cells, "edge of the multipliers' hat functions in cells; energy-weighted schemes only").at_least(1).at_most(10);
   s.add("ghost_force_correction", c.ghost_force_correction, "normal strains (xx, yy, zz) at which constant forces cancel the overlap's ghost forces, 0: off; energy-weighted schemes only").at_least(-0.1).at_most(0.1);
   s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
-  s.add("guard", c.guard, "what happens when fracture approaches the overlap or the body leaves the range of its regime").one_of({"stop", "warn"});
+  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons").one_of({"stop", "warn"});
   s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it").one_of({"automatic", "linear", "corotated", "nonlinear"});
   s.add("coarse_mass", c.coarse_mass, "factor on the masses of the coarse motion and of the far field, for fewer steps to a static answer; down to spacing/cell_size, with damping only").above(0).at_most(1);
 }
@@ -118,28 +118,28 @@ void declare_coupling(Section &s, CouplingParameters &c)
 void declare_damping(Section &s, Damping &d)
 {
   s.add("local", d.local, "fraction of the force that acts against the motion").at_least(0).below(1);
-  s.add("mass", d.mass, "force against the momentum, of both models").in("1/s").at_least(0);
+  s.add("mass", d.mass, "force against the momentum, of both models").in("1/s").usually(0, 1e9, "1/s").at_least(0);
   s.add("kinetic", d.kinetic, "velocities become zero when the kinetic energy has a peak");
 }
 
 void declare_load(Section &s, LoadParameters &l)
 {
   s.add("boundary", l.boundary, "side of the specimen").one_of({"left", "right", "bottom", "top", "back", "front"}).required();
-  s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s");
-  s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m");
-  s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa");
-  s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").at_least(0);
+  s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
+  s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
+  s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
+  s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
   s.add("absorbing", l.absorbing, "waves leave through this side; alone or with a traction");
-  s.add("absorbing_layer", l.absorbing_layer, "width of a damping layer inside the absorbing side, one to two wave lengths; 0: dashpots on the side alone").in("m").at_least(0);
+  s.add("absorbing_layer", l.absorbing_layer, "width of a damping layer inside the absorbing side, one to two wave lengths; 0: dashpots on the side alone").in("m").usually(0, 1e4, "mm um").at_least(0);
 }
 
 void declare_time(Section &s, TimeParameters &t)
 {
-  s.add("duration", t.duration, "simulated time").in("s").above(0).required();
+  s.add("duration", t.duration, "simulated time").in("s").usually(1e-12, 1e5, "us ms ns").above(0).required();
   s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
-  s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").above(0);
+  s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").usually(1e-18, 1e2, "us ns ps").above(0);
   s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
-  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as it carries no load").one_of({"end", "specimen_broken"});
+  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)").one_of({"end", "specimen_broken"});
 }
 
 void declare_picture(Section &s, PictureParameters &p)
@@ -150,8 +150,8 @@ void declare_picture(Section &s, PictureParameters &p)
 
 void declare_output(Section &s, OutputParameters &o)
 {
-  s.add("field_interval", o.field_interval, "simulated time between two outputs of all fields").in("s").above(0).word("never", infinity);
-  s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000").in("s").at_least(0);
+  s.add("field_interval", o.field_interval, "simulated time between two outputs of all fields").in("s").usually(1e-15, 1e5, "us ms ns").above(0).word("never", infinity);
+  s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000").in("s").usually(1e-15, 1e5, "us ms ns").at_least(0);
   s.add("progress_interval", o.progress_interval, "wall time between two progress lines").in("s").above(0);
   s.list("pictures", o.pictures, "fields that the pictures of the run show, near the peak load and at the end; empty: the stress along the load", declare_picture);
   s.add("magnification", o.magnification, "factor on displacements in pictures; 0: a round one that suits all pictures of the run").at_least(0);

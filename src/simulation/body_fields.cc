@@ -45,19 +45,6 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
   body.force->stresses(state, stress);
-  if (const auto *overlap = body.coupler->overlap()) // pads lack neighbours, their own tensor is
-                                                     // not complete: they show the mesh's
-  {
-    for (const auto &m : overlap->members)
-      if (m.pad) {
-        Vec<dim * fem::n_cell_nodes<dim>> u;
-        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-          u.template segment<dim>(a * dim) =
-              get(body.far->displacement, overlap->near_nodes[m.nodes[a]]);
-        const Strain<dim> strain = fem::strain_matrix<dim>(m.gradient) * u;
-        set(stress, m.particle, Strain<dim>(body.far->body().stiffness * strain));
-      }
-  }
   std::vector<double> tensor(6 * state.n_owned);
   for (int i = 0; i < state.n_owned; ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
@@ -204,7 +191,8 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
 }
 
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time)
+Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
+                  const Components<dim> &velocity)
 {
   Snapshot s;
   s.dimension = dim;
@@ -217,8 +205,8 @@ Snapshot snapshot(const CoupledBody<dim> &body, double time)
   for (int i = 0; i < state.n_owned; ++i)
     for (int c = 0; c < dim; ++c) {
       s.reference.push_back(state.reference[c][i]);
-      s.displacement.push_back(state.displacement[c][i]);
-      s.velocity.push_back(state.velocity[c][i]);
+      s.displacement.push_back(displacement[c][i]);
+      s.velocity.push_back(velocity[c][i]);
     }
   return s;
 }
@@ -261,8 +249,10 @@ template CellFields cell_fields(const CoupledBody<2> &);
 template CellFields cell_fields(const CoupledBody<3> &);
 template class StateFields<2>;
 template class StateFields<3>;
-template Snapshot snapshot(const CoupledBody<2> &, double);
-template Snapshot snapshot(const CoupledBody<3> &, double);
+template Snapshot snapshot<2>(const CoupledBody<2> &, double, const Components<2> &,
+                              const Components<2> &);
+template Snapshot snapshot<3>(const CoupledBody<3> &, double, const Components<3> &,
+                              const Components<3> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<2> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<3> &);
 template double crack_length(const CoupledBody<2> &, int);

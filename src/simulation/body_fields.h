@@ -31,8 +31,10 @@ private:
   std::vector<std::uint8_t> n_faces_; // per particle, shared with others; found when first needed
 };
 
+/// A motion of the particles at `time` in s: m and m/s.
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time);
+Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
+                  const Components<dim> &velocity);
 
 /// All faces broken so far, in the order of breaking.
 template <int dim>

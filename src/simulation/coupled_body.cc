@@ -1,6 +1,7 @@
 #include "src/simulation/coupled_body.h"
 
 #include "core/check.h"
+#include "core/keyed_error.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_zone.h"
 
@@ -218,18 +219,22 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   if (scene.zone.spacing > 0)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
-    make_zone(scene, body, log);
+    core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
+                 [&] { make_zone(scene, body, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
-    make_far(scene, body, log);
+    core::at_key("/far_field", "change cell_size, levels or the zone",
+                 [&] { make_far(scene, body, log); });
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
   if (!coupled)
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
-  else if (coupling::is_energy_weighted(scene.coupling.scheme))
-    make_bridging_domain(scene, body, log, timers);
-  choose_step(scene, body);
-  if (!body.coupler)
-    make_fine_scale_split(scene, body, log, timers);
+  core::at_key("/coupling", "change overlap_cells, cell_size or the zone", [&] {
+    if (coupled && coupling::is_energy_weighted(scene.coupling.scheme))
+      make_bridging_domain(scene, body, log, timers);
+    choose_step(scene, body);
+    if (!body.coupler)
+      make_fine_scale_split(scene, body, log, timers);
+  });
   body.skipped = skipped_parts(scene, body);
   return body;
 }

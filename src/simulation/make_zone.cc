@@ -1,13 +1,17 @@
 #include "src/simulation/make_zone.h"
 
 #include "core/check.h"
+#include "core/keyed_error.h"
+#include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
 #include "particles/absorbing_sides.h"
 #include "particles/lattice_packing.h"
 #include "particles/packing_file.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/toughness_cache.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,13 +86,39 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
   return m;
 }
 
+dem::FractureLaw::Criterion criterion_of(const Scene &scene)
+{
+  using Criterion = dem::FractureLaw::Criterion;
+  const std::string &name = scene.material.fracture.criterion;
+  return name == "maximum_tension" ? Criterion::maximum_tension
+         : name == "face_tension"  ? Criterion::face_tension
+                                   : Criterion::none;
+}
+
+/// All that the factor c depends on, in one line.
+std::string toughness_key(const Scene &scene, const dem::DemMaterial &material)
+{
+  const DiscreteZone &zone = scene.zone;
+  const std::string packing =
+      zone.packing == "random"
+          ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
+          : fmt::format("turned {}", fmt::join(zone.orientation, " "));
+  return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method,
+                     scene.material.fracture.criterion, scene.dimension,
+                     scene.plane == PlaneMode::stress ? "stress" : "strain", zone.packing,
+                     material.poissons_ratio, packing);
+}
+
 template <int dim>
 double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
 {
-  if (scene.zone.packing == "random")
-    return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material);
-  const auto lattice = lattice_of<dim>(scene);
-  return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material);
+  const auto criterion = criterion_of(scene);
+  return ToughnessCache().factor(toughness_key(scene, material), [&] {
+    if (scene.zone.packing == "random")
+      return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
+    const auto lattice = lattice_of<dim>(scene);
+    return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
+  });
 }
 
 /// Strength from the scene, or from the toughness through the calibrated factor c. `name` is added
@@ -114,9 +144,12 @@ template <int dim>
 dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
   dem::FractureLaw law;
-  if (scene.material.fracture.criterion == "none")
+  law.criterion = criterion_of(scene);
+  if (law.criterion == dem::FractureLaw::Criterion::none)
     return law;
-  law.criterion = dem::FractureLaw::Criterion::maximum_tension;
+  if (!scene.material.fracture.strength)
+    law.whole_face = dem::PrincipalTension::whole_face<dim>(scene.zone.spacing) *
+                     (dim == 2 ? scene.specimen.thickness : 1);
   law.strength = strength_of<dim>(scene, scene.material, "", body, log);
   if (scene.inclusions.empty())
     return law;
@@ -127,6 +160,48 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
   return law;
 }
 
+template <int dim>
+particles::Seeds<dim> read_seeds(const Scene &scene)
+{
+  const auto refuse = [](const std::string &reason) {
+    return core::KeyedError("/discrete_zone/packing_file",
+                            "the \"packing_file\" in /discrete_zone cannot be used", reason,
+                            "correct the file or its path; a run writes such a file, packing.csv");
+  };
+  try {
+    return particles::read_packing_file<dim>(scene.zone.packing_file);
+  } catch (const core::InputError &error) {
+    throw refuse(error.what());
+  } catch (const core::EnvironmentError &error) {
+    throw refuse(error.what());
+  }
+}
+
+/// Cells reach to the next seed, however far: the file of a zone would fill a whole specimen badly.
+template <int dim>
+void require_cover(const Scene &scene, const particles::RandomParameters<dim> &p,
+                   const particles::Seeds<dim> &seeds)
+{
+  Vector<dim> lower = seeds.centre[0], upper = lower;
+  for (int i = 1; i < seeds.size(); ++i) {
+    lower = lower.cwiseMin(seeds.centre[i]);
+    upper = upper.cwiseMax(seeds.centre[i]);
+  }
+  for (int c = 0; c < dim; ++c) {
+    const double low = std::max(p.lower[c], p.zone_lower[c]),
+                 high = std::min(p.upper[c], p.zone_upper[c]);
+    if (std::max(lower[c] - low, high - upper[c]) > 3 * p.spacing)
+      throw core::KeyedError(
+          "/discrete_zone/packing_file",
+          fmt::format("the particles of {} do not fill the discrete zone in {}",
+                      scene.zone.packing_file, "xyz"[c]),
+          fmt::format("they go from {:.4g} m to {:.4g} m, the zone from {:.4g} m to {:.4g} m",
+                      lower[c], upper[c], low, high),
+          "give a file for this zone: that of a run with far field holds its zone alone, its pure "
+          "discrete twin needs the packing of the whole specimen");
+  }
+}
+
 /// Seeds of an irregular packing, from their file or from random numbers.
 template <int dim>
 particles::RandomPacking<dim> irregular_packing(const Scene &scene)
@@ -134,9 +209,10 @@ particles::RandomPacking<dim> irregular_packing(const Scene &scene)
   const auto parameters = random_packing_of<dim>(scene);
   if (scene.zone.packing == "random")
     return particles::make_random_packing<dim>(parameters);
-  auto seeds = particles::read_packing_file<dim>(scene.zone.packing_file);
+  auto seeds = read_seeds<dim>(scene);
   const std::vector<int> material = std::move(seeds.material);
   seeds.material.clear();
+  require_cover(scene, parameters, seeds);
   auto packing = particles::pack_seeds<dim>(parameters, std::move(seeds));
   for (const auto row : packing.packing.global_id) // the name of a seed is the number of its row
     if (!material.empty())
@@ -147,10 +223,13 @@ particles::RandomPacking<dim> irregular_packing(const Scene &scene)
   const auto &cells = packing.packing.volume;
   const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
   const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
-  require(
-      ratio > 0.9 && ratio < 1.1,
-      fmt::format("/discrete_zone/spacing: the packing of {} has the spacing {:.4g} m; give that",
-                  scene.zone.packing_file, ratio * scene.zone.spacing));
+  if (!(ratio > 0.9 && ratio < 1.1))
+    throw core::KeyedError(
+        "/discrete_zone/spacing",
+        fmt::format("\"spacing\" in /discrete_zone is {} m, but that of the packing is {:.4g} m",
+                    scene.zone.spacing, ratio * scene.zone.spacing),
+        "the file says how large its particles are: " + scene.zone.packing_file,
+        fmt::format("give {:.4g} m", ratio * scene.zone.spacing));
   return packing;
 }
 
@@ -190,11 +269,11 @@ void set_materials(const Scene &scene, CoupledBody<dim> &body, particles::Packin
                    core::Log &log)
 {
   if (scene.inclusions.empty()) {
-    require(std::count(packing.material.begin(), packing.material.end(), 0) ==
-                long(packing.material.size()),
-            fmt::format("/discrete_zone/packing_file: {} names materials other than 0; add them to "
-                        "/inclusions",
-                        scene.zone.packing_file));
+    if (std::count(packing.material.begin(), packing.material.end(), 0) !=
+        long(packing.material.size()))
+      throw core::KeyedError("/discrete_zone/packing_file",
+                             scene.zone.packing_file + " names materials other than 0",
+                             "the scene has no inclusions", "add them to /inclusions");
     packing.material.clear();
     return;
   }
@@ -212,16 +291,17 @@ void set_materials(const Scene &scene, CoupledBody<dim> &body, particles::Packin
   std::vector<long> number(scene.inclusions.size() + 1, 0);
   for (int i = 0; i < packing.size(); ++i) {
     const int k = packing.material[i];
-    require(k < int(number.size()),
-            fmt::format("/discrete_zone/packing_file: material {} of {} is no inclusion; "
-                        "/inclusions has {}",
-                        k, scene.zone.packing_file, scene.inclusions.size()));
+    if (k >= int(number.size()))
+      throw core::KeyedError(
+          "/discrete_zone/packing_file",
+          fmt::format("material {} of {} is no inclusion", k, scene.zone.packing_file),
+          fmt::format("/inclusions has {}", scene.inclusions.size()),
+          "add inclusions, or give the particles another material");
     ++number[k];
     if (k > 0 && coupled && zone.distance(centre(i)) < keep_off)
       throw core::InputError(fmt::format(
-          "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m; "
-          "the "
-          "overlap is of /material alone: widen the discrete zone or move the inclusion",
+          "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m: the "
+          "overlap is of /material alone; widen the discrete zone or move the inclusion",
           k - 1, centre(i)[0], centre(i)[1]));
   }
   for (std::size_t k = 1; k < number.size(); ++k) {

@@ -1,9 +1,10 @@
 #include "src/simulation/recorder.h"
 
+#include "core/check.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/curve.h"
+#include "src/output/format.h"
 #include "src/output/run_pictures.h"
-#include "src/simulation/connectivity.h"
 
 #include <fmt/format.h>
 
@@ -15,31 +16,25 @@ namespace ligament::program
 {
 namespace
 {
-// Guards look this often, in steps of the far field.
-constexpr long guard_interval = 50;
-
-// Overlap bonds must not break: the run is trusted up to half their strength.
-constexpr double guarded_share = 0.5;
-
 // Fields are copied when the load has grown by this factor.
 constexpr double copied_growth = 1.02;
+
+// The load path is looked at this often, in steps of the far field.
+constexpr long break_interval = 50;
+
+// Of the external work: a change of regime that takes more is worth a warning.
+constexpr double largest_regime_change = 1e-3;
+
+template <int dim>
+std::int64_t n_broken(const CoupledBody<dim> &body)
+{
+  return body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
+}
 
 double history_interval_of(const Scene &scene)
 {
   return scene.output.history_interval > 0 ? scene.output.history_interval
                                            : scene.time.duration / 2000;
-}
-
-/// Particles of bonds that must not break.
-template <int dim>
-std::vector<int> guarded_particles(const CoupledBody<dim> &body)
-{
-  std::vector<int> guarded;
-  if (body.coupler->overlap() &&
-      body.force->fracture().criterion != dem::FractureLaw::Criterion::none)
-    for (const auto &m : body.coupler->overlap()->members)
-      guarded.push_back(m.particle);
-  return guarded;
 }
 
 /// Seconds of the faster one of two calls.
@@ -70,10 +65,6 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
     reading += machine.read(body, 0).load + read_ledger(body, step, 0).residual() +
                crack_length(body, machine.axis());
   });
-  const auto guarded = guarded_particles(body);
-  const double guard = guarded.empty() ? 0 : seconds_of([&] {
-    reading += body.force->max_tension(body.zone->state, guarded);
-  });
   const double copy = seconds_of([&] {
     const auto particles = particle_fields(body);
     const auto cells = cell_fields(body);
@@ -82,20 +73,19 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
   const double first = std::min(readings, 1 / (copied_growth - 1)),
                copies = first + std::log(std::max(readings / first, 1.)) / std::log(copied_growth) +
                         scene.time.duration / scene.output.field_interval;
-  return std::isfinite(reading)
-             ? readings * read + far_steps / guard_interval * guard + copies * copy
-             : 0;
+  return std::isfinite(reading) ? readings * read + copies * copy : 0;
 }
 
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
-                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps)
+                        core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
+                        bool draws_pictures)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
       history_(folder.history(), history_columns(dim)),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), history_interval_(history_interval_of(scene)),
-      guarded_(guarded_particles(body))
+      n_steps_(n_steps), draws_pictures_(draws_pictures),
+      history_interval_(history_interval_of(scene)), guard_(body), path_(machine_.axis())
 {
 }
 
@@ -103,27 +93,33 @@ template <int dim>
 std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
                                            const coupling::StepTime &step, double damping)
 {
-  const long far_step = step.step / body.coupler->step_ratio();
-  const bool guard = far_step % guard_interval == 0;
+  const int ratio = body.coupler->step_ratio();
+  snapshots_.look(body, step, ratio * step.dt, keeps_copies(body));
+  if (const auto finding = guard_.look(body))
+    if (const auto stop = report_excess(*finding, step))
+      return stop;
+  if (!broken_time_ && step.step / ratio % break_interval == 0)
+    look_for_break(body, step);
+  if (broken_time_ && scene_.time.stop_when == "specimen_broken")
+    return Stop{false, fmt::format("specimen broken at {:.4g} s", *broken_time_)};
+
   const bool history = step.time >= next_history_ - 1e-9 * history_interval_;
   const bool fields = step.time >= next_fields_;
-  const bool progress = far_step % 20 == 0 && progress_.is_due();
-  if (!guard && !history && !fields && !progress)
+  const bool progress = step.step / ratio % 20 == 0 && progress_.is_due();
+  if (!history && !fields && !progress)
     return {};
   const auto timing = timers_.scope(section_);
   if (history) {
     record_history(body, step, damping);
     if (!std::isfinite(residual_.back()))
-      return Stop{true, fmt::format("the energies are no longer finite at {:.4g} s: the run is "
-                                    "unstable; lower /time/step_fraction or the load's rate",
-                                    step.time)};
+      return Stop{true, report("the energies are no longer finite: the run is unstable; lower "
+                               "/time/step_fraction or the load's rate",
+                               step)};
   }
   if (fields)
     record_fields(body, step);
   if (progress)
     progress_.print(progress_state(body, step, read_ledger(body, step, damping)));
-  if (guard)
-    return check_guards(body, step);
   return {};
 }
 
@@ -142,39 +138,34 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   history_.set("strain", r.strain);
   for (const auto &[name, value] : ledger.channels())
     history_.set(name, value);
-  history_.set("broken_bonds", body.force ? double(body.force->broken_bonds().size()) : 0);
+  history_.set("broken_bonds", double(n_broken(body)));
   history_.set("crack_length", crack_length(body, machine_.axis()));
   history_.end_row();
 
-  if (!broken_ || step.time <= break_.felt_at) {
-    time_.push_back(step.time);
-    load_.push_back(r.load);
-    stress_.push_back(r.stress);
-    strain_.push_back(r.strain);
-  }
+  curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
-  // A crack that runs moves within microseconds, while the grips still feel a rising load: the
-  // states before it are the ones to show and to compare.
-  if (ledger.kinetic() < 0.01 * ledger.potential())
+  quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
+  if (quasi_static_ && keeps_copies(body))
     keep_copies(body, step.time, r.load);
 }
 
-// Which state is the last before fracture is known only later: copies are kept on the way up, of
-// the motion at the times that other runs of the scene copy it too, of the fields, which take
-// longer, as the load grows.
+// A crack that runs moves within microseconds, while the grips still feel a rising load: the states
+// before it are the ones to show and to compare. Where nothing has broken yet, waves are, too.
+template <int dim>
+bool Recorder<dim>::keeps_copies(const CoupledBody<dim> &body) const
+{
+  return !curve_.has_ended() && (quasi_static_ || n_broken(body) == 0);
+}
+
+// Which fields are the last before fracture is known only later: they are copied on the way up.
 template <int dim>
 void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, double load)
 {
-  if (const int index = common_time_index(time); index > common_time_) {
-    common_time_ = index;
-    std::rotate(snapshots_.begin(), snapshots_.end() - 1, snapshots_.end());
-    snapshots_[0] = snapshot(body, time);
-  }
-  if (std::abs(load) > copied_growth * std::abs(fields_copied_at_)) {
-    fields_copied_at_ = load;
-    peak_state_ = present_state(body, time);
-  }
+  if (std::abs(load) <= copied_growth * std::abs(fields_copied_at_))
+    return;
+  fields_copied_at_ = load;
+  peak_state_ = present_state(body, time);
 }
 
 template <int dim>
@@ -201,58 +192,62 @@ template <int dim>
 std::optional<Stop> Recorder<dim>::report_excess(const std::string &finding,
                                                  const coupling::StepTime &step)
 {
-  const std::string reason = fmt::format("at {:.4g} s {}", step.time, finding);
-  log_.warning(reason);
+  const std::string reason = report(finding, step);
   if (scene_.coupling.guard == "stop")
     return Stop{true, reason};
   return {};
 }
 
 template <int dim>
-std::optional<Stop> Recorder<dim>::check_guards(const CoupledBody<dim> &body,
-                                                const coupling::StepTime &step)
+std::string Recorder<dim>::report(const std::string &finding, const coupling::StepTime &step)
 {
-  // Overlap bonds must not break.
-  if (!guarded_.empty() && !warned_) {
-    const double strength = body.force->fracture().strength;
-    const double tension = body.force->max_tension(body.zone->state, guarded_);
-    if (tension > guarded_share * strength) {
-      warned_ = true;
-      if (const auto stop = report_excess(
-              fmt::format("the tension in the overlap is {:.0f} % of the strength: fracture comes "
-                          "near it; make /discrete_zone/region larger",
-                          100 * tension / strength),
-              step))
-        return stop;
-    }
-  }
-  if (body.force && !broken_)
-    look_for_break(body, step.time);
-  if (broken_ && step.time >= break_.felt_at && scene_.time.stop_when == "specimen_broken")
-    return Stop{false, fmt::format("specimen broken at {:.4g} s", break_.time)};
-  return {};
+  const std::string reason = fmt::format("at {:.4g} s {}", step.time, finding);
+  log_.warning(reason);
+  if (!trusted_until_)
+    trusted_until_ = step.time;
+  curve_.end();
+  return reason;
 }
 
-// The sides feel the break when a wave from it has reached them; what they feel later is the swing
-// of the halves, which is no load that the specimen carries.
+// A bridge of a few bonds or a fragment between the halves may still join the sides: the load says
+// that they carry nothing. Where it says nothing itself, a traction, what is left of the section
+// must do. Halves that are pulled apart and dragged through a damping don't lose their load: they
+// are apart when a wave from the last bond has reached both sides.
 template <int dim>
-void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, double time)
+void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
+  const auto left = path_.lost(body);
+  if (!left)
+    return;
   const auto &bonds = body.force->broken_bonds();
-  if (bonds.size() == broken_before_)
-    return;
-  broken_before_ = bonds.size();
   const int axis = machine_.axis();
-  if (!is_broken_across(body, axis))
-    return;
-  broken_ = true;
-  break_state_ = present_state(body, time);
-  const double place = bonds.back().position[axis];
-  const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
-  break_.time = bonds.back().time;
-  break_.felt_at = break_.time + way / body.force->elastic_constants().wave_speed_p;
-  log_.info("the specimen is in two at {:.4g} s; both sides feel it at {:.4g} s", break_.time,
-            break_.felt_at);
+  if (machine_.is_answer() && !curve_.has_fallen()) {
+    const bool pulled = machine_.component() == axis && curve_.largest_load() > 0;
+    const double place = bonds.back().position[axis];
+    const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
+    const double felt_at = bonds.back().time + way / body.force->elastic_constants().wave_speed_p;
+    if (*left > 0 || !pulled || step.time < felt_at)
+      return;
+  }
+  broken_time_ = bonds.back().time;
+  curve_.end();
+  break_state_ = present_state(body, step.time);
+  log_.info("the load path is gone since {:.4g} s: {:.2g} of the section is left", *broken_time_,
+            *left);
+}
+
+// What a run warned about, in its log and by what it booked.
+template <int dim>
+void Recorder<dim>::add_warnings(const CoupledBody<dim> &body, RunRecord &record) const
+{
+  if (guard_.n_broken() > 0)
+    record.warnings.push_back(
+        {fmt::format("{} of {} broken faces lie in the overlap", grouped(guard_.n_broken()),
+                     grouped(record.broken_bonds)),
+         guard_.energy()});
+  if (std::abs(body.regime_change) > largest_regime_change * record.external_work.value_or(0))
+    record.warnings.push_back(
+        {"the change of regime took energy that no load had put in", body.regime_change});
 }
 
 template <int dim>
@@ -268,7 +263,7 @@ ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
   state.potential = ledger.potential();
   state.external_work = ledger.external_work;
   state.residual = ledger.residual();
-  state.broken_bonds = body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
+  state.broken_bonds = n_broken(body);
   state.crack_length = crack_length(body, machine_.axis());
   return state;
 }
@@ -289,6 +284,8 @@ template <int dim>
 void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
                                 RunRecord &record)
 {
+  if (!draws_pictures_)
+    return;
   const auto bonds = broken_bonds(body);
   std::vector<const BodyState *> all;
   for (BodyState &state : states) {
@@ -300,14 +297,33 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
     all.push_back(&state);
   }
-  writer_.submit([&] {
-    for (const BodyState &state : states)
-      fields_.write(state);
+  attempt([&] {
+    writer_.submit([&] {
+      for (const BodyState &state : states)
+        fields_.write(state);
+    });
   });
   record.magnification =
       scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
-  record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification);
-  writer_.wait();
+  std::vector<std::string> missing;
+  record.pictures =
+      write_pictures(folder_, all, shown_fields(), dim, record.magnification, &missing);
+  for (const std::string &reason : missing)
+    log_.warning("a picture is missing: {}", reason);
+  attempt([&] { writer_.wait(); }); // it reads the states
+}
+
+template <int dim>
+template <typename Write>
+void Recorder<dim>::attempt(Write &&write)
+{
+  try {
+    write();
+  } catch (const core::EnvironmentError &error) {
+    log_.warning("{}", error.what());
+    if (failure_.empty())
+      failure_ = error.what();
+  }
 }
 
 template <int dim>
@@ -315,36 +331,42 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
                            double damping, RunRecord &record)
 {
   const auto timing = timers_.scope(section_);
-  record_history(body, step, damping);
-  history_.flush();
+  if (const auto finding = guard_.look(body))
+    report(*finding, step);
+  attempt([&] {
+    record_history(body, step, damping);
+    history_.flush();
+  });
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
-  write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim);
+  attempt([&] { write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim); });
   if (!body.cut_faces.empty())
-    write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim);
-  for (std::size_t i = 0; i < snapshots_.size(); ++i)
-    if (body.zone && snapshots_[i])
-      write_snapshot(folder_.snapshots()[i], *snapshots_[i]);
+    attempt([&] { write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim); });
+  attempt([&] { snapshots_.write(body, folder_); });
 
+  curve_.put_into(record);
   std::vector<BodyState> states;
   const auto keep = [&](BodyState state, const char *name, const char *caption) {
     state.name = name;
     state.caption = caption;
     states.push_back(std::move(state));
   };
-  if (const auto peak = peak_index(load_)) {
-    record.peak_load = load_[*peak];
-    record.peak_stress = stress_[*peak];
-    record.peak_time = time_[*peak];
-    keep(std::move(peak_state_), "peak", "near the peak load");
-  }
-  if (broken_)
-    keep(std::move(break_state_), "broken", "when the specimen is in two");
+  if (fields_copied_at_ != 0)
+    keep(std::move(peak_state_), "peak",
+         record.peak_load ? "near the peak load" : "near the largest load");
+  if (broken_time_)
+    keep(std::move(break_state_), "broken", "when the load path is gone");
   keep(present_state(body, step.time), "end", "at the end");
   keep_states(body, std::move(states), record);
-  record.stiffness = fit_stiffness(strain_, stress_);
-  record.broken_bonds = body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
+  record.broken_time = broken_time_;
+  record.trusted_until = trusted_until_;
+  record.broken_bonds = n_broken(body);
+  record.broken_in_overlap = guard_.n_broken();
   record.crack_length = crack_length(body, machine_.axis());
+  if (!work_.empty())
+    record.external_work = *std::max_element(work_.begin(), work_.end());
   record.energy_residual = relative_residual(residual_, work_);
+  add_warnings(body, record);
+  attempt([&] { writer_.wait(); });
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

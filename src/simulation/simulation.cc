@@ -1,5 +1,6 @@
 #include "src/simulation/simulation.h"
 
+#include "core/check.h"
 #include "core/version.h"
 #include "particles/packing_file.h"
 #include "src/output/verdict.h"
@@ -13,11 +14,12 @@
 namespace ligament::program
 {
 template <int dim>
-Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress)
-    : scene_(scene), folder_(folder), log_(folder.log()),
+Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
+                            bool draws_pictures)
+    : scene_(scene), folder_(folder), log_(folder.log(), progress),
       body_(make_body<dim>(scene_, log_, timers_)), regime_(scene_.coupling.regime, body_),
       damping_(scene_.damping), clock_(clock_of()),
-      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps)
+      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures)
 {
   if (body_.seeds)
     particles::write_packing_file(folder_.packing(), *body_.seeds);
@@ -67,7 +69,7 @@ void Simulation<dim>::report_rest(RunRecord &record)
 }
 
 template <int dim>
-std::optional<Stop> Simulation<dim>::loop()
+std::optional<Stop> Simulation<dim>::loop(const core::Interruption *interruption)
 {
   auto bodies = body_.bodies();
   auto &coupler = *body_.coupler;
@@ -80,6 +82,8 @@ std::optional<Stop> Simulation<dim>::loop()
           return stop;
       if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
         return stop;
+      if (interruption && interruption->signal() != 0)
+        return {};
     }
     damping_.before_kick(body_, clock_.now);
     coupler.kick(bodies, clock_.now); // velocities, one body in the overlap
@@ -124,7 +128,27 @@ RunRecord Simulation<dim>::make_record() const
 }
 
 template <int dim>
-RunRecord Simulation<dim>::run()
+void Simulation<dim>::run_loop(const core::Interruption *interruption, RunRecord &record)
+{
+  try {
+    const auto stop = loop(interruption);
+    record.status = stop && stop->by_guard ? "stopped" : "done";
+    record.reason = stop ? stop->reason : "end of the scene's duration";
+    if (!stop && !clock_.is_at_end()) {
+      record.status = "interrupted";
+      record.reason = fmt::format("{} at {:.4g} s, in step {} of {}",
+                                  core::Interruption::name(interruption->signal()), clock_.now.time,
+                                  clock_.now.step, clock_.n_steps);
+    }
+  } catch (const core::EnvironmentError &error) {
+    record.status = "failed";
+    record.reason = fmt::format("{} (at {:.4g} s, in step {} of {})", error.what(), clock_.now.time,
+                                clock_.now.step, clock_.n_steps);
+  }
+}
+
+template <int dim>
+RunRecord Simulation<dim>::run(const core::Interruption *interruption)
 {
   log_.info("ligament {}, commit {}", core::version(), core::commit());
   RunRecord record = make_record();
@@ -133,14 +157,18 @@ RunRecord Simulation<dim>::run()
   for (const auto &part : body_.skipped)
     log_.info("not needed: {} ({})", part.what, part.why);
 
-  const auto stop = loop();
-  record.status = stop && stop->by_guard ? "guard" : "done";
-  record.reason = stop ? stop->reason : "end of the scene's duration";
+  run_loop(interruption, record);
   record.regime = regime_.history();
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;
   recorder_.finish(body_, clock_.now, damping_.energy(), record);
+  if (!recorder_.failure().empty() && record.status != "failed") {
+    record.status = "failed";
+    record.reason = recorder_.failure() + " (after the last step)";
+  }
+  for (const std::string &text : log_.warnings())
+    record.warnings.push_back({text});
   report_rest(record);
   record.timing = timers_.rows();
   double discrete = 0;
@@ -150,7 +178,12 @@ RunRecord Simulation<dim>::run()
   if (body_.zone)
     record.discrete_seconds = discrete;
   record.verdict = verdict(record);
-  write_run_record(folder_.record(), record);
+  try {
+    write_run_record(folder_.record(), record);
+  } catch (const core::EnvironmentError &error) {
+    record.status = "failed";
+    record.reason = error.what();
+  }
   log_.info("{} after {} steps: {}", record.status, record.steps, record.reason);
   log_.info("time by section\n{}", core::timing_table(record.timing));
   log_.info("{}", record.verdict);

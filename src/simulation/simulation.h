@@ -1,6 +1,7 @@
 // One run: the time loop, and who watches it.
 #pragma once
 
+#include "core/interruption.h"
 #include "core/timers.h"
 #include "src/output/run_folder.h"
 #include "src/simulation/damping.h"
@@ -28,12 +29,18 @@ template <int dim>
 class Simulation
 {
 public:
-  /// Builds the body (core::InputError when that can't be done) and opens the output folder.
-  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress);
+  /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
+  /// scenes take less time than their pictures, which may be left out.
+  Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
+             bool draws_pictures = true);
 
-  /// Runs to the end of the scene; writes all outputs and returns the record. A guard's stop is in
-  /// the record (status "guard"), not an exception.
-  RunRecord run();
+  /// A warning about the input, which log and record repeat.
+  void warn(const std::string &text) { log_.warning(text); }
+
+  /// Runs to the end of the scene, or until a signal asks for the end; writes all outputs and
+  /// returns the record. A guard's stop, a signal and a disk that refuses are in the record (status
+  /// "stopped", "interrupted", "failed"), not exceptions: what was computed is kept.
+  RunRecord run(const core::Interruption *interruption = nullptr);
 
 private:
   Clock clock_of() const;
@@ -43,7 +50,9 @@ private:
   /// What was left out of the steps, for log and record.
   void report_rest(RunRecord &record);
   /// The time loop; the reason when it ends early.
-  std::optional<Stop> loop();
+  std::optional<Stop> loop(const core::Interruption *interruption);
+  /// Runs the loop and says in the record how it ended.
+  void run_loop(const core::Interruption *interruption, RunRecord &record);
 
   const Scene scene_;
   RunFolder folder_;

@@ -1,9 +1,41 @@
 #include "src/simulation/test_machine.h"
 
+#include <Eigen/Cholesky>
+
 #include <cmath>
 
 namespace ligament::program
 {
+namespace
+{
+// Particles that tell the motion of a side lie so many spacings inside it at most.
+constexpr double side_depth = 2.5;
+
+/// Of the middle of a side: particles lie inside it, so a motion that is affine in the place is
+/// fitted to those near it, which is exact for homogeneous strain and rotation on any packing.
+template <int dim>
+double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double place,
+                                 int component)
+{
+  using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
+  Eigen::Matrix<double, dim + 1, dim + 1> squares = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
+  Row sum = Row::Zero();
+  const auto &state = body.zone->state;
+  for (int i = 0; i < state.n_owned; ++i) {
+    const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
+    if (depth > side_depth)
+      continue;
+    Row row = Row::Ones();
+    for (int c = 0; c < dim; ++c)
+      row[c] = state.reference[c][i] / body.spacing;
+    row[axis] = depth;
+    squares += row * row.transpose();
+    sum += state.displacement[component][i] * row;
+  }
+  return squares.ldlt().solve(sum)[dim];
+}
+} // namespace
+
 template <int dim>
 TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
 {
@@ -17,6 +49,7 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
       }
   if (load_ < 0)
     return;
+  is_answer_ = body.loads[load_].kind != core::BoundaryLoad<dim>::Kind::traction;
   axis_ = body.loads[load_].boundary / 2;
   sign_ = body.loads[load_].boundary % 2 ? 1 : -1;
   const Vector<dim> size = body.upper - body.lower;
@@ -57,23 +90,16 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
 {
   const int axis = boundary / 2;
   const double place = boundary % 2 ? body.upper[axis] : body.lower[axis];
+  if (!body.far)
+    return extrapolated_displacement(body, axis, place, component);
   double sum = 0;
   long n = 0;
-  if (body.far) {
-    const auto &mesh = body.far->mesh();
-    for (int i = 0; i < mesh.n_nodes(); ++i)
-      if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place)) {
-        sum += body.far->displacement[component][i];
-        ++n;
-      }
-  } else {
-    const auto &state = body.zone->state;
-    for (int i = 0; i < state.n_owned; ++i)
-      if (std::abs(state.reference[axis][i] - place) < body.spacing) {
-        sum += state.displacement[component][i];
-        ++n;
-      }
-  }
+  const auto &mesh = body.far->mesh();
+  for (int i = 0; i < mesh.n_nodes(); ++i)
+    if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place)) {
+      sum += body.far->displacement[component][i];
+      ++n;
+    }
   return n ? sum / n : 0;
 }
 

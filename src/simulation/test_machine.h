@@ -23,6 +23,8 @@ public:
   Reading read(const CoupledBody<dim> &body, double time) const;
 
   bool has_load() const { return load_ >= 0; }
+  /// The load answers a prescribed motion: it falls when nothing carries it any more.
+  bool is_answer() const { return is_answer_; }
   /// Component of the measured force, 0 for x.
   int component() const { return component_; }
   /// Axis of the loaded side.
@@ -33,11 +35,13 @@ private:
 
   int load_ = -1; // index of the load that is read
   int component_ = 0, axis_ = 0;
+  bool is_answer_ = false;
   double sign_ = 1; // tension on the upper side is positive
   double area_ = 1, size_ = 1;
 };
 
-/// Mean of a displacement component over the particles or nodes on a side of the specimen, in m.
+/// Displacement component of a side of the specimen, in m: the mean over its nodes, or without a
+/// far field that of its middle after an affine fit to the particles near it.
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component);
 } // namespace ligament::program

@@ -40,8 +40,11 @@ void compare_all(const std::string &reference, bool CaseResult::*is_reference,
       continue;
     try {
       r.*target = compare(r.end.run->path, reference);
+      write_comparison(*(r.*target), r.end.run->path);
     } catch (const core::InputError &error) {
       notes.push_back(r.scene->name + ": " + error.what());
+    } catch (const core::EnvironmentError &error) {
+      notes.push_back(r.scene->name + ": no plot: " + error.what());
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "src/sweep/study.h"
 
+#include "core/check.h"
+#include "core/input_file.h"
 #include "core/parameters/describe_parameters.h"
 #include "core/parameters/read_parameters.h"
 #include "core/parameters/spelling.h"
@@ -8,8 +10,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace ligament::program
 {
@@ -201,33 +201,34 @@ bool is_row(const Study &study, const std::string &name)
                      [&](const StudyRow &row) { return row.name == name; });
 }
 
-std::optional<std::string> text_of_file(const std::string &file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream)
-    text << stream.rdbuf();
-  return stream && text ? std::optional(text.str()) : std::nullopt;
-}
 } // namespace
 
 StudyResult read_study(const std::string &file)
 {
   StudyResult result;
-  const auto text = text_of_file(file);
-  if (!text) {
-    result.errors.push_back({core::Place{file}, "", "cannot read the study",
-                             "there is no such file, or it may not be read", "check the path"});
+  std::string text;
+  std::string reason;
+  try {
+    text = core::read_input(file);
+    reason = text.find_first_not_of(" \t\r\n") == text.npos ? "it is empty" : "";
+  } catch (const core::EnvironmentError &error) {
+    reason = error.what();
+  }
+  const std::string name = file == "-" ? "standard input" : file;
+  if (!reason.empty()) {
+    result.errors.push_back(
+        {core::Place{name}, "", "cannot read the study", reason, "check the path"});
     return result;
   }
-  result.json = core::parse_json(*text, file, result.errors);
+  result.json = core::parse_json(text, name, result.errors);
   if (result.json.is(JsonValue::Kind::null) && !result.errors.empty())
     return result;
   Study study;
   Section table;
   declare_study(table, study);
   core::read_parameters(table, result.json, "", 0, table, result.errors);
-  const std::string folder = std::filesystem::path(file).parent_path();
+  const std::string folder =
+      core::is_named_file(file) ? std::filesystem::path(file).parent_path() : "";
   if (result.json.is(JsonValue::Kind::object)) {
     Check(study, result, folder).run();
     if (!study.scene.empty() &&

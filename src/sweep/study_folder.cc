@@ -5,13 +5,7 @@
 #include "src/output/run_record.h"
 #include "src/sweep/cases.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace ligament::program
 {
@@ -26,7 +20,7 @@ std::optional<std::string> finished_scene(const RunFolder &run)
     return {};
   try {
     const RunRecord record = read_run_record(run.record());
-    if (record.status != "done" && record.status != "guard")
+    if (record.status != "done" && record.status != "stopped")
       return {};
     return scene_text(Json::parse(core::read_file(run.resolved_scene())));
   } catch (const core::InputError &) {
@@ -54,22 +48,17 @@ std::map<std::string, std::string> finished_runs(const std::string &study_folder
 
 StudyFolder::StudyFolder(std::string path) : path_(std::move(path))
 {
-  for (const char *folder : {"/runs", "/cases"}) {
-    std::error_code error;
-    std::filesystem::create_directories(path_ + folder, error);
-    core::require<core::EnvironmentError>(!error, "cannot make the folder " + path_ + folder +
-                                                      ": " + error.message());
-  }
-  lock_ = open((path_ + "/lock").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  core::require<core::EnvironmentError>(lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0,
-                                        path_ + ": another sweep works in this folder (" +
-                                            std::strerror(errno) + "); wait, or give --output");
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto status = fs::status(path_, error);
+  const bool is_study = fs::is_directory(path_ + "/runs", error);
+  core::require(!fs::exists(status) || is_study ||
+                    (fs::is_directory(status) && fs::is_empty(path_, error)),
+                path_ + " holds no study: give a new or empty folder with --output");
+  make_folder(path_ + "/runs");
+  make_folder(path_ + "/cases");
+  lock_.emplace(path_, "sweep");
   finished_ = finished_runs(path_);
-}
-
-StudyFolder::~StudyFolder()
-{
-  close(lock_);
 }
 
 std::string StudyFolder::case_file(const std::string &id, const std::string &name) const

@@ -1,6 +1,7 @@
 // The output folder of a study: which of its runs are finished, and for which scene.
 #pragma once
 
+#include "core/folder_lock.h"
 #include "src/output/run_folder.h"
 
 #include <map>
@@ -23,12 +24,9 @@ class StudyFolder
 {
 public:
   /// Makes the folder and locks it against a second sweep until this object ends; reads what is
-  /// there. EnvironmentError when it is locked or the disk refuses.
+  /// there. InputError when it holds something else than a study, EnvironmentError when it is
+  /// locked or the disk refuses.
   explicit StudyFolder(std::string path);
-  ~StudyFolder();
-  StudyFolder(const StudyFolder &) = delete;
-  StudyFolder &operator=(const StudyFolder &) = delete;
-
   const std::string &path() const { return path_; }
   std::string table() const { return path_ + "/sweep.csv"; }
   std::string summary() const { return path_ + "/sweep.html"; }
@@ -45,7 +43,7 @@ public:
 private:
   std::string path_;
   std::map<std::string, std::string> finished_; // scene text -> folder
-  int lock_ = -1;
+  std::optional<core::FolderLock> lock_;
 };
 
 /// The same without lock and without making anything: for listings.

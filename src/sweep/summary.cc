@@ -175,13 +175,15 @@ void write_summary(const StudyFolder &folder, const Study &study, const CaseList
                    const std::vector<CaseResult> &results, const std::vector<std::string> &notes)
 {
   int most_jobs = 1;
-  std::size_t n_done = 0;
+  std::size_t n_done = 0, n_stopped = 0;
   for (const CaseResult &r : results) {
     most_jobs = std::max(most_jobs, r.cost ? r.cost->jobs : 1);
     n_done += r.end.status == CaseEnd::Status::done;
+    n_stopped += r.end.status == CaseEnd::Status::stopped;
   }
   std::string body = fmt::format(
-      "<p class=\"headline\">{} cases, {} computed. {}</p>\n", list.cases.size(), n_done,
+      "<p class=\"headline\">{} cases, {} computed, {} stopped by their guards. {}</p>\n",
+      list.cases.size(), n_done, n_stopped,
       most_jobs == 1 ? "One run at a time: the times are clean."
                      : "Several runs at a time: the times disturb each other.");
   const struct

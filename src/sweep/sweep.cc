@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "core/tell.h"
 #include "core/version.h"
 #include "src/output/format.h"
 #include "src/output/run_record.h"
@@ -46,7 +47,7 @@ std::string failure(const ChildEnd &end, const std::string &errors)
 
 std::string to_string(CaseEnd::Status status)
 {
-  constexpr const char *names[] = {"done", "guard", "refused", "failed"};
+  constexpr const char *names[] = {"done", "stopped", "refused", "failed"};
   return names[int(status)];
 }
 
@@ -59,10 +60,7 @@ Sweep::Sweep(const CaseList &list, StudyFolder &folder, std::string solver, int 
 template <typename... Arguments>
 void Sweep::say(const char *format, const Arguments &...arguments) const
 {
-  if (!progress_)
-    return;
-  fmt::print(progress_, "{}\n", fmt::format(fmt::runtime(format), arguments...));
-  std::fflush(progress_);
+  core::tell(progress_, fmt::format(fmt::runtime(format), arguments...) + "\n");
 }
 
 std::map<std::string, CaseEnd> Sweep::run()
@@ -87,7 +85,7 @@ void Sweep::reuse()
       continue;
     }
     const RunRecord record = read_run_record(run->record());
-    ends_[c.id] = {record.status == "guard" ? CaseEnd::Status::guard : CaseEnd::Status::done,
+    ends_[c.id] = {record.status == "stopped" ? CaseEnd::Status::stopped : CaseEnd::Status::done,
                    record.reason, run, true};
     ++n_old;
     n_other_version += record.commit != core::commit();
@@ -112,6 +110,8 @@ void Sweep::process(const std::string &command, const std::vector<const Case *> 
       const std::string scene = folder_.case_file(c.id, "scene.json");
       core::write_file(scene, c.scene.dump(2) + "\n");
       std::vector<std::string> words = {solver_, command, scene, "--json"};
+      if (command == "check") // a study wants the time, and to know what is refused
+        words.push_back("--full");
       if (command == "run")
         words.insert(words.end(), {"--output", folder_.new_run(c.id).path});
       running[children.start(words, folder_.case_file(c.id, command + ".out"),
@@ -171,7 +171,7 @@ void Sweep::finish_run(const Case &c, const ChildEnd &end)
   result.run = folder_.finished(scene_text(c.scene));
   if (result.run) {
     const RunRecord record = read_run_record(result.run->record());
-    result.status = record.status == "guard" ? CaseEnd::Status::guard : CaseEnd::Status::done;
+    result.status = record.status == "stopped" ? CaseEnd::Status::stopped : CaseEnd::Status::done;
     result.reason = record.reason;
     write_cost(folder, {end.core_seconds, end.peak_memory, jobs_});
   } else

@@ -16,13 +16,13 @@ struct CaseEnd
   enum class Status
   {
     done,
-    guard,   // a result too: its reason says what the run met
+    stopped, // by the guard; a result too: its reason says what the run met
     refused, // by check
     failed   // ended by a signal or by the machine; done again next time
   };
   Status status = Status::failed;
   std::string reason;
-  std::optional<RunFolder> run; // of done and guard
+  std::optional<RunFolder> run; // of done and stopped
   bool reused = false;          // it was finished before
 };
 

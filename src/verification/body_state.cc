@@ -23,20 +23,11 @@ double *read(const Components &components, double *value)
     value = std::copy(component.begin(), component.end(), value);
   return value;
 }
-} // namespace
 
 template <int dim>
-int state_size(const CoupledBody<dim> &body)
+const double *set_displacement(particles::Particles<dim> &zone, const double *value)
 {
-  return n_particle_dofs<dim> * body.zone->state.n_owned +
-         (body.far ? dim * body.far->mesh().n_nodes() : 0);
-}
-
-template <int dim>
-void set_displacement(CoupledBody<dim> &body, const Eigen::VectorXd &u)
-{
-  auto &zone = body.zone->state;
-  const double *value = write(u.data(), zone.displacement);
+  value = write(value, zone.displacement);
   for (int c = 0; c < n_spins<dim>; ++c)
     for (int i = 0; i < zone.n_owned; ++i, ++value) {
       if constexpr (dim == 2)
@@ -46,6 +37,23 @@ void set_displacement(CoupledBody<dim> &body, const Eigen::VectorXd &u)
         zone.rotation[1 + c][i] = *value / 2;
       }
     }
+  return value;
+}
+} // namespace
+
+template <int dim>
+int state_size(const CoupledBody<dim> &body)
+{
+  return (body.zone ? n_particle_dofs<dim> * body.zone->state.n_owned : 0) +
+         (body.far ? dim * body.far->mesh().n_nodes() : 0);
+}
+
+template <int dim>
+void set_displacement(CoupledBody<dim> &body, const Eigen::VectorXd &u)
+{
+  const double *value = u.data();
+  if (body.zone)
+    value = set_displacement(body.zone->state, value);
   if (body.far)
     write(value, body.far->displacement);
 }
@@ -54,11 +62,14 @@ template <int dim>
 Eigen::VectorXd displacement(const CoupledBody<dim> &body)
 {
   Eigen::VectorXd u(state_size(body));
-  const auto &zone = body.zone->state;
-  double *value = read(zone.displacement, u.data());
-  for (int c = 0; c < n_spins<dim>; ++c)
-    for (int i = 0; i < zone.n_owned; ++i)
-      *value++ = dim == 2 ? zone.rotation[0][i] : 2 * zone.rotation[dim == 2 ? 0 : 1 + c][i];
+  double *value = u.data();
+  if (body.zone) {
+    const auto &zone = body.zone->state;
+    value = read(zone.displacement, value);
+    for (int c = 0; c < n_spins<dim>; ++c)
+      for (int i = 0; i < zone.n_owned; ++i)
+        *value++ = dim == 2 ? zone.rotation[0][i] : 2 * zone.rotation[dim == 2 ? 0 : 1 + c][i];
+  }
   if (body.far)
     read(body.far->displacement, value);
   return u;
@@ -67,8 +78,11 @@ Eigen::VectorXd displacement(const CoupledBody<dim> &body)
 template <int dim>
 void set_velocity(CoupledBody<dim> &body, const Eigen::VectorXd &v)
 {
-  const double *value = write(v.data(), body.zone->state.velocity);
-  value = write(value, body.zone->state.spin);
+  const double *value = v.data();
+  if (body.zone) {
+    value = write(value, body.zone->state.velocity);
+    value = write(value, body.zone->state.spin);
+  }
   if (!body.far)
     return;
   write(value, body.far->velocity);
@@ -79,8 +93,11 @@ template <int dim>
 Eigen::VectorXd velocity(const CoupledBody<dim> &body)
 {
   Eigen::VectorXd v(state_size(body));
-  double *value = read(body.zone->state.velocity, v.data());
-  value = read(body.zone->state.spin, value);
+  double *value = v.data();
+  if (body.zone) {
+    value = read(body.zone->state.velocity, value);
+    value = read(body.zone->state.spin, value);
+  }
   if (body.far)
     read(body.far->velocity, value);
   return v;

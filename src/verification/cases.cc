@@ -1,6 +1,8 @@
 #include "src/verification/cases.h"
 
 #include "core/check.h"
+#include "src/verification/breaking.h"
+#include "src/verification/closed_crack.h"
 #include "src/verification/waves_twin.h"
 
 namespace ligament::program
@@ -23,10 +25,17 @@ std::vector<Case> all_cases()
   add(scheme_cases());
   add(wave_bench_cases());
   add(absorbing_cases());
+  add(absorbing_steady_cases());
   add(kirsch_cases());
   add(beam_cases());
+  add(cantilever_cases());
   add(stability_cases());
   add(contrast_cases());
+  add(compression_cases());
+  add(breaking_cases());
+  add(closed_crack_cases());
+  add(toughness_cases());
+  add(random_scene_cases());
   return cases;
 }
 

@@ -23,6 +23,15 @@ struct Result
   std::optional<double> aim;
   Bound bound = Bound::at_most;
 
+  /// Of figures that stand for many scenes: `value` is what 99 % of them don't exceed.
+  struct Spread
+  {
+    int n, n_failing;
+    double median, tenth, nine_tenths, worst;
+    std::vector<int> worst_seeds; // the worst first
+  };
+  std::optional<Spread> spread = {};
+
   /// "must" holds; a value that is not a number fails.
   bool passed() const { return bound == Bound::at_most ? value <= must : value >= must; }
 };
@@ -47,10 +56,15 @@ std::vector<Case> wave_cases();
 std::vector<Case> scheme_cases();
 std::vector<Case> wave_bench_cases();
 std::vector<Case> absorbing_cases();
+std::vector<Case> absorbing_steady_cases();
 std::vector<Case> kirsch_cases();
 std::vector<Case> beam_cases();
+std::vector<Case> cantilever_cases();
 std::vector<Case> stability_cases();
 std::vector<Case> contrast_cases();
+std::vector<Case> compression_cases();
+std::vector<Case> toughness_cases();
+std::vector<Case> random_scene_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

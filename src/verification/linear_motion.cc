@@ -35,7 +35,7 @@ Eigen::Matrix<double, dim, dim + n_spins<dim>> rigid_motions(const Vector<dim> &
 
 template <int dim>
 LinearMotion<dim>::LinearMotion(CoupledBody<dim> &body)
-    : body_(body), n_particles_(body.zone->state.n_owned),
+    : body_(body), n_particles_(body.zone ? body.zone->state.n_owned : 0),
       n_particle_values_(n_particle_dofs<dim> * n_particles_)
 {
   core::require(body.coupler->step_ratio() == 1, "linear motion needs the step ratio 1");
@@ -121,7 +121,6 @@ Eigen::VectorXd LinearMotion<dim>::velocities() const
 template <int dim>
 double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd &y) const
 {
-  const auto &zone = body_.zone->state;
   const auto *overlap = body_.coupler->overlap();
   Eigen::MatrixXd near_x, near_y;
   if (overlap) {
@@ -145,6 +144,7 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
         v -= member.value[a] * near_y.row(member.nodes[a]).transpose();
       }
     }
+    const auto &zone = body_.zone->state;
     sum += zone.mass[i] * u.dot(v);
     for (int c = 0; c < n_spins<dim>; ++c) {
       const int k = (dim + c) * n_particles_ + i;
@@ -291,10 +291,11 @@ double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x, const Place &
     if (!(strain <= largest))
       largest = strain;
   };
-  body_.force->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {
-    if (face.j > face.i && face.bonded)
-      compare(place(face.i), place(face.j), particle(x, face.j) - particle(x, face.i));
-  });
+  if (body_.zone)
+    body_.force->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {
+      if (face.j > face.i && face.bonded)
+        compare(place(face.i), place(face.j), particle(x, face.j) - particle(x, face.i));
+    });
   if (body_.far)
     for (const auto &cell : body_.far->mesh().cells)
       for (unsigned a = 0; a < cell.size(); ++a)

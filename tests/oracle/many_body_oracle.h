@@ -4,8 +4,10 @@
 
 #include "particles/packing.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,7 +21,7 @@ public:
   ManyBodyOracle(const particles::Packing<dim> &packing, double e, double nu,
                  PlaneMode plane = PlaneMode::strain)
       : packing_(packing), e_(e), nu_(nu), g_(e / (2 * (1 + nu))), plane_(plane),
-        broken(packing.faces.size(), false)
+        broken(packing.faces.size(), false), traction(packing.faces.size(), Vector<dim>::Zero())
   {
     for (std::size_t f = 0; f < broken.size(); ++f)
       broken[f] = packing.faces[f].cracked;
@@ -59,6 +61,7 @@ public:
       const Vector<dim> a_i = turn[f.i] * f.lever_i, a_j = turn[f.j] * f.lever_j;
       const double p_i = lambda[f.i] * theta[f.i], p_j = lambda[f.j] * theta[f.j];
       const Vector<dim> t = (2 * g_ * du + p_i * a_i - p_j * a_j) / r;
+      traction[&f - packing_.faces.data()] = t;
       for (int c = 0; c < dim; ++c) {
         p.force[c][f.i] += f.area * t[c];
         p.force[c][f.j] -= f.area * t[c];
@@ -73,6 +76,43 @@ public:
       energy += g_ * f.area / r * du.squaredNorm();
     });
     return energy;
+  }
+
+  /// s of theory.md eq. (D12) in Pa for every face, after compute() in this state; 0 where the face
+  /// is not asked. Bonds alone stress the particles. whole_face in m^2; 0: sizes don't count.
+  std::vector<double> principal_tensions(const particles::Particles<dim> &p,
+                                         double whole_face) const
+  {
+    const int n = packing_.size();
+    std::vector<Matrix> turn, stress(n, Matrix::Zero());
+    for (int i = 0; i < n; ++i)
+      turn.push_back(rotation(p, i));
+    for_bonds([&](const Face &f) {
+      const Vector<dim> &t = traction[&f - packing_.faces.data()];
+      const Matrix m_i = f.area / packing_.volume[f.i] * turn[f.i] * f.lever_i * t.transpose(),
+                   m_j = f.area / packing_.volume[f.j] * turn[f.j] * f.lever_j * t.transpose();
+      stress[f.i] += (m_i + m_i.transpose()) / 2;
+      stress[f.j] -= (m_j + m_j.transpose()) / 2;
+    });
+    const auto normal = [&](const Face &f) -> Vector<dim> {
+      return ((turn[f.i] + turn[f.j]) * f.normal).normalized();
+    };
+    std::vector<double> s(packing_.faces.size(), 0.);
+    for_bonds([&](const Face &f) {
+      const std::size_t index = &f - packing_.faces.data();
+      const Vector<dim> &t = traction[index], own = normal(f);
+      const Eigen::SelfAdjointEigenSolver<Matrix> solver((stress[f.i] + stress[f.j]) / 2);
+      Vector<dim> e = solver.eigenvectors().col(dim - 1);
+      if (e.dot(own) < 0)
+        e = -e;
+      if (t.dot(own) <= 0 || own.dot(e) < 0.577)
+        return;
+      const double ratio = whole_face > 0 ? f.area / whole_face : 1;
+      const double size =
+          dim == 2 ? std::pow(std::max(ratio, 0.7), 0.3) : std::pow(std::max(ratio, 0.5), 0.15);
+      s[index] = size * t.dot(e) / own.dot(e);
+    });
+    return s;
   }
 
 private:
@@ -141,6 +181,7 @@ private:
   PlaneMode plane_;
 
 public:
-  std::vector<bool> broken; // of each face; broken ones carry nothing
+  std::vector<bool> broken;                  // of each face; broken ones carry nothing
+  mutable std::vector<Vector<dim>> traction; // Pa, of each face at the last compute()
 };
 } // namespace ligament::oracle

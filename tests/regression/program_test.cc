@@ -68,7 +68,9 @@ TEST(Program, RunEndsWithTheFieldsThatScriptsRead)
             std::vector<std::string>());
   EXPECT_EQ(json["status"], "done");
   EXPECT_GT(json["steps"], 0);
-  EXPECT_GT(json["peak_load"], 0);
+  EXPECT_TRUE(json["peak_load"].is_null()) << "nothing can break";
+  EXPECT_GT(json["largest_load"], 0);
+  EXPECT_EQ(json["complete"], true);
   for (const char *file : {"run.json", "run.log", "history.csv", "scene.resolved.json",
                            "report.html", "broken_bonds.csv"})
     EXPECT_TRUE(std::filesystem::exists(std::string("run/") + file)) << file;
@@ -107,7 +109,26 @@ TEST(Program, WrongInputIsTwoAndAGuardIsThree)
   std::filesystem::remove_all("guarded");
   const auto guarded = ligament("run " + scene + pulled + weak + "--output guarded --json");
   EXPECT_EQ(guarded.code, 3);
-  EXPECT_EQ(guarded.json()["status"], "guard");
+  EXPECT_EQ(guarded.json()["status"], "stopped");
+}
+
+TEST(Program, RunsThatAreNotCompleteAreThreeWhereverTheyAppear)
+{
+  const std::string scene = scene_file("incomplete.json");
+  for (const char *folder : {"part", "whole"})
+    std::filesystem::remove_all(folder);
+  ligament("run " + scene + pulled + weak + "--output part");
+  ligament("run " + scene + pulled + "--output whole");
+  EXPECT_EQ(ligament("report whole --json").code, 0);
+  const auto report = ligament("report part --json");
+  EXPECT_EQ(report.code, 3);
+  EXPECT_EQ(report.json()["complete"], false);
+  for (const char *folders : {"part whole", "whole part"}) {
+    const auto compared = ligament(std::string("compare ") + folders + " --json");
+    EXPECT_EQ(compared.code, 3) << folders;
+    EXPECT_EQ(compared.json()["complete"], false);
+  }
+  EXPECT_EQ(ligament("compare whole whole").code, 0);
 }
 
 // What only the set-up can see is refused by `check` too, with the keys to change.

@@ -270,3 +270,46 @@ TEST(Schema, SaysWhatTheTableSays)
   EXPECT_EQ(json["additionalProperties"], false);
   EXPECT_EQ(json["required"], nlohmann::ordered_json({"body"}));
 }
+
+// A band says what inputs have in practice, and in which units other numbers were probably meant.
+TEST(Parameters, UnusualValuesAreDoubtedAndAbsurdOnesRefused)
+{
+  struct
+  {
+    double modulus = 0, angle = 0;
+    Point place = {0, 0, 0};
+  } body;
+  ParameterSection table;
+  table.add("modulus", body.modulus, "stiffness").in("Pa").above(0).usually(1e5, 2e12, "GPa MPa");
+  table.add("angle", body.angle, "turn").in("rad").usually(0, 6.3, "deg").at_most(1000);
+  table.add("place", body.place, "where").in("m").usually(0, 1e4, "mm um");
+  const auto read = [&](const std::string &text) {
+    std::vector<Diagnostic> errors, warnings;
+    read_parameters(table, parse_json(text, "t", errors), "", 2, table, errors, &warnings);
+    std::string all;
+    for (const auto *list : {&errors, &warnings})
+      for (const Diagnostic &d : *list)
+        all += to_string(d) + "\n";
+    return all;
+  };
+  EXPECT_EQ(read(R"({"modulus": 1e5, "angle": -6.3, "place": [0, 1e-30]})"), "");
+  EXPECT_EQ(read(R"({"modulus": 72})"),
+            "t:1:13: warning: \"modulus\" in / is 72 Pa, which is unusual\n"
+            "  reason: stiffness; usual are 100000 to 2e+12 Pa\n"
+            "  remedy: did you mean \"72 GPa\"?\n");
+  EXPECT_EQ(body.modulus, 72) << "doubted, and read all the same";
+  const auto has = [&](const std::string &text, const std::string &part) {
+    return read(text).find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(has(R"({"modulus": 72000})", "did you mean \"72000 MPa\"?"));
+  EXPECT_TRUE(has(R"({"modulus": "72 Pa"})", "remedy: check the value and its unit"));
+  EXPECT_TRUE(has(R"({"angle": -30})", "did you mean \"-30 deg\"?"));
+  EXPECT_TRUE(has(R"({"angle": 1e9})", "error: \"angle\" in / is 1000000000 rad, which is out of"));
+  EXPECT_TRUE(has(R"({"modulus": 1e30})", "error: \"modulus\" in / is 1e+30 Pa, which is beyond"));
+  EXPECT_TRUE(has(R"({"modulus": 1e-30})", "which is beyond reason"));
+  // One warning for a point, and none behind another mistake of it.
+  EXPECT_EQ(read(R"({"place": [20000, 30000]})"),
+            "t:1:12: warning: component 1 of \"place\" in / is 20000 m, which is unusual\n"
+            "  reason: where; usual are up to 10000 m\n"
+            "  remedy: did you mean \"20000 mm\"?\n");
+}

@@ -18,9 +18,25 @@ struct Run
     dt = force->stable_step(solver->state);
     solver->compute_forces(0);
   }
-  void step()
+  /// `damping` in 1/s is booked by theory.md eq. (E3).
+  void step(double damping = 0)
   {
+    const auto loss = [&](auto &velocity, const auto &force, double moment) {
+      const double factor = std::exp(-damping * dt);
+      double sum = 0;
+      for (std::size_t c = 0; c < velocity.size(); ++c)
+        for (int i = 0; i < solver->state.size(); ++i) {
+          const double mass = moment * solver->state.mass[i], v = velocity[c][i];
+          sum += 0.5 * mass * (1 - factor) * v * (v - dt * force[c][i] / mass + factor * v);
+        }
+      return sum;
+    };
     solver->kick(dt);
+    if (damping > 0) {
+      const auto &p = solver->state;
+      damped += loss(p.velocity, p.force, 1.) + loss(p.spin, p.torque, p.gyration);
+      solver->scale_velocities(std::exp(-damping * dt));
+    }
     solver->drift(dt);
     time += dt;
     solver->compute_forces(time);
@@ -29,12 +45,12 @@ struct Run
   double residual() const
   {
     return mechanical() + force->fracture_energy() + force->breaking_step_error() +
-           force->frictional_work() - force->external_work();
+           force->frictional_work() + damped - force->external_work();
   }
 
   ManyBodyForce<dim> *force;
   std::unique_ptr<particles::ParticleSolver<dim>> solver;
-  double dt, time = 0;
+  double dt, time = 0, damped = 0;
 };
 
 template <typename C>
@@ -93,9 +109,10 @@ TYPED_TEST(Energy, SlowFreeVibrationOver1e5Steps)
   EXPECT_LT(std::abs(drift), 3 * wander);
 }
 
-/// A specimen torn apart by its two ends; the balance at the end and the number of broken bonds.
+/// A specimen torn apart by its two ends: the largest residual of all steps, the energy that
+/// breaking took, the number of broken bonds.
 template <typename C>
-std::array<double, 3> tear(double fraction)
+std::array<double, 3> tear(double fraction, double damping = 0)
 {
   constexpr int dim = C::dim;
   auto lattice = box<C>(dim == 2 ? 10 : 5);
@@ -117,10 +134,8 @@ std::array<double, 3> tear(double fraction)
   double largest = 0;
   const int steps = int(6e-5 / run.dt);
   for (int s = 0; s < steps; ++s) {
-    const long bonds = run.force->n_bonds();
-    run.step();
-    if (run.force->n_bonds() == bonds)
-      largest = std::max(largest, std::abs(run.residual()));
+    run.step(damping);
+    largest = std::max(largest, std::abs(run.residual()));
   }
   double booked = 0;
   for (const auto &b : run.force->broken_bonds())
@@ -134,9 +149,17 @@ TYPED_TEST(Energy, BreakingClosesTheBalanceToSecondOrder)
 {
   const auto coarse = tear<TypeParam>(0.4), fine = tear<TypeParam>(0.1);
   EXPECT_GT(coarse[2], 8);
-  // What is left comes from contacts that close and slide: a kink costs second order.
-  EXPECT_LT(coarse[0], 5e-3 * coarse[1]);
-  EXPECT_LT(fine[0], 5e-4 * fine[1]);
+  // Breaking, closing and opening are booked to rounding. What is left is the law's own curvature
+  // at these strains of 3e-3.
+  EXPECT_LT(coarse[0], 1e-3 * coarse[1]);
+  EXPECT_LT(fine[0], 1e-4 * fine[1]);
+}
+
+TYPED_TEST(Energy, DampedBreakingClosesTheBalanceAsWell)
+{
+  const auto damped = tear<TypeParam>(0.4, 1e5);
+  EXPECT_GT(damped[2], 8);
+  EXPECT_LT(damped[0], 1e-3 * damped[1]);
 }
 
 /// Two whole hexagons or cubes across one face, cut.
@@ -164,52 +187,93 @@ struct Touch : ::testing::Test
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Touch, Dimensions);
 
+/// A cut that is inclined to the face between them.
+template <int dim>
+particles::CrackPlane<dim> inclined_cut(double d)
+{
+  if constexpr (dim == 2)
+    return {{{0.3 * d, -d}, {0.7 * d, d}}, 1e-9 * d};
+  else
+    return {{{0.3 * d, -d, -d}, {0.7 * d, d, -d}, {0.7 * d, d, d}, {0.3 * d, -d, d}}, 1e-9 * d};
+}
+
 /// Two particles between walls, one of them thrown at the other: opens and closes for ever.
 template <int dim>
-void bounce(int openings)
+void bounce(int openings, bool joint)
 {
   auto packing = two_particles<dim>(true);
+  if (joint)
+    particles::cut_faces<dim>(packing, {inclined_cut<dim>(packing.spacing)});
   const double d = packing.spacing;
   for (int i = 0; i < 2; ++i) {
     const Vector<dim> n = (i ? 1 : -1) * Vector<dim>::Unit(0);
-    packing.boundary_faces.push_back({i, n, packing.faces[0].area, d / 2, d / 2 * n, i});
+    const auto hold = [&](const Vector<dim> &outward) {
+      packing.boundary_faces.push_back(
+          {i, outward, packing.faces[0].area, d / 2, d / 2 * outward, i});
+    };
+    hold(n);
+    for (int c = 1; c < dim; ++c) { // else a joint's torque turns them about the end for ever
+      hold(Vector<dim>::Unit(c));
+      hold(-Vector<dim>::Unit(c));
+    }
   }
   std::vector<core::BoundaryLoad<dim>> loads(2);
-  for (int i = 0; i < 2; ++i)
-    loads[i].boundary = i, loads[i].value[0] = 0.;
+  for (int i = 0; i < 2; ++i) {
+    loads[i].boundary = i;
+    for (int c = 0; c < dim; ++c)
+      loads[i].value[c] = 0.;
+  }
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   Run<dim> run(packing, material, loads);
   run.dt *= 0.1;
   run.solver->state.velocity[0] = {0, -3};
+  const Vector<dim> across = joint ? packing.cuts[0].normal() : packing.faces[0].normal;
+  const auto gap = [&](const Particles<dim> &p) {
+    const auto point = [&](int i, const Vector<dim> &lever) {
+      return Vector<dim>(get(p.displacement, i) + Turn<dim>::of(p, i).change(lever));
+    };
+    return (point(1, packing.faces[0].lever_j) - point(0, packing.faces[0].lever_i)).dot(across) *
+           std::copysign(1, across[0]);
+  };
   const double start = run.mechanical();
-  double first = 0, last = 0, largest = 0;
+  double first = 0, last = 0, largest = 0, unbooked = 0;
   bool closed = false;
   int count = 0, n_first = 0, n_last = 0;
   while (count < openings) {
     run.step();
-    const auto &u = run.solver->state.displacement[0];
-    const bool now = u[1] < u[0];
+    const bool now = gap(run.solver->state) < 0;
     count += now != closed;
     closed = now;
     const double error = run.mechanical() / start - 1;
     largest = std::max(largest, std::abs(error));
+    unbooked = std::max(unbooked, std::abs(run.residual() / start - 1));
     if (count < openings / 10)
       first += error, ++n_first;
     if (count >= openings - openings / 10)
       last += error, ++n_last;
   }
-  // The kink at the touch costs second order at each crossing, with either sign: no trend.
+  // In the step of a touch the balance is open by a quarter of k o1 o2, of second order; the
+  // corrected force makes it good but for a third order of either sign, which is booked.
   EXPECT_LT(largest, 0.01);
-  EXPECT_LT(std::abs(last / n_last - first / n_first), 0.002);
+  EXPECT_LT(std::abs(last / n_last - first / n_first), 1e-4);
+  EXPECT_LT(unbooked, 1e-4); // the law's curvature
 }
 
 TYPED_TEST(Touch, OpensAndClosesWithoutTrend)
 {
-  bounce<TypeParam::value>(2000);
+  bounce<TypeParam::value>(2000, false);
+}
+TYPED_TEST(Touch, JointOpensAndClosesWithoutTrend)
+{
+  bounce<TypeParam::value>(2000, true);
 }
 TYPED_TEST(Touch, SlowOpensAndCloses1e5Times)
 {
-  bounce<TypeParam::value>(100000);
+  bounce<TypeParam::value>(100000, false);
+}
+TYPED_TEST(Touch, SlowJointOpensAndCloses1e5Times)
+{
+  bounce<TypeParam::value>(100000, true);
 }
 
 TYPED_TEST(Touch, FrictionSticksAndSlidesAtTheCoefficient)

@@ -126,7 +126,7 @@ TYPED_TEST(Laminate, BreakingBooksTheEnergyOfTheInterface)
     packing.material.push_back(packing.centre[1][i] > 0);
   const DemMaterial a{1, 0.3, 1}, b{5, 0.2, 1};
   for (const auto &[strength_a, strength_b] : {std::pair(1e3, 2e-3), std::pair(2e-3, 1e3)}) {
-    FractureLaw law{FractureLaw::Criterion::maximum_tension, strength_a, {strength_a, strength_b}};
+    FractureLaw law{FractureLaw::Criterion::face_tension, strength_a, {strength_a, strength_b}};
     ManyBodyForce<dim> force(packing, Materials({a, b}, packing.material), {}, law);
     auto p = at_rest(packing, a);
     disturb<dim>(p, spacing, 1e-3, Spin<dim>::Zero(), 5);

@@ -1,10 +1,13 @@
 // Bounds of the kernels: no bond that exceeds the strength and no particle that could yield is
 // missed, in random states of any packing.
+#include "dem/principal_tension.h"
 #include "particles/random_packing.h"
+#include "tests/oracle/many_body_oracle.h"
 #include "tests/support/von_mises.h"
 #include "tests/unit/dem/cases.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace ligament::dem::testing
 {
@@ -115,9 +118,77 @@ TEST(Screen, NoParticleThatCouldYieldIsMissed)
   expect_all_yielding_seen<3>(random_packing<3>(6, 12), material);
 }
 
-/// The particles of the bonds that break at once are those with a tension above the strength.
+using BondPair = std::pair<int, int>;
+
+/// Of all faces that the oracle sees above the strength: the largest first, none within 1.6 d of
+/// another.
+template <int dim>
+std::vector<BondPair> breaking_faces(const Packing<dim> &packing,
+                                     const std::vector<double> &tension, double strength)
+{
+  std::vector<int> order(tension.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return tension[a] > tension[b]; });
+  std::vector<Vector<dim>> places;
+  std::vector<BondPair> breaking;
+  for (const int f : order) {
+    const auto &face = packing.faces[f];
+    const Vector<dim> place = get(packing.centre, face.i) + face.lever_i;
+    if (tension[f] < strength || std::any_of(places.begin(), places.end(), [&](const auto &other) {
+          return (place - other).norm() < 1.6 * packing.spacing;
+        }))
+      continue;
+    places.push_back(place);
+    breaking.push_back(std::minmax(face.i, face.j));
+  }
+  return breaking;
+}
+
+template <int dim>
+std::vector<BondPair> broken_faces(const ManyBodyForce<dim> &force)
+{
+  std::vector<BondPair> broken;
+  for (const auto &bond : force.broken_bonds())
+    broken.push_back(std::minmax(bond.i, bond.j));
+  return broken;
+}
+
+/// Faces that the law breaks in one step, in their order, against the oracle, which screens
+/// nothing.
 template <int dim>
 void expect_all_breaking_found(const Packing<dim> &packing)
+{
+  using Criterion = FractureLaw::Criterion;
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  std::vector<int> all(packing.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (const double swelling : {0.02, 0., -0.002})
+    for (const double whole_face : {0., PrincipalTension::whole_face<dim>(packing.spacing)}) {
+      auto p = state(packing, swelling, 1);
+      oracle::ManyBodyOracle<dim> oracle(packing, 3., 0.3);
+      auto q = p;
+      oracle.compute(q);
+      const auto tension = oracle.principal_tensions(p, whole_face);
+      auto sorted = tension;
+      std::sort(sorted.begin(), sorted.end());
+      ASSERT_GT(sorted.back(), 0);
+      for (const double share : {0.3, 0.9, 1.}) {
+        const double strength = (1 - 1e-10) * share * sorted.back();
+        ManyBodyForce<dim> force(packing, material, {},
+                                 {Criterion::maximum_tension, strength, {}, whole_face});
+        EXPECT_NEAR(force.weakest_bond(p, all).utilisation, sorted.back() / strength, 1e-9);
+        force.compute(p, 0);
+        EXPECT_EQ(broken_faces(force), breaking_faces(packing, tension, strength)) << share;
+        const auto n = force.broken_bonds().size();
+        force.compute(p, 0);
+        EXPECT_EQ(force.broken_bonds().size(), n); // the rest is looked at in the next step
+      }
+    }
+}
+
+/// The particles of the bonds that break at once are those with a tension above the strength.
+template <int dim>
+void expect_all_face_tension_found(const Packing<dim> &packing)
 {
   const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
   for (const unsigned seed : {1, 2}) {
@@ -132,7 +203,7 @@ void expect_all_breaking_found(const Packing<dim> &packing)
       const double strength =
           (1 - 1e-12) * sorted[std::size_t(quantile * double(sorted.size() - 1))];
       ManyBodyForce<dim> force(packing, material, {},
-                               {FractureLaw::Criterion::maximum_tension, strength});
+                               {FractureLaw::Criterion::face_tension, strength});
       force.compute(p, 0);
       std::vector<char> broken(packing.size(), 0);
       for (const auto &bond : force.broken_bonds())
@@ -144,13 +215,75 @@ void expect_all_breaking_found(const Packing<dim> &packing)
   }
 }
 
+template <int dim>
+void expect_all_found(const Packing<dim> &packing)
+{
+  expect_all_breaking_found(packing);
+  expect_all_face_tension_found(packing);
+}
+
 TEST(Screen, NoBondAboveTheStrengthIsMissed)
 {
-  expect_all_breaking_found<2>(lattice<2>(Kind::hexagonal, 20, 1));
-  expect_all_breaking_found<2>(lattice<2>(Kind::square, 20, 1));
-  expect_all_breaking_found<2>(random_packing<2>(15, 1));
-  expect_all_breaking_found<3>(lattice<3>(Kind::fcc, 7, 1));
-  expect_all_breaking_found<3>(lattice<3>(Kind::simple_cubic, 7, 1));
-  expect_all_breaking_found<3>(random_packing<3>(5, 1));
+  expect_all_found<2>(lattice<2>(Kind::hexagonal, 20, 1));
+  expect_all_found<2>(lattice<2>(Kind::square, 20, 1));
+  expect_all_found<2>(random_packing<2>(15, 1));
+  expect_all_found<3>(lattice<3>(Kind::fcc, 6, 1));
+  expect_all_found<3>(lattice<3>(Kind::simple_cubic, 6, 1));
+  expect_all_found<3>(random_packing<3>(5, 1));
+}
+/// Against the tensions of an intact twin: of the watched particles, of one pair, of none.
+template <int dim>
+void expect_utilisation_of_watched_faces(const Packing<dim> &packing)
+{
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  const auto p = state(packing, 0.02, 3);
+  const ManyBodyForce<dim> intact(packing, material, {});
+  std::vector<double> tension(packing.size());
+  for (int i = 0; i < packing.size(); ++i)
+    tension[i] = intact.max_tension(p, {i});
+  const double strength = 1.1 * *std::max_element(tension.begin(), tension.end());
+  ManyBodyForce<dim> force(packing, material, {},
+                           {FractureLaw::Criterion::maximum_tension, strength});
+  constexpr double noted = 0.3;
+  force.set_noted_share(noted);
+  auto moved = p;
+  force.compute(moved, 0);
+  ASSERT_TRUE(force.broken_bonds().empty());
+
+  std::vector<Watch> watch(packing.size(), Watch::none);
+  EXPECT_EQ(force.utilisation(p, watch).share, 0);
+  double most = 0;
+  for (int i = 0; i < packing.size(); i += 3) {
+    watch[i] = Watch::watched;
+    most = std::max(most, tension[i] / strength);
+    const auto found = force.utilisation(p, watch);
+    ASSERT_NEAR(found.share, most >= noted ? most : 0, 1e-12) << i;
+  }
+  EXPECT_GT(most, noted);
+
+  // The most loaded face of a particle is one of those to its neighbours, the others exempt.
+  const int i = int(std::max_element(tension.begin(), tension.end()) - tension.begin());
+  double over_neighbours = 0;
+  force.for_each_face(p, [&](const particles::FaceView<dim> &face) {
+    if (face.i != i || face.j < 0)
+      return;
+    std::vector<Watch> pair(packing.size(), Watch::exempt);
+    pair[i] = Watch::watched;
+    EXPECT_EQ(force.utilisation(p, pair).share, 0);
+    pair[face.j] = Watch::none;
+    const auto found = force.utilisation(p, pair);
+    if (found.share > 0)
+      EXPECT_LT((found.place - face.centroid).norm(), 1e-12);
+    over_neighbours = std::max(over_neighbours, found.share);
+  });
+  EXPECT_NEAR(over_neighbours, tension[i] / strength, 1e-12);
+}
+
+TEST(Screen, UtilisationIsThatOfTheMostLoadedWatchedFace)
+{
+  expect_utilisation_of_watched_faces<2>(lattice<2>(Kind::hexagonal, 20, 1));
+  expect_utilisation_of_watched_faces<2>(random_packing<2>(10, 2));
+  expect_utilisation_of_watched_faces<3>(lattice<3>(Kind::fcc, 5, 1));
+  expect_utilisation_of_watched_faces<3>(random_packing<3>(5, 1));
 }
 } // namespace ligament::dem::testing

@@ -100,7 +100,7 @@ struct SliceKernel : ::testing::Test
     std::vector<int> exceeded;
     slices.load(a, records);
     slices.add_pressures(a, records);
-    slices.forces(a, 0., {}, records, exceeded);
+    slices.forces(a, {}, {}, records, exceeded);
     return p;
   }
 
@@ -147,7 +147,7 @@ TEST_F(SliceKernel, FindsTheTensionThatBreaks)
   for (auto &face : packing.faces)
     face.cracked = false;
   const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
-  ManyBodyForce<2> force(packing, material, {});
+  ManyBodyForce<2> force(packing, material, {}, {FractureLaw::Criterion::face_tension, 1e300});
   auto p = state(packing);
   std::vector<int> all(p.size());
   for (int i = 0; i < p.size(); ++i)

@@ -1,6 +1,7 @@
 // Shape functions, strain matrix, cell stiffness, and the cell of a point.
 #include "tests/unit/fem/meshes.h"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 namespace ligament::fem
@@ -55,8 +56,8 @@ void check_shape_functions()
     expected << a(0, 0), a(1, 1), a(2, 2), a(1, 2) + a(2, 1), a(0, 2) + a(2, 0), a(0, 1) + a(1, 0);
   EXPECT_LT((strain - expected).norm(), 1e-14);
 
-  // Energy of that strain; for the hourglass u_0 = x_0 x_1 (2D, local coordinates from the middle):
-  // e_00 = x_1, 2 e_01 = x_0.
+  // Energy of that strain; for the hourglass u_0 = x_0 x_1 (local coordinates from the middle) that
+  // of pure bending, e_00 = x_1 and no stress s_01, s_11 (3D: e_22 = 0).
   const Stiffness<dim> c = isotropic<dim>(3, 2);
   const double t = 0.7;
   const auto k = cell_stiffness<dim>(size, c, t);
@@ -68,10 +69,35 @@ void check_shape_functions()
   for (int i = 0; i < n_cell_nodes<dim>; ++i)
     hourglass[dim * i] =
         (corners(0, i) - lower[0] - size[0] / 2) * (corners(1, i) - lower[1] - size[1] / 2);
-  const double moments = c(0, 0) * size[1] * size[1] / 12 +
-                         c(n_strains<dim> - 1, n_strains<dim> - 1) * size[0] * size[0] / 12;
+  const double moments = (c(0, 0) - c(0, 1) * c(0, 1) / c(1, 1)) * size[1] * size[1] / 12;
   EXPECT_NEAR(hourglass.dot(k * hourglass), moments * size.prod() * t,
               1e-14 * moments * size.prod());
+}
+
+/// Eigenvalues of the stiffness of a cell of shear modulus 1, over its volume.
+template <int dim>
+Eigen::VectorXd eigenvalues(const Vector<dim> &size, double nu)
+{
+  const Eigen::MatrixXd k = cell_stiffness<dim>(size, isotropic<dim>(2 * nu / (1 - 2 * nu), 1), 1);
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues() / size.prod();
+}
+
+/// Nothing but rigid motions costs nothing, and of all the others only the change of volume grows
+/// without bound when the body becomes incompressible.
+template <int dim>
+void check_spectrum()
+{
+  constexpr int n_rigid = dim + n_spins<dim>;
+  for (const double nu : {-0.5, 0., 0.3, 0.45, 0.49, 0.4999})
+    for (const double slender : {1., 0.2}) {
+      SCOPED_TRACE(testing::Message() << "nu " << nu << ", slender " << slender);
+      Vector<dim> size = Vector<dim>::Ones();
+      size[0] = slender;
+      const Eigen::VectorXd e = eigenvalues<dim>(size, nu);
+      EXPECT_LT(e.head(n_rigid).cwiseAbs().maxCoeff(), 1e-13 * e[e.size() - 1]);
+      EXPECT_GT(e[n_rigid], 0.01);
+      EXPECT_LT(e[e.size() - 2], 3 * 2 / (slender * slender)); // 2 G times B^2
+    }
 }
 
 template <int dim>
@@ -118,6 +144,15 @@ TEST(Q1Cell, shape_functions_and_stiffness_in_2d)
 TEST(Q1Cell, shape_functions_and_stiffness_in_3d)
 {
   check_shape_functions<3>();
+}
+
+TEST(Q1Cell, bends_and_keeps_its_volume_without_locking_in_2d)
+{
+  check_spectrum<2>();
+}
+TEST(Q1Cell, bends_and_keeps_its_volume_without_locking_in_3d)
+{
+  check_spectrum<3>();
 }
 
 TEST(CellLocator, agrees_with_looking_at_all_cells)

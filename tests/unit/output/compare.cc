@@ -48,9 +48,8 @@ TEST(Compare, FindsTheFactorsBetweenTwoRuns)
   EXPECT_NEAR(*r.displacement_error_max, 0.25, rounding);
   EXPECT_NEAR(*r.velocity_error, 0, rounding);
   EXPECT_TRUE(r.notes.empty()) << table(r);
-  EXPECT_EQ(r.svg_file, "a/compare_b.svg");
-  EXPECT_TRUE(std::filesystem::exists(r.svg_file));
-  EXPECT_TRUE(std::filesystem::exists(r.html_file));
+  EXPECT_NE(r.plot.find("<svg"), std::string::npos);
+  EXPECT_EQ(r.file_name, "compare_b");
 }
 
 // The run breaks first, and its last state is too near to its onset.
@@ -105,8 +104,88 @@ TEST(Compare, WhatCannotBeComputedIsNull)
   for (const char *name :
        {"crack_distance_mean", "crack_distance_max", "displacement_error", "velocity_error"})
     EXPECT_TRUE(json.at(name).is_null()) << name;
-  EXPECT_TRUE(json.at("peak_load_error").is_number());
+  EXPECT_TRUE(json.at("peak_load_error").is_null()) << "nothing broke in one of them";
+  EXPECT_TRUE(json.at("largest_load_error").is_number());
   EXPECT_FALSE(json.at("notes").empty());
+}
+
+// Waves, or loads that nothing has broken under: fields at one time, histories, no peak.
+TEST(Compare, RunsInWhichNothingBroke)
+{
+  SyntheticRun run, reference;
+  for (SyntheticRun *r : {&run, &reference})
+    r->n_broken_before = r->n_broken_after = 0;
+  run.displacement_factor = 1.25;
+  run.peak_stress = 1.1 * reference.peak_stress;
+  run.peak_time = 1.1 * reference.peak_time; // the same load at the same time, for longer
+  run.noise = 0.02;
+  run.write("wave");
+  reference.write("twin");
+  const CompareResult r = compare("wave", "twin");
+  EXPECT_FALSE(r.peak_load_error);
+  EXPECT_NEAR(*r.largest_load_error, 0.1, rounding);
+  EXPECT_EQ(table(r).find("peak load"), std::string::npos) << table(r);
+  EXPECT_NEAR(*r.displacement_error, 0.25, rounding);
+  EXPECT_NEAR(*r.kinetic_share, 2e-3, rounding);
+  // The load of the reference falls after its last row of loading, at 1.01 of its peak's time, when
+  // that of the run is at 1.01/1.1 of its own: up to there the runs differ.
+  EXPECT_NEAR(*r.compared_until, 1.1 * reference.peak_time, rounding);
+  EXPECT_NEAR(*r.load_history.largest, 1.1, 0.01);
+  // The work of 1.1 times the time at the same rate is that times squared; it rests at the end.
+  EXPECT_NEAR(*r.energy_error, 1.1 * 1.1 - 1, rounding);
+}
+
+TEST(Compare, HistoriesAreComparedAtEqualTimes)
+{
+  SyntheticRun run, reference;
+  for (SyntheticRun *r : {&run, &reference})
+    r->n_broken_before = r->n_broken_after = 0;
+  run.noise = 0.02;
+  run.trusted_until = 1e-4 + 1e-12; // just before the fall
+  run.write("noisy");
+  reference.write("plain");
+  const CompareResult r = compare("noisy", "plain");
+  // sin against a ramp over a whole number of periods: sqrt((1/2)/(1/3)); trapezoids of 100 rows.
+  EXPECT_NEAR(*r.load_history.mean / (0.02 * std::sqrt(1.5)), 1, 1e-3);
+  EXPECT_NEAR(*r.load_history.largest, 0.02, 1e-4);
+  EXPECT_NEAR(*r.displacement_history.mean, 0, rounding);
+  EXPECT_NEAR(*r.elastic_history.mean, 0, rounding);
+}
+
+TEST(Compare, RunsThatAreNotCompleteAreNamed)
+{
+  SyntheticRun run, reference;
+  reference.write("whole");
+  run.write("also_whole");
+  EXPECT_TRUE(compare("also_whole", "whole").complete);
+  for (const auto &[status, words] :
+       std::vector<std::pair<std::string, std::string>>{{"stopped", "was stopped by its guard"},
+                                                        {"interrupted", "was interrupted"},
+                                                        {"failed", "failed"},
+                                                        {"running", "is not finished"}})
+  {
+    run.status = status;
+    run.write("part");
+    for (const auto &r : {compare("part", "whole"), compare("whole", "part")}) {
+      EXPECT_FALSE(r.complete);
+      EXPECT_EQ(to_json(r).at("complete"), false);
+      EXPECT_NE(table(r).find(words + ": why it ended"), std::string::npos) << table(r);
+    }
+  }
+}
+
+// Three faces break before the run leaves its range, four later ones are not compared.
+TEST(Compare, WhatIsNotTrustedDoesNotCount)
+{
+  SyntheticRun run, reference;
+  reference.crack_y = 2 * reference.spacing;
+  reference.n_broken_after = 0;
+  run.trusted_until = run.onset * run.peak_time;
+  run.write("left");
+  reference.write("stayed");
+  const CompareResult r = compare("left", "stayed");
+  EXPECT_NEAR(*r.crack_distance_max, 2, rounding); // 4 along x with the later ones
+  EXPECT_LE(*r.compared_until, *run.trusted_until);
 }
 
 TEST(Compare, CurveWithUnitsAsReference)
@@ -128,7 +207,7 @@ TEST(Compare, CurveWithUnitsAsReference)
   EXPECT_FALSE(r.time_ratio);
   EXPECT_FALSE(r.particle_ratio);
   EXPECT_FALSE(r.crack_distance_max);
-  EXPECT_EQ(r.html_file, "run/compare_paper.html");
+  EXPECT_EQ(r.file_name, "compare_paper");
 }
 
 TEST(Compare, RefusesWhatIsNeither)
@@ -160,5 +239,35 @@ TEST(CrackPath, NearestDistancesAgreeWithTheSlowSearch)
     EXPECT_EQ(distances[i], best);
   }
   EXPECT_TRUE(nearest_distances(a, {}).empty());
+}
+
+TEST(Compare, NamesTheColumnsOfACurveThatItDoesNotKnow)
+{
+  SyntheticRun().write("a");
+  core::write_file("half.csv",
+                   "\xEF\xBB\xBFstrain,stress,temperature\n1,MPa,K\n0,0,1\n1e-5,0.7,1\n");
+  const CompareResult r = compare("a", "half.csv");
+  EXPECT_NE(table(r).find("does not know: \"temperature\""), std::string::npos) << table(r);
+  EXPECT_TRUE(r.peak_load_error) << "the byte order mark belongs to no name";
+  core::write_file("alien.csv", "mass,temperature\nkg,K\n0,1\n");
+  try {
+    compare("a", "alien.csv");
+    ADD_FAILURE() << "was read";
+  } catch (const core::InputError &error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("alien.csv: none of its columns"), std::string::npos) << text;
+    EXPECT_NE(text.find("\"stress\""), std::string::npos) << text;
+  }
+}
+
+TEST(Compare, WritesWhereItIsTold)
+{
+  SyntheticRun().write("a");
+  SyntheticRun().write("b");
+  CompareResult r = compare("a", "b");
+  EXPECT_FALSE(std::filesystem::exists("a/compare_b.svg"));
+  write_comparison(r, "elsewhere/deep");
+  EXPECT_TRUE(std::filesystem::exists("elsewhere/deep/compare_b.svg"));
+  EXPECT_EQ(r.html_file, "elsewhere/deep/compare_b.html");
 }
 } // namespace

@@ -41,6 +41,53 @@ TEST(Curve, PeakLiesInTheDirectionOfLoading)
   EXPECT_EQ(*peak_index({0, -1, -2, -3, 4}), 3u);
 }
 
+// The rebound after the first fall is larger; noise before the loading is no fall.
+TEST(Curve, LoadingEndsWhereTheLoadHasFallen)
+{
+  const std::vector<double> load = {0, 1e-3, -1e-3, 10, 20, 18, 1.9, 25, -30};
+  EXPECT_EQ(loading_rows(load), 6u);
+  EXPECT_EQ(*peak_index(load), 4u);
+  EXPECT_EQ(loading_rows(load, 7), 8u);
+  EXPECT_EQ(loading_rows({0, 10, 20, 18, 2.1, 25}), 6u); // never below a tenth
+}
+
+TEST(Curve, StiffnessIsThatOfTheFirstRise)
+{
+  // A line of slope 2 to 10; it falls to 3 and rises again with slope 1.
+  std::vector<double> x, y;
+  for (int i = 0; i <= 100; ++i) {
+    x.push_back(0.05 * i);
+    y.push_back(0.1 * i);
+  }
+  for (int i = 0; i <= 100; ++i) {
+    x.push_back(6 + 0.08 * i);
+    y.push_back(3 + 0.08 * i);
+  }
+  EXPECT_EQ(*peak_index(y), 201u);
+  EXPECT_NEAR(*fit_stiffness(x, y), 2, 1e-12);
+}
+
+TEST(Curve, WhatIsNoLineHasNoStiffness)
+{
+  // y = x^p misses its chord from 0.1 to 0.5 the more the larger p.
+  const auto stiffness = [](double p) {
+    std::vector<double> x, y;
+    for (int i = 0; i <= 1000; ++i) {
+      x.push_back(1e-3 * i);
+      y.push_back(std::pow(x.back(), p));
+    }
+    return fit_stiffness(x, y);
+  };
+  EXPECT_TRUE(stiffness(1.1));
+  EXPECT_FALSE(stiffness(2));
+  std::vector<double> x, wave;
+  for (int i = 0; i <= 1000; ++i) {
+    x.push_back(1e-3 * i);
+    wave.push_back(x.back() + 0.05 * std::sin(100 * x.back()));
+  }
+  EXPECT_FALSE(fit_stiffness(x, wave));
+}
+
 TEST(Curve, NothingToFitIsEmpty)
 {
   EXPECT_FALSE(peak_index({}));

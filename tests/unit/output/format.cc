@@ -51,7 +51,7 @@ TEST(Verdict, ScalesTheMeasuredRateToThePureModel)
   EXPECT_EQ(verdict(r), "8 700 particles and 2 350 cells stood for 121 000 particles: 8.3 x faster "
                         "than pure discrete elements would be at this rate; energy residual "
                         "3e-05; nothing unstable");
-  r.status = "guard";
+  r.status = "stopped";
   r.reason = "the crack reached the overlap";
   EXPECT_EQ(verdict(r).find("nothing unstable"), std::string::npos);
   EXPECT_NE(verdict(r).find(r.reason), std::string::npos);
@@ -60,6 +60,59 @@ TEST(Verdict, ScalesTheMeasuredRateToThePureModel)
   EXPECT_EQ(verdict(r).find("nothing unstable"), std::string::npos);
   r.discrete_seconds = {};
   EXPECT_FALSE(predicted_saving(r));
+}
+
+TEST(Verdict, RepeatsEveryWarningWithItsEnergy)
+{
+  RunRecord r;
+  r.kind = "pure_dem";
+  r.status = "done";
+  r.energy_residual = 1e-6;
+  r.external_work = 2;
+  r.warnings = {{"/far_field/levels is not used"}};
+  EXPECT_NE(verdict(r).find(r.warnings[0].text), std::string::npos);
+  EXPECT_NE(verdict(r).find("nothing unstable"), std::string::npos) << "a hint about the input";
+  r.warnings.push_back({"the change of regime took energy", 3.});
+  const std::string text = verdict(r);
+  for (const char *part : {"levels", "change of regime", "3.00 J", "1.5 of the external work"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(text.find("nothing unstable"), std::string::npos);
+}
+
+TEST(Verdict, NothingUnstableOnlyWhenNothingWas)
+{
+  RunRecord sound;
+  sound.kind = "coupled";
+  sound.status = "done";
+  sound.energy_residual = 1e-6;
+  EXPECT_TRUE(is_stable(sound));
+  const auto broken = [&](auto &&change) {
+    RunRecord r = sound;
+    change(r);
+    EXPECT_EQ(verdict(r).find("nothing unstable"), std::string::npos) << verdict(r);
+    return is_stable(r);
+  };
+  EXPECT_FALSE(broken([](RunRecord &r) { r.trusted_until = 1e-3; }));
+  EXPECT_FALSE(broken([](RunRecord &r) { r.broken_in_overlap = 1; }));
+  EXPECT_FALSE(broken([](RunRecord &r) { r.energy_residual = 0.1; }));
+  for (const char *status : {"stopped", "interrupted", "failed", "running"})
+    EXPECT_FALSE(broken([&](RunRecord &r) { r.status = status; }));
+}
+
+TEST(Headline, NamesThePeakOnlyWhereThereIsOne)
+{
+  RunRecord r;
+  r.status = "done";
+  r.largest_load = 2e3;
+  EXPECT_EQ(headline(r), "Largest load 2.00 kN; nothing broke.");
+  r.peak_load = r.largest_load;
+  r.broken_bonds = 12;
+  EXPECT_EQ(headline(r), "Peak load 2.00 kN; 12 broken faces.");
+  r.broken_in_overlap = 3;
+  r.status = "interrupted";
+  EXPECT_EQ(headline(r),
+            "The run was interrupted: peak load 2.00 kN; 12 broken faces, 3 of them in "
+            "the overlap.");
 }
 
 TEST(Progress, LineShowsRateAndTimeToGo)

@@ -19,7 +19,7 @@ TEST(RunRecord, ComesBackWhole)
 {
   RunRecord r;
   r.title = "Plate \"A\" \xe2\x88\x86";
-  r.status = "guard";
+  r.status = "stopped";
   r.reason = "overlap strain";
   r.kind = "coupled";
   r.dimension = 3;
@@ -36,6 +36,9 @@ TEST(RunRecord, ComesBackWhole)
   r.magnification = 500;
   r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
   r.pictures = {{"pictures/peak.png", "at the peak"}};
+  r.trusted_until = 2e-4;
+  r.broken_in_overlap = 7;
+  r.warnings = {{"a face broke", 1e-3}, {"a key is not used"}};
   write_run_record("run.json", r);
   const RunRecord back = read_run_record("run.json");
   EXPECT_EQ(back.title, r.title);
@@ -59,11 +62,19 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.states[0].particles, "fields/particles_peak.vtp");
   EXPECT_EQ(back.states[0].cells, "");
 
+  EXPECT_EQ(back.trusted_until, r.trusted_until);
+  EXPECT_EQ(back.broken_in_overlap, 7);
+  ASSERT_EQ(back.warnings.size(), 2u);
+  EXPECT_EQ(back.warnings[0].text, "a face broke");
+  EXPECT_EQ(back.warnings[0].energy, 1e-3);
+  EXPECT_FALSE(back.warnings[1].energy);
+
   // Writing what was read gives the same bytes: no field is lost on either way.
   write_run_record("again.json", back);
   EXPECT_EQ(core::read_file("again.json"), core::read_file("run.json"));
   const auto json = nlohmann::json::parse(core::read_file("run.json"));
   EXPECT_TRUE(json.at("stiffness").is_null());
+  EXPECT_EQ(json.at("complete"), false);
 }
 
 TEST(RunRecord, RefusesDamage)

@@ -8,6 +8,7 @@
 #include "src/output/run_record.h"
 #include "src/output/snapshot.h"
 
+#include <cmath>
 #include <filesystem>
 
 namespace ligament::tests
@@ -30,6 +31,9 @@ struct SyntheticRun
   std::int64_t first_id = 0;
   double wall_seconds = 10;
   std::int64_t particles = 1000;
+  std::string status = "done";
+  std::optional<double> trusted_until; // s
+  double noise = 0;                    // of the load, as a share of the peak, with 7 periods
 
   double peak_load() const { return peak_stress * area; }
   double peak_strain() const { return peak_stress / stiffness; }
@@ -51,15 +55,23 @@ struct SyntheticRun
     RunRecord record;
     record.title = "Synthetic <run>";
     record.version = "1.2.3";
-    record.status = "done";
+    record.status = status;
+    record.reason = "why it ended";
+    record.trusted_until = trusted_until;
     record.kind = "coupled";
     record.plane = "strain";
     record.spacing = spacing;
     record.size = {area, length};
     record.particles = particles;
     record.wall_seconds = wall_seconds;
-    record.peak_load = peak_load();
-    record.peak_time = peak_time;
+    record.largest_load = peak_load();
+    record.largest_stress = peak_stress;
+    record.largest_time = peak_time;
+    if (n_broken_before + n_broken_after > 0) {
+      record.peak_load = record.largest_load;
+      record.peak_stress = record.largest_stress;
+      record.peak_time = record.largest_time;
+    }
     write_run_record(folder.record(), record);
 
     HistoryWriter history(folder.history(), history_columns(2));
@@ -68,13 +80,15 @@ struct SyntheticRun
       const double s = double(i) / n, load = i <= n ? s : 0;
       history.set("time", s * peak_time);
       history.set("stress", load * peak_stress);
-      history.set("load", load * peak_load());
+      history.set("load", (load + noise * std::sin(14 * M_PI * s)) * peak_load());
       history.set("strain", s * peak_strain());
       history.set("displacement", s * peak_strain() * length);
       history.set("external_work", std::min(s * s, 1.) * work());
       history.set("potential_discrete", 0.6 * stored(s));
       history.set("potential_far", 0.5 * stored(s));
       history.set("blended", -0.1 * stored(s));
+      history.set("kinetic_discrete", 1e-3 * stored(s));
+      history.set("kinetic_far", 1e-3 * stored(s));
       history.set("residual", 1e-6 * s * work());
       history.end_row();
     }

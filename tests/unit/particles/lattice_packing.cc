@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 
+#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -270,6 +271,73 @@ TEST(LatticePacking, NeighboursOfARunLieAtConstantOffsets)
           std::array<int, 3>{run_of[face.i], run_of[face.j], face.direction}, face.j - face.i);
       EXPECT_EQ(entry.first->second, face.j - face.i);
     }
+}
+
+/// The same particles and faces in another order: names, places and cells to the last bit; and
+/// what kernels want of the order. Returns the largest offset between neighbours in both.
+template <int dim>
+std::pair<int, int> check_order(LatticeKind kind, const Vector<dim> &size, bool turned = false)
+{
+  auto p = specimen<dim>(kind, 10);
+  p.upper = p.lower + p.spacing * size;
+  if (turned)
+    p.orientation = orientations<dim>()[1];
+  p.small_layer = std::numeric_limits<long>::max();
+  const auto own = make_lattice_packing(p);
+  p.small_layer = 0;
+  const auto other = make_lattice_packing(p);
+  EXPECT_LT(closure_error(other), round_off(p));
+  std::unordered_map<std::int64_t, int> in_own;
+  for (int i = 0; i < own.size(); ++i)
+    in_own[own.global_id[i]] = i;
+  EXPECT_EQ(own.size(), other.size());
+  for (int i = 0; i < other.size(); ++i) {
+    const int j = in_own.at(other.global_id[i]);
+    EXPECT_EQ(get(other.centre, i), get(own.centre, j));
+    EXPECT_EQ(other.volume[i], own.volume[j]);
+  }
+  std::map<std::pair<int, int>, const Face<dim> *> faces;
+  int reach = 0, other_reach = 0;
+  for (const auto &face : own.faces) {
+    faces[{face.i, face.j}] = &face;
+    reach = std::max(reach, face.j - face.i);
+  }
+  EXPECT_EQ(own.faces.size(), other.faces.size());
+  for (const auto &face : other.faces) {
+    other_reach = std::max(other_reach, face.j - face.i);
+    const int i = in_own.at(other.global_id[face.i]), j = in_own.at(other.global_id[face.j]);
+    const double sign = i < j ? 1 : -1;
+    const auto found = faces.find({std::min(i, j), std::max(i, j)});
+    if (found == faces.end()) {
+      ADD_FAILURE() << "no face between " << i << " and " << j;
+      return {0, 0};
+    }
+    EXPECT_EQ(Vector<dim>(sign * face.normal), found->second->normal);
+    EXPECT_EQ(face.direction < 0, found->second->direction < 0);
+    EXPECT_NEAR(face.area, found->second->area, 1e-12 * own.faces[0].area);
+  }
+  return {reach, other_reach};
+}
+
+TEST(LatticePacking, LayersLieAcrossTheLongestSide)
+{
+  // Rows along the longest side become layers across it.
+  const auto strip = check_order<2>(hexagonal.kind, {90.3, 7.2});
+  EXPECT_GT(strip.first, 80);
+  EXPECT_LT(strip.second, 15);
+  EXPECT_LT(check_order<2>(square.kind, {90.3, 7.2}).second, 10);
+  EXPECT_LT(check_order<2>(hexagonal.kind, {60.3, 7.2}, true).second, 15);
+  for (const auto &kind : {simple_cubic.kind, fcc.kind})
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector<3> bar = {4.2, 4.2, 4.2}, plate = {16.3, 15.3, 16.3};
+      bar[axis] = 30.3;
+      plate[axis] = 4.2;
+      // A layer of a bar has about 4 x 4 to 4 x 6 particles, one of a plate 4 x 16 to 6 x 16.
+      EXPECT_LT(check_order<3>(kind, bar).second, 50) << axis;
+      EXPECT_LT(check_order<3>(kind, plate).second, 150) << axis;
+    }
+  check_order<3>(fcc.kind, {20.3, 5.2, 6.2}, true);
+  check_order<3>(simple_cubic.kind, {20.3, 5.2, 6.2}, true);
 }
 
 TEST(LatticePacking, FillsParticles)

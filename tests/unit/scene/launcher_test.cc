@@ -79,7 +79,7 @@ TEST(Launcher, MistakesOnTheCommandLineAreWrongInput)
   EXPECT_EQ(start("run a.json --sett /a=1").code, 2);
   EXPECT_EQ(start("explain raduis").code, 2);
   EXPECT_TRUE(has(errors(), "did you mean \"radius\"?"));
-  EXPECT_TRUE(has(start("run --json").text, "{\"errors\""));
+  EXPECT_TRUE(has(start("run --json").text, "{\"status\":\"wrong input\",\"errors\":[{"));
 }
 
 TEST(Launcher, WrongScenesArePrintedWithAllErrors)

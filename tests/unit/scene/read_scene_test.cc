@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace ligament;
@@ -11,6 +12,7 @@ using Extent = DiscreteZone::Extent;
 namespace
 {
 const std::string plate = LIGAMENT_SOURCE_DIR "/tests/support/scenes/plate.json";
+const std::string along_rows = "/discrete_zone/orientation=0"; // of the plate's crack
 const std::string bar = LIGAMENT_SOURCE_DIR "/tests/support/scenes/bar.json";
 
 std::string all(const ReadResult &result)
@@ -171,10 +173,32 @@ TEST(ReadScene, ErrorsStandInTheOrderOfTheFileAndOverridesLast)
 
 TEST(ReadScene, RatioBeyondTheRecommendedIsAWarning)
 {
-  const ReadResult result = read_scene(plate, {"/far_field/cell_size=1.1 mm"});
+  const ReadResult result = read_scene(plate, {along_rows, "/far_field/cell_size=1.1 mm"});
   EXPECT_EQ(all(result), "");
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_EQ(result.warnings[0].key, "/far_field/cell_size");
+}
+
+TEST(ReadScene, CracksOffTheRowsOfALatticeAreAWarning)
+{
+  const auto warned = [&](const std::string &scene, const std::vector<std::string> &overrides) {
+    const ReadResult result = read_scene(scene, overrides);
+    EXPECT_EQ(all(result), "");
+    return std::any_of(
+        result.warnings.begin(), result.warnings.end(),
+        [](const core::Diagnostic &d) { return d.key == "/specimen/cracks/0/points"; });
+  };
+  EXPECT_TRUE(warned(plate, {}));
+  EXPECT_TRUE(warned(plate, {"/discrete_zone/orientation=30 deg"}));
+  EXPECT_FALSE(warned(plate, {"/discrete_zone/orientation=60.5 deg"}));
+  EXPECT_FALSE(warned(plate, {"/discrete_zone/orientation=0", "/discrete_zone/packing=square"}));
+  EXPECT_FALSE(
+      warned(plate, {R"(/material/fracture={"criterion": "none"})", "/time/stop_when=end"}));
+  // The bar's crack lies in a cube plane; turned about x by the angle between {100} and {111} in
+  // one of these.
+  EXPECT_FALSE(warned(bar, {}));
+  EXPECT_FALSE(warned(bar, {R"(/discrete_zone/orientation=["54.7356 deg", 0, 0])"}));
+  EXPECT_TRUE(warned(bar, {R"(/discrete_zone/orientation=["20 deg", 0, 0])"}));
 }
 
 TEST(ReadScene, SizeStepsInAnOpenFarFieldAreAWarning)
@@ -182,6 +206,7 @@ TEST(ReadScene, SizeStepsInAnOpenFarFieldAreAWarning)
   const std::string open = R"(/loads=[{"boundary": "top", "absorbing": true}])";
   const auto warned = [&](std::vector<std::string> overrides) {
     overrides.push_back(open);
+    overrides.push_back(along_rows);
     const ReadResult result = read_scene(plate, overrides);
     EXPECT_EQ(all(result), "");
     return !result.warnings.empty() && result.warnings[0].key == "/far_field/levels";
@@ -195,8 +220,8 @@ TEST(ReadScene, SizeStepsInAnOpenFarFieldAreAWarning)
 
 TEST(ReadScene, KeysOfLargerCellsWithoutThemAreAWarning)
 {
-  const ReadResult result = read_scene(
-      plate, {"/far_field/levels=0", "/far_field/growth=1.2", "/far_field/fine_cells=2"});
+  const ReadResult result = read_scene(plate, {along_rows, "/far_field/levels=0",
+                                               "/far_field/growth=1.2", "/far_field/fine_cells=2"});
   EXPECT_EQ(all(result), "");
   EXPECT_EQ(result.warnings.size(), 2u);
 }

@@ -29,10 +29,10 @@ std::string contents(const std::string &file)
   return text.str();
 }
 
-std::vector<std::string> case_names()
+std::vector<std::string> case_names(const std::string &folder = "wrong_scenes")
 {
   std::vector<std::string> names;
-  for (const auto &entry : std::filesystem::directory_iterator(support + "wrong_scenes"))
+  for (const auto &entry : std::filesystem::directory_iterator(support + folder))
     names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -41,27 +41,45 @@ std::vector<std::string> case_names()
 class WrongScene : public testing::TestWithParam<std::string>
 {
 };
+
+class DoubtfulScene : public testing::TestWithParam<std::string>
+{
+};
+
+/// The scene of a case, read.
+ReadResult read_case(const nlohmann::json &c)
+{
+  std::string text = contents(support + "scenes/" + c["base"].get<std::string>());
+  for (const auto &change : c.value("replace", nlohmann::json::array())) {
+    const std::string old = change[0];
+    const std::size_t start = text.find(old);
+    EXPECT_NE(start, std::string::npos) << old;
+    if (start != std::string::npos)
+      text.replace(start, old.size(), change[1].get<std::string>());
+  }
+  return parse_scene(text, "scene.json", c.value("set", std::vector<std::string>()));
+}
+
+std::string to_string(const std::vector<core::Diagnostic> &diagnostics)
+{
+  std::string text;
+  for (const core::Diagnostic &d : diagnostics)
+    text += core::to_string(d) + "\n";
+  return text;
+}
 } // namespace
 
 TEST_P(WrongScene, IsRefused)
 {
   const auto wrong =
       nlohmann::json::parse(contents(support + "wrong_scenes/" + GetParam() + ".json"));
-  std::string text = contents(support + "scenes/" + wrong["base"].get<std::string>());
-  for (const auto &change : wrong.value("replace", nlohmann::json::array())) {
-    const std::string old = change[0];
-    const std::size_t start = text.find(old);
-    ASSERT_NE(start, std::string::npos) << old;
-    text.replace(start, old.size(), change[1].get<std::string>());
-  }
-  const auto overrides = wrong.value("set", std::vector<std::string>());
-  const ReadResult result = parse_scene(text, "scene.json", overrides);
+  const ReadResult result = read_case(wrong);
 
   std::string messages;
   bool at_place = false, has_remedies = true;
   for (const core::Diagnostic &error : result.errors) {
-    messages += to_string(error) + "\n";
-    at_place = at_place || to_string(error.place) == "scene.json:" + wrong.value("place", "");
+    messages += core::to_string(error) + "\n";
+    at_place = at_place || core::to_string(error.place) == "scene.json:" + wrong.value("place", "");
     has_remedies = has_remedies && !error.remedy.empty();
   }
   EXPECT_FALSE(result.scene);
@@ -74,6 +92,44 @@ TEST_P(WrongScene, IsRefused)
 
 INSTANTIATE_TEST_SUITE_P(Corpus, WrongScene, testing::ValuesIn(case_names()),
                          [](const auto &info) { return info.param; });
+
+// What is possible but was hardly meant: a warning, with what to do, and a scene. What the scene
+// resolves to is as doubtful as the scene, no more.
+TEST_P(DoubtfulScene, IsDoubted)
+{
+  const auto doubtful =
+      nlohmann::json::parse(contents(support + "doubtful_scenes/" + GetParam() + ".json"));
+  const ReadResult result = read_case(doubtful);
+  EXPECT_TRUE(result.scene) << to_string(result.errors);
+  const std::string messages = to_string(result.warnings);
+  for (const std::string part : doubtful["expect"])
+    EXPECT_NE(messages.find(part), std::string::npos) << part << "\n" << messages;
+  for (const core::Diagnostic &warning : result.warnings) {
+    EXPECT_FALSE(warning.key.empty());
+    EXPECT_NE(core::to_string(warning).find(": warning: "), std::string::npos);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, DoubtfulScene, testing::ValuesIn(case_names("doubtful_scenes")),
+                         [](const auto &info) { return info.param; });
+
+// The scenes that the others are made from, as they are and resolved.
+TEST(DoubtfulScenes, SoundOnesAreNotDoubted)
+{
+  for (const std::string base : {"plate.json", "bar.json"}) {
+    const ReadResult result = parse_scene(contents(support + "scenes/" + base), base);
+    EXPECT_EQ(to_string(result.warnings), "") << base;
+    for (const core::Diagnostic &warning : parse_scene(result.resolved.dump(), "echo").warnings)
+      EXPECT_NE(warning.message.find("is not used"), std::string::npos)
+          << "defaults are written, and no more: " << core::to_string(warning);
+  }
+  for (const auto &entry : std::filesystem::directory_iterator(LIGAMENT_SOURCE_DIR "/examples")) {
+    const std::string scene = entry.path().string() + "/scene.json";
+    if (std::filesystem::exists(scene))
+      for (const core::Diagnostic &warning : read_scene(scene).warnings)
+        EXPECT_EQ(warning.message.find("unusual"), std::string::npos) << core::to_string(warning);
+  }
+}
 
 TEST(WrongScenes, ThereAreMany)
 {
@@ -107,7 +163,7 @@ TEST(WrongScenes, RandomDamageDoesNoHarm)
       if (!result.scene)
         continue;
       const ReadResult again = parse_scene(result.resolved.dump(), "echo");
-      ASSERT_TRUE(again.scene) << damaged << to_string(again.errors.at(0));
+      ASSERT_TRUE(again.scene) << damaged << core::to_string(again.errors.at(0));
       ASSERT_EQ(again.resolved.dump(), result.resolved.dump());
     }
   }

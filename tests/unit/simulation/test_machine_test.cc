@@ -2,6 +2,8 @@
 #include "src/simulation/test_machine.h"
 #include "tests/support/small_plate.h"
 
+#include <cmath>
+
 using namespace ligament;
 using namespace ligament::program;
 using namespace ligament::tests;
@@ -50,9 +52,38 @@ TEST(TestMachine, ReadsAppliedTractionsAndTheMotionOfTheSides)
     small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
     const Reading r = TestMachine<2>(small.body).read(small.body, 0);
     EXPECT_NEAR(r.load / (24 * 1e-4), 1, 1e-10);
-    // The outermost particles lie up to a spacing inside the sides.
-    EXPECT_NEAR(r.strain / 1e-4, 1, 2. / 120);
+    EXPECT_NEAR(r.strain / 1e-4, 1, 1e-10);
   }
+}
+
+// Particles lie inside the sides; a rotation moves those of different depths differently.
+TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
+{
+  for (const char *packing : {"hexagonal", "square", "random"}) {
+    SCOPED_TRACE(packing);
+    std::vector<std::string> overrides = {
+        "/far_field=none", std::string("/discrete_zone/packing=") + packing, pulled_ends};
+    if (packing != std::string("random"))
+      overrides.push_back("/discrete_zone/orientation=0.3");
+    SmallBody small(small_scene(overrides));
+    Eigen::Matrix2d gradient;
+    gradient << 1e-4, 3e-4, -2e-4, 5e-4;
+    small.deform(gradient);
+    for (int component = 0; component < 2; ++component) {
+      EXPECT_NEAR(mean_displacement(small.body, 3, component), 60 * gradient(component, 1), 1e-12);
+      EXPECT_NEAR(mean_displacement(small.body, 0, component), -12 * gradient(component, 0), 1e-12);
+    }
+  }
+}
+
+// Particles nearer than d/4 to a side are left out: the outermost row may lie more than d inside.
+TEST(TestMachine, FindsTheSideBeyondARowThatWasLeftOut)
+{
+  const double row = std::sqrt(0.75), half = 69.5 * row + 0.24;
+  SmallBody small(small_scene(
+      {"/far_field=none", "/specimen/size=[24, " + std::to_string(2 * half) + "]", pulled_ends}));
+  small.deform(uniaxial(1e-4));
+  EXPECT_NEAR(mean_displacement(small.body, 3, 1) / (1e-4 * half), 1, 1e-6);
 }
 
 TEST(TestMachine, FollowsTheFirstLoadAndItsLargestComponent)

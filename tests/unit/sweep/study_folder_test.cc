@@ -40,7 +40,7 @@ TEST(StudyFolder, FindsRunsByTheirScene)
 {
   const std::string path = fresh("found");
   write_run(path + "/runs/any_name", R"({"b": 2, "title": "x", "a": 1})", "done");
-  write_run(path + "/runs/stopped", R"({"a": 2})", "guard");
+  write_run(path + "/runs/stopped", R"({"a": 2})", "stopped");
   const StudyFolder folder(path);
   // The order of the keys and the title mean nothing.
   ASSERT_TRUE(folder.finished(text(R"({"a": 1, "b": 2, "title": "y"})")));

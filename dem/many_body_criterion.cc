@@ -1,0 +1,319 @@
+// Which bonds break: the criteria of theory.md section 1.6, looked at only where a bound of the
+// kernels says that they could hold.
+#include "dem/many_body_force.h"
+#include "dem/principal_tension.h"
+
+#include <algorithm>
+#include <map>
+
+namespace ligament::dem
+{
+namespace
+{
+/// Places of which no two are closer than a distance.
+template <int dim>
+class PlacesApart
+{
+public:
+  explicit PlacesApart(double distance) : distance_(distance) {}
+
+  /// False, and the place is left out, when another one is too close.
+  bool add(const Vector<dim> &place)
+  {
+    const auto close = [&](const Vector<dim> &other) {
+      return (place - other).squaredNorm() < distance_ * distance_;
+    };
+    Cell cell;
+    for (int k = 0; k < int(std::pow(3, dim)); ++k) {
+      for (int c = 0, rest = k; c < dim; ++c, rest /= 3)
+        cell[c] = std::lround(std::floor(place[c] / distance_)) + rest % 3 - 1;
+      const auto found = cells_.find(cell);
+      if (found != cells_.end() && std::any_of(found->second.begin(), found->second.end(), close))
+        return false;
+    }
+    for (int c = 0; c < dim; ++c)
+      cell[c] = std::lround(std::floor(place[c] / distance_));
+    cells_[cell].push_back(place);
+    return true;
+  }
+
+private:
+  using Cell = std::array<long, dim>; // of the size `distance`
+  double distance_;
+  std::map<Cell, std::vector<Vector<dim>>> cells_;
+};
+} // namespace
+
+template <int dim>
+void ManyBodyForce<dim>::set_strength(double strength)
+{
+  core::require(strength > 0, "the strength must be positive");
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    fracture_.criterion = FractureLaw::Criterion::maximum_tension;
+  fracture_.strength = strength;
+  find_largest_size_factor();
+}
+
+template <int dim>
+void ManyBodyForce<dim>::set_noted_share(double share)
+{
+  core::require(share > 0 && share <= 1, "the noted share of the limit lies above 0, at most at 1");
+  noted_share_ = share;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_largest_size_factor()
+{
+  largest_size_factor_ = 1;
+  if (fracture_.whole_face > 0)
+    bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+      largest_size_factor_ = std::max(largest_size_factor_, size_factor(b));
+    });
+}
+
+template <int dim>
+double ManyBodyForce<dim>::size_factor(const Bond<dim> &b) const
+{
+  return fracture_.whole_face > 0
+             ? PrincipalTension::size_factor<dim>(b.area / fracture_.whole_face)
+             : 1;
+}
+
+template <int dim>
+double ManyBodyForce<dim>::strength_of(const Bond<dim> &b) const
+{
+  const auto &of = fracture_.strengths;
+  return of.empty() ? fracture_.strength
+                    : std::min(of[materials_.number(b.i)], of[materials_.number(b.j)]);
+}
+
+template <int dim>
+BreakScreen ManyBodyForce<dim>::breaking_screen(bool of_table) const
+{
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    return {};
+  double least = fracture_.strength;
+  if (of_table) // in terms of the first material's bonds
+    for (std::size_t m = 0; m < fracture_.strengths.size(); ++m)
+      least = std::min(least, fracture_.strengths[m] * materials_.base().shear_modulus() /
+                                  materials_.all()[m].shear_modulus());
+  constexpr double round_off = 1e-7; // that of the kernels where the shear is small
+  const bool principal = fracture_.criterion == FractureLaw::Criterion::maximum_tension;
+  return {noted_share_ * least / largest_size_factor_ * (1 - round_off),
+          principal ? PrincipalTension::tangent : 0};
+}
+
+template <int dim>
+BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<dim> &b,
+                                                  const Particles &p,
+                                                  const std::vector<double> &pressure) const
+{
+  const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
+  BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
+  t.traction = bond_force(b, motion(b, p, turn_i, turn_j), pressure) / (b.weight * b.area);
+  const double normal = t.traction.dot(t.normal);
+  if (normal <= 0 || !edge_.may_break(b))
+    return t;
+  t.utilisation = normal;
+  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
+    t.utilisation = size_factor(b) *
+                    (normal + PrincipalTension::tangent * (t.traction - normal * t.normal).norm());
+  t.utilisation /= strength_of(b);
+  return t;
+}
+
+template <int dim>
+std::vector<BondTension<dim>> ManyBodyForce<dim>::suspected_bonds(const Particles &p) const
+{
+  std::vector<BondTension<dim>> found;
+  const auto test = [&](const BondId &id, const Bond<dim> &b) {
+    const auto t = bond_tension(id, b, p, work_.pressure);
+    if (t.utilisation >= noted_share_)
+      found.push_back(t);
+  };
+  const auto test_bonds_of = [&](int i, bool lattice) {
+    bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
+      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i)
+        test(id, b);
+    });
+  };
+  for (const RowRange &range : work_.exceeded_rows)
+    for (int i = range.begin; i < range.end; ++i)
+      test_bonds_of(i, true);
+  for (const int i : work_.exceeded_particles)
+    test_bonds_of(i, false);
+  bonds_.for_each_interface(test);
+  if (plastic_) // the kernels don't know plastic strains
+    for (const RowRange &range : plastic_->around_plastic())
+      for (int i = range.begin; i < range.end; ++i) {
+        test_bonds_of(i, true);
+        test_bonds_of(i, false);
+      }
+  const auto ids = [&](const BondTension<dim> &t) { return global_ids(t.bond, p); };
+  std::sort(found.begin(), found.end(),
+            [&](const auto &a, const auto &b) { return ids(a) < ids(b); });
+  found.erase(std::unique(found.begin(), found.end(),
+                          [&](const auto &a, const auto &b) { return ids(a) == ids(b); }),
+              found.end());
+  return found;
+}
+
+template <int dim>
+std::pair<std::int64_t, std::int64_t> ManyBodyForce<dim>::global_ids(const Bond<dim> &b,
+                                                                     const Particles &p)
+{
+  return std::minmax({p.global_id[b.i], p.global_id[b.j]});
+}
+
+template <int dim>
+std::vector<Strain<dim>> ManyBodyForce<dim>::stresses_of(const std::vector<int> &few,
+                                                         const Particles &p,
+                                                         const std::vector<double> &pressure) const
+{
+  std::vector<Strain<dim>> stress(few.size(), Strain<dim>::Zero());
+  for (std::size_t k = 0; k < few.size(); ++k)
+    bonds_.for_each_bond_of(few[k], [&](BondId, const Bond<dim> &b) {
+      const BondMotion<dim> m = motion(b, p);
+      const Vector<dim> f = bond_force(b, m, pressure);
+      stress[k] += b.i == few[k] ? symmetric_product<dim>(m.a_i, f)
+                                 : symmetric_product<dim>(m.a_j, Vector<dim>(-f));
+    });
+  const auto add = [&](int i, const Vector<dim> &lever, const Vector<dim> &force) {
+    const auto place = std::lower_bound(few.begin(), few.end(), i);
+    if (place != few.end() && *place == i)
+      stress[place - few.begin()] += symmetric_product<dim>(lever, force);
+  };
+  surface_.for_each_moment(p, pressure, add);
+  contacts_.for_each_moment(p, add);
+  for (std::size_t k = 0; k < few.size(); ++k)
+    stress[k] /= energy_weight(few[k]) * p.volume[few[k]];
+  return stress;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &bonds,
+                                                const Particles &p,
+                                                const std::vector<double> &pressure) const
+{
+  std::vector<int> few;
+  for (const auto &t : bonds)
+    few.insert(few.end(), {t.bond.i, t.bond.j});
+  std::sort(few.begin(), few.end());
+  few.erase(std::unique(few.begin(), few.end()), few.end());
+  const auto stress = stresses_of(few, p, pressure);
+  const auto of = [&](int i) -> const Strain<dim> & {
+    return stress[std::lower_bound(few.begin(), few.end(), i) - few.begin()];
+  };
+  for (auto &t : bonds) {
+    const Vector<dim> e =
+        PrincipalTension::direction(Strain<dim>((of(t.bond.i) + of(t.bond.j)) / 2));
+    const double cosine = t.normal.dot(e);
+    t.utilisation = std::abs(cosine) < PrincipalTension::cone
+                        ? 0
+                        : size_factor(t.bond) * t.traction.dot(e) / (cosine * strength_of(t.bond));
+  }
+}
+
+template <int dim>
+std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) const
+{
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    return {};
+  auto found = suspected_bonds(p);
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [](const auto &t) { return t.utilisation < 1; }),
+              found.end());
+  std::vector<BondId> exceeding;
+  if (fracture_.criterion == FractureLaw::Criterion::face_tension) {
+    for (const auto &t : found)
+      exceeding.push_back(t.id);
+    return exceeding;
+  }
+  find_principal_tension(found, p, work_.pressure);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
+  PlacesApart<dim> places(PrincipalTension::apart * spacing_);
+  for (const auto &t : found) {
+    if (t.utilisation < 1)
+      break;
+    if (places.add(get(p.reference, t.bond.i) + t.bond.lever_i))
+      exceeding.push_back(t.id);
+  }
+  return exceeding;
+}
+
+template <int dim>
+Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
+                                                 const std::vector<Watch> &watch) const
+{
+  Utilisation<dim> most;
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    return most;
+  auto found = suspected_bonds(p);
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [&](const auto &t) {
+                               return std::max(watch[t.bond.i], watch[t.bond.j]) != Watch::watched;
+                             }),
+              found.end());
+  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
+    find_principal_tension(found, p, work_.pressure);
+  for (const auto &t : found)
+    if (t.utilisation >= noted_share_ && t.utilisation > most.share)
+      most = {t.utilisation, Vector<dim>(get(p.reference, t.bond.i) + t.bond.lever_i)};
+  return most;
+}
+
+template <int dim>
+BondTension<dim> ManyBodyForce<dim>::weakest_bond(const Particles &p,
+                                                  const std::vector<int> &of) const
+{
+  const Vector<dim> zero = Vector<dim>::Zero();
+  BondTension<dim> weakest{{-1, -1}, {-1, -1, zero, zero, zero, 0, 0, 0, 0}, zero, zero, 0};
+  if (fracture_.criterion == FractureLaw::Criterion::none)
+    return weakest;
+  Workspace work;
+  find_pressure(p, work);
+  std::vector<BondTension<dim>> bonds;
+  for (const int i : of)
+    bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
+      const auto t = bond_tension(id, b, p, work.pressure);
+      if (t.utilisation > 0)
+        bonds.push_back(t);
+    });
+  std::sort(bonds.begin(), bonds.end(),
+            [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
+  if (fracture_.criterion == FractureLaw::Criterion::face_tension)
+    return bonds.empty() ? weakest : bonds[0];
+  // Those with the largest bounds first, some at a time, until no bound is above what was found.
+  constexpr std::size_t some = 32;
+  for (std::size_t k = 0; k < bonds.size() && bonds[k].utilisation > weakest.utilisation; k += some)
+  {
+    std::vector<BondTension<dim>> now(bonds.begin() + k,
+                                      bonds.begin() + std::min(k + some, bonds.size()));
+    find_principal_tension(now, p, work.pressure);
+    for (const auto &t : now)
+      if (t.utilisation > weakest.utilisation)
+        weakest = t;
+  }
+  return weakest;
+}
+
+template void ManyBodyForce<2>::set_strength(double);
+template void ManyBodyForce<2>::set_noted_share(double);
+template Utilisation<2> ManyBodyForce<2>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
+template void ManyBodyForce<2>::find_largest_size_factor();
+template BreakScreen ManyBodyForce<2>::breaking_screen(bool) const;
+template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
+template BondTension<2> ManyBodyForce<2>::weakest_bond(const Particles &,
+                                                       const std::vector<int> &) const;
+template void ManyBodyForce<3>::set_strength(double);
+template void ManyBodyForce<3>::set_noted_share(double);
+template Utilisation<3> ManyBodyForce<3>::utilisation(const Particles &,
+                                                      const std::vector<Watch> &) const;
+template void ManyBodyForce<3>::find_largest_size_factor();
+template BreakScreen ManyBodyForce<3>::breaking_screen(bool) const;
+template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;
+template BondTension<3> ManyBodyForce<3>::weakest_bond(const Particles &,
+                                                       const std::vector<int> &) const;
+} // namespace ligament::dem

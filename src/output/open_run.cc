@@ -1,0 +1,95 @@
+#include "src/output/open_run.h"
+
+#include "core/check.h"
+#include "core/tell.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+// A record is of 4 to 20 kB.
+constexpr std::size_t reserved_bytes = 1 << 16;
+
+void refuse_what_is_no_run(const RunFolder &folder)
+{
+  std::error_code error;
+  const auto status = std::filesystem::status(folder.path, error);
+  if (!std::filesystem::exists(status))
+    return;
+  core::require(std::filesystem::is_directory(status),
+                fmt::format("{} is a file: the results of a run need a folder; give another one "
+                            "with --output",
+                            folder.path));
+  const std::string foreign = folder.foreign_entry();
+  core::require(foreign.empty(),
+                fmt::format("{} is no folder of a run: \"{}\" is in it; give a new or empty folder "
+                            "with --output",
+                            folder.path, foreign));
+}
+
+/// False when nothing in it is worth keeping: it failed before its first step.
+bool holds_results(const RunFolder &folder)
+{
+  if (!folder.holds_a_run())
+    return false;
+  try {
+    const RunRecord record = read_run_record(folder.record());
+    return record.status != "failed" || record.steps > 0;
+  } catch (const core::InputError &) {
+    return true; // damaged: for its owner to look at
+  }
+}
+
+std::string move_aside(const RunFolder &folder)
+{
+  int n = 1;
+  while (std::filesystem::exists(fmt::format("{}.{}", folder.path, n)))
+    ++n;
+  const std::string kept = fmt::format("{}.{}", folder.path, n);
+  std::error_code error;
+  std::filesystem::rename(folder.path, kept, error);
+  core::require<core::EnvironmentError>(
+      !error, fmt::format("{} holds a run and cannot be moved to {}: {}; give another folder with "
+                          "--output",
+                          folder.path, kept, error.message()));
+  return kept;
+}
+} // namespace
+
+OpenRun::OpenRun(RunFolder folder, const RunRecord &first, std::FILE *messages)
+    : folder_(std::move(folder))
+{
+  refuse_what_is_no_run(folder_);
+  folder_.create();
+  lock_.emplace(folder_.path, "run");
+  if (holds_results(folder_)) {
+    const std::string kept = move_aside(folder_);
+    core::tell(messages, fmt::format("{} held a run: moved to {}\n", folder_.path, kept));
+    folder_.create();
+    lock_.reset(); // of the folder that has moved
+    std::error_code error;
+    std::filesystem::remove(kept + "/lock", error);
+    lock_.emplace(folder_.path, "run");
+  }
+  reserve_.emplace(folder_.record(), reserved_bytes);
+  write_run_record(folder_.record(), first);
+}
+
+void OpenRun::end(const std::string &status, const std::string &reason) noexcept
+{
+  try {
+    RunRecord record = read_run_record(folder_.record());
+    record.status = status;
+    record.reason = reason;
+    write_run_record(folder_.record(), record);
+  } catch (const std::exception &error) {
+    core::tell(stderr, fmt::format("warning: the record of the run could not be completed: {}\n",
+                                   error.what()));
+  }
+  reserve_.reset();
+}
+} // namespace ligament::program

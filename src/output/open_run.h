@@ -1,0 +1,33 @@
+// The folder of a run under way: nobody else writes there, and its record says how the run ended.
+#pragma once
+
+#include "core/disk_reserve.h"
+#include "core/folder_lock.h"
+#include "src/output/run_folder.h"
+#include "src/output/run_record.h"
+
+#include <cstdio>
+#include <optional>
+
+namespace ligament::program
+{
+class OpenRun
+{
+public:
+  /// Makes the folder, locks it, and writes the record with status "running". An older run in it
+  /// moves to <folder>.1, .2, ..., which is told to `messages`; one that failed before its first
+  /// step makes way. Throws core::InputError for a folder (or file) that holds something else,
+  /// core::EnvironmentError when a run is under way there or the disk refuses.
+  OpenRun(RunFolder folder, const RunRecord &first, std::FILE *messages);
+
+  const RunFolder &folder() const { return folder_; }
+
+  /// For a run that cannot say so itself: the record keeps its figures. Does not throw.
+  void end(const std::string &status, const std::string &reason) noexcept;
+
+private:
+  RunFolder folder_;
+  std::optional<core::FolderLock> lock_;
+  std::optional<core::DiskReserve> reserve_; // of the record, see write_run_record
+};
+} // namespace ligament::program

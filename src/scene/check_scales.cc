@@ -1,0 +1,148 @@
+// Values against each other: speeds against that of sound, loads against stiffness, how many steps.
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+/// Speed of P waves in m/s, plane strain or 3D.
+double wave_speed(const MaterialParameters &m)
+{
+  const double nu = m.poissons_ratio;
+  return std::sqrt(m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * m.density));
+}
+
+double largest(const PartialPoint &value)
+{
+  double largest = 0;
+  for (const auto &component : value)
+    largest = std::max(largest, std::abs(component.value_or(0)));
+  return largest;
+}
+
+/// A side that moves at this share of the wave speed strains what is behind it as much.
+void check_velocity(const LoadParameters &load, const std::string &key, double speed, Findings &f)
+{
+  const double share = largest(load.velocity) / speed;
+  const std::string message =
+      fmt::format("\"velocity\" in {} is {:.3g} m/s", key, largest(load.velocity));
+  const std::string reason =
+      fmt::format("P waves of this material travel at {:.4g} m/s: the front strains it by {:.2g}",
+                  speed, share);
+  if (share > 1)
+    f.error(key + "/velocity", message + ", faster than sound", reason,
+            "give a slower one, or check its unit and those of /material");
+  else if (share > 0.1)
+    f.warning(key + "/velocity", message + ", more than a tenth of the speed of sound", reason,
+              "give a slower one, or check its unit and those of /material");
+}
+
+void check_traction(const LoadParameters &load, const std::string &key, double modulus, Findings &f)
+{
+  const double share = largest(load.traction) / modulus;
+  const std::string message =
+      fmt::format("\"traction\" in {} is {:.3g} Pa", key, largest(load.traction));
+  const std::string reason = fmt::format("\"youngs_modulus\" in /material is {:.3g} Pa", modulus);
+  if (share > 1)
+    f.error(key + "/traction", message + ", more than Young's modulus", reason,
+            "give a smaller one, or check both units");
+  else if (share > 0.1)
+    f.warning(key + "/traction", message + ", a strain of more than a tenth", reason,
+              "give a smaller one, or check both units");
+}
+
+void check_displacement(const Scene &scene, const LoadParameters &load, const std::string &key,
+                        Findings &f)
+{
+  const auto &size = scene.specimen.size;
+  const double extent = *std::max_element(size.begin(), size.end());
+  if (largest(load.displacement) > extent / 2)
+    f.warning(key + "/displacement",
+              fmt::format("\"displacement\" in {} is {:.3g} m, more than half of the specimen", key,
+                          largest(load.displacement)),
+              fmt::format("the specimen is {:.3g} m long", extent),
+              "give a smaller one, or check both units");
+}
+
+void check_load_scales(const Scene &scene, Findings &f)
+{
+  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
+    const std::string key = fmt::format("/loads/{}", k);
+    if (!f.sound({key}))
+      continue;
+    const LoadParameters &load = scene.loads[k];
+    if (f.sound({"/material"})) {
+      check_velocity(load, key, wave_speed(scene.material), f);
+      check_traction(load, key, scene.material.youngs_modulus, f);
+    }
+    if (f.sound({"/specimen/size"}))
+      check_displacement(scene, load, key, f);
+  }
+}
+
+void check_strength(const Scene &scene, Findings &f)
+{
+  const std::string key = "/material/fracture/strength";
+  if (!f.sound_and_given({key}) || !f.sound({"/material/youngs_modulus"}))
+    return;
+  const double strength = *scene.material.fracture.strength,
+               modulus = scene.material.youngs_modulus;
+  if (strength > modulus / 2)
+    f.warning(
+        key,
+        fmt::format("\"strength\" in /material/fracture is {:.3g} Pa, more than half of "
+                    "Young's modulus",
+                    strength),
+        fmt::format("\"youngs_modulus\" in /material is {:.3g} Pa: nothing will break", modulus),
+        "check both units");
+}
+
+/// A wave needs about a step from one particle, or node, to the next.
+void check_duration(const Scene &scene, Findings &f)
+{
+  const bool particles = scene.zone.extent != DiscreteZone::Extent::none;
+  if (!f.sound_and_given({"/time/duration"}) ||
+      !f.sound({"/material", "/discrete_zone", "/far_field"}) ||
+      (particles ? !f.given("/discrete_zone/spacing") : !scene.far_field))
+    return;
+  const double length = particles ? scene.zone.spacing : scene.far_field->cell_size;
+  const double step = scene.time.step.value_or(length / wave_speed(scene.material));
+  const double steps = scene.time.duration / step;
+  if (steps > 1e12)
+    f.error("/time/duration",
+            fmt::format("\"duration\" in /time is {} s, about {:.1e} steps", scene.time.duration,
+                        steps),
+            fmt::format("a step takes about {:.2g} s of it, and more than 1e12 are beyond any "
+                        "machine",
+                        step),
+            "give a shorter one, or check its unit and those of /material");
+}
+
+void check_output(const Scene &scene, Findings &f)
+{
+  const std::string key = "/output/field_interval";
+  if (!f.sound_and_given({key, "/time/duration"}))
+    return;
+  const double outputs = scene.time.duration / scene.output.field_interval;
+  if (outputs > 1e4)
+    f.warning(key,
+              fmt::format("\"field_interval\" in /output is {} s, {:.1e} outputs of all fields",
+                          scene.output.field_interval, outputs),
+              fmt::format("\"duration\" in /time is {} s", scene.time.duration),
+              "give a longer one, or check both units");
+}
+} // namespace
+
+void check_scales(const Scene &scene, Findings &f)
+{
+  check_load_scales(scene, f);
+  check_strength(scene, f);
+  check_duration(scene, f);
+  check_output(scene, f);
+}
+} // namespace ligament::program

@@ -1,0 +1,34 @@
+// The load of a run over time, as far as it counts: its peak and the stiffness.
+#pragma once
+
+#include "src/output/run_record.h"
+#include "src/simulation/test_machine.h"
+
+#include <vector>
+
+namespace ligament::program
+{
+/// Takes readings until the load has fallen: when something has broken and it is below 10 % of its
+/// maximum. What comes later are rebounds.
+class LoadCurve
+{
+public:
+  void add(double time, const Reading &reading, std::int64_t n_broken);
+  /// Later readings don't count.
+  void end() { has_ended_ = true; }
+
+  bool has_fallen() const { return has_fallen_; }
+  bool has_ended() const { return has_ended_ || has_fallen_; }
+  /// N, so far; with its sign.
+  double largest_load() const { return load_.empty() ? 0 : load_[largest_]; }
+
+  /// Largest load and its time, the peak when something broke before the end, the stiffness.
+  void put_into(RunRecord &record) const;
+
+private:
+  std::vector<double> time_, load_, stress_, strain_;
+  std::size_t largest_ = 0; // row
+  std::int64_t n_broken_ = 0;
+  bool has_fallen_ = false, has_ended_ = false;
+};
+} // namespace ligament::program

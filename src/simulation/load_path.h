@@ -1,0 +1,41 @@
+// What still joins the two sides of the specimen: the smallest section that a load has to pass.
+#pragma once
+
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+/// Which faces carry.
+enum class Carrying
+{
+  now,
+  at_start // those that the run has broken, too; initial cracks stay open
+};
+
+/// Least area in m^2 of bonded faces whose removal leaves nothing between the two sides across the
+/// axis: the maximum flow from side to side when each face lets its area pass. Cells of the mesh
+/// don't break, nor what moves with them: infinite where they alone join the sides.
+template <int dim>
+double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carrying);
+
+/// Asks for the smallest section only when enough has broken since the last answer.
+template <int dim>
+class LoadPath
+{
+public:
+  /// The path is lost when no more than this share of the section of the start is left.
+  static constexpr double lost_share = 0.05;
+
+  explicit LoadPath(int axis) : axis_(axis) {}
+
+  /// The share of the section of the start that is left at present, once the path is lost. Cheap
+  /// while less has broken than would have to.
+  std::optional<double> lost(const CoupledBody<dim> &body);
+
+private:
+  int axis_;
+  double at_start_ = -1;    // m^2; unknown below 0
+  double at_least_ = 0;     // m^2, now
+  std::size_t counted_ = 0; // broken bonds that at_least_ knows of
+};
+} // namespace ligament::program

@@ -1,0 +1,75 @@
+#include "src/simulation/overlap_guard.h"
+
+#include "src/output/format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+template <int dim>
+std::string place(const Vector<dim> &x)
+{
+  std::string text;
+  for (int c = 0; c < dim; ++c)
+    text += (c ? ", " : "") + quantity(x[c], "m");
+  return "(" + text + ")";
+}
+} // namespace
+
+template <int dim>
+OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
+{
+  const auto *overlap = body.coupler->overlap();
+  if (!overlap || body.force->fracture().criterion == dem::FractureLaw::Criterion::none)
+    return;
+  watch_.assign(body.zone->state.n_owned, dem::Watch::none);
+  for (const auto &m : overlap->members)
+    watch_[m.particle] = m.pad ? dem::Watch::exempt : dem::Watch::watched;
+  body.force->set_noted_share(limit);
+}
+
+template <int dim>
+bool OverlapGuard<dim>::is_watched(const dem::BrokenBond<dim> &bond) const
+{
+  return std::max(watch_[bond.i], watch_[bond.j]) == dem::Watch::watched;
+}
+
+template <int dim>
+std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
+{
+  if (watch_.empty())
+    return {};
+  const auto &broken = body.force->broken_bonds();
+  for (; seen_ < broken.size(); ++seen_)
+    if (is_watched(broken[seen_])) {
+      ++n_broken_;
+      energy_ += broken[seen_].energy;
+    }
+  if (found_)
+    return {};
+  constexpr const char *remedy = "make /discrete_zone/region larger";
+  if (n_broken_ > 0) {
+    found_ = true;
+    const auto first =
+        std::find_if(broken.begin(), broken.end(), [this](const auto &b) { return is_watched(b); });
+    return fmt::format("{} in the overlap broke, the first at {}: the mesh there still carries as "
+                       "if {} had not; {}",
+                       n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
+                       place<dim>(first->position), n_broken_ == 1 ? "it" : "they", remedy);
+  }
+  const auto most = body.force->utilisation(body.zone->state, watch_);
+  if (most.share < limit)
+    return {};
+  found_ = true;
+  return fmt::format("a face in the overlap bears {:.0f} % of what breaks it, at {}: fracture "
+                     "comes near it; {}",
+                     100 * most.share, place<dim>(most.place), remedy);
+}
+
+template class OverlapGuard<2>;
+template class OverlapGuard<3>;
+} // namespace ligament::program

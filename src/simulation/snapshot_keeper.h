@@ -1,0 +1,48 @@
+// The motion of the particles at the last common times, for comparisons with other runs.
+#pragma once
+
+#include "src/output/run_folder.h"
+#include "src/output/snapshot.h"
+#include "src/simulation/coupled_body.h"
+
+#include <array>
+#include <optional>
+
+namespace ligament::program
+{
+/// Of all particles.
+template <int dim>
+struct Motion
+{
+  double time;                  // s
+  Components<dim> displacement; // m
+  Components<dim> velocity;     // m/s
+};
+
+/// The motion at `time` between two looks: positions of the times of both, velocities half a step
+/// `dt` before them, in s.
+template <int dim>
+Motion<dim> between(const Motion<dim> &before, const Motion<dim> &after, double dt, double time);
+
+/// Runs of one scene with other meshes, zones or steps stop at other times: the motion at exactly
+/// the common times (see common_time_index) is the cubic through positions and velocities of the
+/// two looks around them.
+template <int dim>
+class SnapshotKeeper
+{
+public:
+  /// To be called in every step in which both models stand at the same time, between forces and
+  /// kick; `interval` in s to the next one. Copies nothing unless a common time is near; with
+  /// `wanted` false keeps what there is.
+  void look(const CoupledBody<dim> &body, const coupling::StepTime &step, double interval,
+            bool wanted);
+
+  /// Writes what was kept, the latest first.
+  void write(const CoupledBody<dim> &body, const RunFolder &folder) const;
+
+private:
+  std::array<std::optional<Motion<dim>>, 3> kept_; // the later one first
+  std::optional<Motion<dim>> before_; // at the last look, when a common time follows it
+  double next_ = 0;                   // s, common time; 0 before the first look
+};
+} // namespace ligament::program

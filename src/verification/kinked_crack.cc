@@ -1,0 +1,116 @@
+#include "src/verification/kinked_crack.h"
+
+#include <Eigen/Dense>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace ligament::program
+{
+namespace
+{
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+constexpr int wing_elements = 30, crack_elements = 100;
+
+struct Element
+{
+  Vec2 centre, tangent;
+  double half; // m
+  bool open;   // else closed: slides only
+  Vec2 normal() const { return {-tangent[1], tangent[0]}; }
+};
+
+/// Stress of a unit slide and of a unit overlap of the element, over twice the shear modulus.
+std::array<Mat2, 2> stresses(const Element &e, const Vec2 &at, double nu)
+{
+  const double x = (at - e.centre).dot(e.tangent), y = (at - e.centre).dot(e.normal());
+  const double c = 1 / (4 * M_PI * (1 - nu)), left = x - e.half, right = x + e.half;
+  const double r1 = left * left + y * y, r2 = right * right + y * y;
+  const double fxy = c * (y / r1 - y / r2), fyy = -c * (left / r1 - right / r2);
+  const double fxyy = c * ((left * left - y * y) / (r1 * r1) - (right * right - y * y) / (r2 * r2));
+  const double fyyy = 2 * c * y * (left / (r1 * r1) - right / (r2 * r2));
+  Mat2 axes, slide, overlap;
+  axes << e.tangent, e.normal();
+  slide << 2 * fxy + y * fxyy, fyy + y * fyyy, fyy + y * fyyy, -y * fxyy;
+  overlap << fyy + y * fyyy, -y * fxyy, -y * fxyy, fyy - y * fyyy;
+  return {axes * slide * axes.transpose(), axes * overlap * axes.transpose()};
+}
+
+/// The discontinuities (slide, overlap of each element, over 1/2G) that clear the tractions.
+Eigen::VectorXd solve(const std::vector<Element> &elements, const Mat2 &remote, double friction,
+                      double nu)
+{
+  const int n = int(elements.size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(2 * n);
+  for (int i = 0; i < n; ++i) {
+    const Element &e = elements[i];
+    const Vec2 t = e.tangent, m = e.normal();
+    // Sliding: shear = friction times pressure, against the remote shear.
+    const double rubs = e.open ? 0 : std::copysign(friction, t.dot(remote * m));
+    const Vec2 along = t + rubs * m;
+    b[2 * i] = -along.dot(remote * m);
+    b[2 * i + 1] = e.open ? -m.dot(remote * m) : 0;
+    for (int j = 0; j < n; ++j) {
+      const auto s = stresses(elements[j], e.centre, nu);
+      for (int k = 0; k < 2; ++k) {
+        a(2 * i, 2 * j + k) = along.dot(s[k] * m);
+        if (e.open)
+          a(2 * i + 1, 2 * j + k) = m.dot(s[k] * m);
+      }
+    }
+    if (!e.open)
+      a(2 * i + 1, 2 * i + 1) = 1;
+  }
+  return a.partialPivLu().solve(b);
+}
+
+std::vector<Element> line(const Vec2 &from, const Vec2 &direction, double length, int n)
+{
+  std::vector<Element> elements;
+  for (int k = 0; k < n; ++k)
+    elements.push_back(
+        {from + direction * length * (k + 0.5) / n, direction, length / n / 2, true});
+  return elements;
+}
+} // namespace
+
+double stress_intensity(const KinkedCrack &c)
+{
+  const Vec2 x(1, 0);
+  Mat2 tension = Mat2::Zero(), pressure = Mat2::Zero();
+  tension(1, 1) = 1;
+  pressure(1, 1) = -1;
+  const auto straight = line(-c.wing * x, x, 2 * c.wing, 2 * wing_elements);
+  const double end = -solve(straight, tension, 0, c.poissons_ratio)[2 * straight.size() - 1];
+
+  const Vec2 t(std::cos(c.inclination), std::sin(c.inclination)),
+      w(std::cos(c.inclination + c.kink), std::sin(c.inclination + c.kink));
+  std::vector<Element> elements;
+  for (int k = 0; k < crack_elements; ++k) { // finer towards the ends
+    const double from = -c.half_length * std::cos(M_PI * k / crack_elements),
+                 to = -c.half_length * std::cos(M_PI * (k + 1) / crack_elements);
+    elements.push_back({t * (from + to) / 2, t, (to - from) / 2, false});
+  }
+  for (const double side : {-1., 1.})
+    for (const Element &e : line(side * c.half_length * t, side * w, c.wing, wing_elements))
+      elements.push_back(e);
+  const double opening =
+      -solve(elements, pressure, c.friction, c.poissons_ratio)[2 * elements.size() - 1];
+  return opening / end * std::sqrt(M_PI * c.wing);
+}
+
+double largest_stress_intensity(KinkedCrack crack)
+{
+  double largest = 0;
+  for (double degrees = 40; degrees <= 90; degrees += 5)
+    for (const double sign : {-1., 1.}) {
+      crack.kink = sign * degrees * M_PI / 180;
+      largest = std::max(largest, stress_intensity(crack));
+    }
+  return largest;
+}
+} // namespace ligament::program

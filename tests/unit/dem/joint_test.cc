@@ -1,0 +1,198 @@
+// Joints of initial cuts: they press along the cut's normal, slide without interlocking, rub.
+#include "particles/random_packing.h"
+#include "tests/unit/dem/cases.h"
+
+namespace ligament::dem::testing
+{
+/// A box of n spacings, random or on a lattice turned against it, cut through at a height where no
+/// row lies: the cut runs across all cells it meets.
+template <typename C>
+Packing<C::dim> cut_box(double n, bool random)
+{
+  constexpr int dim = C::dim;
+  auto lattice = box<C>(n);
+  const double y = 0.13 * lattice.spacing;
+  const Vector<dim> lower = 2 * lattice.lower, upper = 2 * lattice.upper;
+  if constexpr (dim == 2)
+    lattice.cracks = {{{lower[0], y}, {upper[0], y}}};
+  else
+    lattice.cracks = {{{lower[0], y, lower[2]},
+                       {lower[0], y, upper[2]},
+                       {upper[0], y, upper[2]},
+                       {upper[0], y, lower[2]}}};
+  if (!random)
+    return particles::make_lattice_packing<dim>(lattice);
+  particles::RandomParameters<dim> seeds;
+  static_cast<particles::SpecimenParameters<dim> &>(seeds) = lattice;
+  seeds.size_ratio = 2;
+  return particles::make_random_packing<dim>(seeds).packing;
+}
+
+template <typename C>
+struct CutBody
+{
+  static constexpr int dim = C::dim;
+
+  CutBody(bool random, double friction, double n = dim == 2 ? 9 : 5)
+      : packing(cut_box<C>(n, random)), material{7e10, 0.3, 2500, PlaneMode::strain, friction},
+        force(packing, material, {})
+  {
+    particles::fill_particles(packing, material.density, p);
+    for (const auto &face : packing.faces)
+      if (face.cracked)
+        stiffness += 2 * material.shear_modulus() * face.area / (face.q_i + face.q_j);
+  }
+  bool is_above(int i) const { return packing.centre[1][i] > 0.13 * packing.spacing; }
+  /// Moves the upper part, in spacings, and computes.
+  void place(const Vector<dim> &u)
+  {
+    for (int i = 0; i < p.size(); ++i)
+      for (int c = 0; c < dim; ++c)
+        p.displacement[c][i] = is_above(i) ? u[c] * packing.spacing : 0;
+    force.compute(p, time += 1e-9);
+  }
+  Vector<dim> force_above() const
+  {
+    Vector<dim> sum = Vector<dim>::Zero();
+    for (int i = 0; i < p.size(); ++i)
+      if (is_above(i))
+        sum += get(p.force, i);
+    return sum;
+  }
+
+  Packing<dim> packing;
+  DemMaterial material;
+  ManyBodyForce<dim> force;
+  Particles<dim> p;
+  double stiffness = 0, time = 0; // N/m of the whole cut; s
+};
+
+/// A direction in the cut.
+template <int dim>
+Vector<dim> along()
+{
+  Vector<dim> t = Vector<dim>::Unit(0);
+  if (dim == 3)
+    t[2] = 0.4;
+  return t.normalized();
+}
+
+template <typename C>
+struct Joint : ::testing::Test
+{
+};
+TYPED_TEST_SUITE(Joint, Cases);
+
+TYPED_TEST(Joint, FlanksSlideWithoutInterlocking)
+{
+  constexpr int dim = TypeParam::dim;
+  for (const bool random : {false, true}) {
+    CutBody<TypeParam> body(random, 0.);
+    for (int s = 1; s <= 40; ++s) {
+      body.place(0.05 * s * along<dim>());
+      for (int i = 0; i < body.p.size(); ++i)
+        ASSERT_LT(get(body.p.force, i).norm(), 1e-12 * body.stiffness * body.packing.spacing) << s;
+    }
+  }
+}
+
+TYPED_TEST(Joint, ClosedCutPressesAlongItsNormalWithTheStiffnessOfItsFaces)
+{
+  constexpr int dim = TypeParam::dim;
+  for (const bool random : {false, true}) {
+    CutBody<TypeParam> body(random, 0.);
+    const double closed = 1e-4;
+    for (const double slide : {0., 0.2, 0.6, 0.9}) { // from 0.5 on to the neighbours
+      body.place(slide * along<dim>() - closed * Vector<dim>::Unit(1));
+      const Vector<dim> f = body.force_above(),
+                        expected =
+                            body.stiffness * closed * body.packing.spacing * Vector<dim>::Unit(1);
+      EXPECT_LT((f - expected).norm(), 1e-9 * expected.norm()) << slide;
+    }
+  }
+}
+
+TYPED_TEST(Joint, SlidingRubsWithTheCoefficientAndBooksIt)
+{
+  constexpr int dim = TypeParam::dim;
+  const double closed = 1e-4, mu = 0.4;
+  for (const bool random : {false, true}) {
+    CutBody<TypeParam> body(random, mu);
+    const double d = body.packing.spacing;
+    const int steps = 900;
+    double work = 0, before = 0;
+    body.place(-closed * Vector<dim>::Unit(1));
+    const double pressed = body.force.potential_energy(body.p);
+    for (int s = 1; s <= steps; ++s) {
+      body.place(0.9 * s / steps * along<dim>() - closed * Vector<dim>::Unit(1));
+      const double drag = -body.force_above().dot(along<dim>());
+      work += 0.5 * (drag + before) * 0.9 / steps * d;
+      before = drag;
+    }
+    const double limit = mu * body.stiffness * closed * d;
+    EXPECT_NEAR(before, limit, 1e-9 * limit);
+    const double stored = body.force.potential_energy(body.p) - pressed;
+    EXPECT_NEAR(body.force.frictional_work() + stored, work, 1e-6 * work);
+    EXPECT_NEAR(body.force.frictional_work(), limit * 0.9 * d, 1e-3 * limit * d);
+  }
+}
+
+TYPED_TEST(Joint, ForceIsMinusTheGradientOfTheEnergy)
+{
+  constexpr int dim = TypeParam::dim;
+  CutBody<TypeParam> body(true, 0., dim == 2 ? 6 : 4);
+  auto &p = body.p;
+  const double d = body.packing.spacing, h = 1e-6;
+  body.place(0.2 * along<dim>() - 0.01 * Vector<dim>::Unit(1));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
+  for (int i = 0; i < p.size(); ++i) {
+    for (auto &u : p.displacement)
+      u[i] += d * uniform(random);
+    Spin<dim> turn;
+    for (int c = 0; c < n_spins<dim>; ++c)
+      turn[c] = uniform(random);
+    turn_by<dim>(p, i, turn);
+  }
+  body.force.compute(p, 1);
+  const auto force = p.force;
+  const auto torque = p.torque;
+  double scale = 0;
+  for (int i = 0; i < p.size(); ++i)
+    scale = std::max(scale, get(force, i).norm());
+  int n_tested = 0;
+  for (const auto &face : body.packing.faces) {
+    if (!face.cracked || ++n_tested > 5)
+      continue;
+    const int i = face.i;
+    for (int c = 0; c < dim; ++c) {
+      const double at = p.displacement[c][i];
+      p.displacement[c][i] = at + h * d;
+      const double more = body.force.potential_energy(p);
+      p.displacement[c][i] = at - h * d;
+      const double less = body.force.potential_energy(p);
+      p.displacement[c][i] = at;
+      EXPECT_NEAR(force[c][i], (less - more) / (2 * h * d), 1e-4 * scale);
+    }
+    for (int c = 0; c < n_spins<dim>; ++c) {
+      const Spin<dim> turn = h * Spin<dim>::Unit(c);
+      turn_by<dim>(p, i, turn);
+      const double more = body.force.potential_energy(p);
+      turn_by<dim>(p, i, Spin<dim>(-2 * turn));
+      const double less = body.force.potential_energy(p);
+      turn_by<dim>(p, i, turn);
+      EXPECT_NEAR(torque[c][i], (less - more) / (2 * h), 1e-3 * scale * d);
+    }
+  }
+  // No net force or torque of the whole.
+  Vector<dim> net = Vector<dim>::Zero();
+  Spin<dim> moment = Spin<dim>::Zero();
+  for (int i = 0; i < p.size(); ++i) {
+    net += get(force, i);
+    moment += get(torque, i) +
+              cross(Vector<dim>(get(p.reference, i) + get(p.displacement, i)), get(force, i));
+  }
+  EXPECT_LT(net.norm(), 1e-10 * scale);
+  EXPECT_LT(moment.norm(), 1e-9 * scale * d);
+}
+} // namespace ligament::dem::testing

@@ -1,0 +1,62 @@
+// What counts of a load over time: until it has fallen, or until the run leaves its range.
+#include "src/simulation/load_curve.h"
+
+#include <gtest/gtest.h>
+
+using namespace ligament::program;
+
+namespace
+{
+/// Loads after each other with the faces broken by then; strain is the time.
+RunRecord record_of(const std::vector<std::pair<double, int>> &rows, std::size_t ends_at = 1000)
+{
+  LoadCurve curve;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i == ends_at)
+      curve.end();
+    curve.add(double(i), {rows[i].first, 10 * rows[i].first, 0, double(i)}, rows[i].second);
+  }
+  RunRecord record;
+  curve.put_into(record);
+  return record;
+}
+
+TEST(LoadCurve, ReboundsAreNoPeak)
+{
+  for (const double sign : {1., -1.}) {
+    const RunRecord r = record_of({{0, 0},
+                                   {sign * 1, 0},
+                                   {sign * 2, 0},
+                                   {sign * 3, 2},
+                                   {sign * 0.2, 30},
+                                   {sign * 4, 30},
+                                   {sign * -5, 30}});
+    EXPECT_EQ(r.peak_load.value(), sign * 3);
+    EXPECT_EQ(r.peak_stress.value(), sign * 30);
+    EXPECT_EQ(r.peak_time.value(), 3);
+  }
+}
+
+// A load of 11 % is one still: arrested cracks go on.
+TEST(LoadCurve, ALoadThatHasNotFallenGoesOn)
+{
+  EXPECT_EQ(*record_of({{0, 0}, {1, 1}, {0.11, 5}, {2, 8}}).peak_load, 2);
+}
+
+TEST(LoadCurve, WavesWithoutFractureHaveNoPeak)
+{
+  const RunRecord r = record_of({{0, 0}, {1, 0}, {-2, 0}, {0.1, 0}, {1.5, 0}});
+  EXPECT_FALSE(r.peak_load);
+  EXPECT_FALSE(r.peak_time);
+  EXPECT_EQ(*r.largest_load, -2);
+  EXPECT_FALSE(r.stiffness);
+  EXPECT_FALSE(record_of({{0, 0}, {0, 0}}).largest_load);
+}
+
+TEST(LoadCurve, WhatComesAfterTheGuardDoesNotCount)
+{
+  const RunRecord r = record_of({{0, 0}, {1, 0}, {2, 0}, {3, 4}}, 3);
+  EXPECT_EQ(*r.largest_load, 2);
+  EXPECT_FALSE(r.peak_load) << "nothing had broken by then";
+}
+} // namespace

@@ -1,0 +1,94 @@
+// The section that is left between two sides: mesh and bonds, ligaments, bridges and fragments.
+#include "src/simulation/load_path.h"
+#include "tests/support/small_plate.h"
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+const std::string square = R"(/discrete_zone/packing="square")";
+
+std::vector<std::string> cuts(const std::vector<std::array<double, 3>> &from_to_y)
+{
+  std::string list;
+  for (const auto &[from, to, y] : from_to_y)
+    list += fmt::format("{}{{\"points\": [[{}, {}], [{}, {}]]}}", list.empty() ? "" : ", ", from, y,
+                        to, y);
+  return {"/specimen/cracks=[" + list + "]", square};
+}
+
+double section(const SmallBody &small, int axis)
+{
+  return smallest_section(small.body, axis, Carrying::now);
+}
+
+// Square packing of spacing 1: each column of particles is a face of area 1.
+TEST(LoadPath, SectionIsTheIntactWidth)
+{
+  for (const auto &far : {"/coupling/overlap_cells=2", "/far_field=none"}) {
+    SCOPED_TRACE(far);
+    const auto with = [&](const std::vector<std::array<double, 3>> &list) {
+      return SmallBody(small_scene(cuts(list) + std::vector<std::string>{far}));
+    };
+    EXPECT_NEAR(section(with({{-4, 4, 0}}), 1), 24 - 8, 1e-9);
+    EXPECT_NEAR(section(with({{-12, 9, 0}}), 1), 3, 1e-9);
+    EXPECT_EQ(section(with({{-12, 12, 0}}), 1), 0);
+    // The halves still reach from left to right.
+    EXPECT_GT(section(with({{-12, 12, 0}}), 0), 30);
+  }
+}
+
+// A strip between two cuts that hangs on one half by two bonds, on the other by one.
+TEST(LoadPath, AFragmentBetweenTheHalvesIsAsWideAsItsNarrowestBridge)
+{
+  const SmallBody small(small_scene(cuts({{-12, 10, 3}, {-11, 12, -3}})));
+  EXPECT_NEAR(section(small, 1), 1, 1e-9);
+}
+
+// Cuts that overlap: the strip between them carries by its own width, along faces that are parallel
+// to the load.
+TEST(LoadPath, AStripAcrossTheLoadCarriesByItsThickness)
+{
+  const SmallBody small(small_scene(cuts({{-12, 5, 2}, {-5, 12, -2}})));
+  EXPECT_NEAR(section(small, 1), 4, 1e-9);
+}
+
+TEST(LoadPath, AMeshHoldsTogether)
+{
+  const SmallBody small(
+      small_scene({"/discrete_zone=none", "/far_field/levels=1", "/far_field/cells_per_level=2"}));
+  EXPECT_TRUE(std::isinf(section(small, 0)));
+  EXPECT_TRUE(std::isinf(section(small, 1)));
+}
+
+// Without lateral contraction only the faces that are opened bear a tension.
+TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
+{
+  SmallBody small(
+      small_scene({"/specimen/cracks=[{\"points\": [[-12, 0], [-2, 0]]}]", square,
+                   "/material/poissons_ratio=0", "/far_field=none",
+                   R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"}));
+  auto &body = small.body;
+  auto &state = body.zone->state;
+  LoadPath<2> path(1);
+  double time = 0;
+  const auto open = [&](double from, double to) {
+    for (int i = 0; i < state.n_owned; ++i)
+      if (state.reference[1][i] > 0 && state.reference[0][i] > from && state.reference[0][i] < to)
+        state.displacement[1][i] = 2e-3;
+    body.force->compute(state, ++time);
+    return path.lost(body);
+  };
+  EXPECT_FALSE(path.lost(body));
+  EXPECT_FALSE(open(-12, 0)); // 12 of 14 are left
+  EXPECT_FALSE(open(0, 11));  // 1 of 14: more than 5 %
+  EXPECT_EQ(body.force->broken_bonds().size(), 13u);
+  EXPECT_NEAR(section(small, 1), 1, 1e-9);
+  EXPECT_NEAR(smallest_section(body, 1, Carrying::at_start), 14, 1e-9);
+  const auto left = open(11, 12);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(*left, 0);
+}
+} // namespace
