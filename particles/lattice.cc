@@ -121,10 +121,15 @@ Lattice<dim>::Lattice(const LatticeParameters<dim> &parameters)
 template <int dim>
 std::int64_t Lattice<dim>::global_id(const LatticeIndex<dim> &k)
 {
-  constexpr int bits = dim == 2 ? 31 : 21;
+  // Below 2^53, so that they pass through tables of doubles unharmed.
+  constexpr int bits = dim == 2 ? 26 : 17;
+  constexpr std::int64_t half = std::int64_t(1) << (bits - 1);
   std::int64_t id = 0;
-  for (int a = dim - 1; a >= 0; --a)
-    id = (id << bits) + k[a] + (std::int64_t(1) << (bits - 1));
+  for (int a = dim - 1; a >= 0; --a) {
+    core::require(-half <= k[a] && k[a] < half,
+                  "the lattice has too many particles in one direction: make the spacing larger");
+    id = (id << bits) + k[a] + half;
+  }
   return id;
 }
 

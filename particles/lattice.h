@@ -39,8 +39,8 @@ public:
   /// From a point to another, in m.
   Vector<dim> step(const LatticeIndex<dim> &k) const { return basis_ * k.template cast<double>(); }
 
-  /// A number, not negative, that is unique for components within +-2^20 (3D) or +-2^30 (2D) and
-  /// grows along rows, then layers.
+  /// A number, not negative and below 2^53, that is unique and grows along rows, then layers.
+  /// Components lie within +-2^16 (3D) or +-2^25 (2D), else throws core::InputError.
   static std::int64_t global_id(const LatticeIndex<dim> &k);
 
   double spacing;     // m

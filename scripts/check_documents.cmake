@@ -18,7 +18,7 @@ function(read_text file result)
   set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
-file(GLOB documents RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/examples/*.md
+file(GLOB documents RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/docs/manual/*.md ${ROOT}/examples/*.md
   ${ROOT}/examples/*/*.md)
 foreach(document IN LISTS documents)
   get_filename_component(folder ${ROOT}/${document} DIRECTORY)

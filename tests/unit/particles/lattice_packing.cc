@@ -173,7 +173,11 @@ void check_zone(const LatticeValues &lattice, double size, bool band)
 
     std::unordered_map<std::int64_t, int> number;
     for (int i = 0; i < twin.size(); ++i)
+    {
       EXPECT_TRUE(number.emplace(twin.global_id[i], i).second);
+      // Tables keep numbers as doubles: ids must come back.
+      EXPECT_LT(twin.global_id[i], std::int64_t(1) << 53);
+    }
     std::vector<int> in_twin(zone.size());
     std::vector<char> in_zone(twin.size());
     for (int i = 0; i < zone.size(); ++i) {
