@@ -23,6 +23,6 @@ struct SceneFigure
 /// All that applies to the scene. Of a scene that was refused: none.
 std::vector<SceneFigure> judge(const RandomScene &scene, const SceneRuns &runs);
 
-/// Why the coupled run says less than it could: "guard", "breaks elsewhere", ...; empty: nothing.
+/// Why the coupled run says less than it could: "stopped", "breaks elsewhere", ...; empty: nothing.
 std::string remark(const RandomScene &scene, const SceneRuns &runs);
 } // namespace ligament::program

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 
 namespace ligament::program
 {
@@ -34,15 +33,6 @@ Scene read(const Json &json)
   return *input.scene;
 }
 
-long count_warnings(const std::string &log)
-{
-  std::ifstream file(log);
-  long n = 0;
-  for (std::string line; std::getline(file, line);)
-    n += line.find(" s warning ") != std::string::npos;
-  return n;
-}
-
 template <int dim>
 RunRecord simulate(const Scene &scene, const RunFolder &folder)
 {
@@ -60,7 +50,10 @@ SceneRun run(const Json &json, const std::string &path)
   run.broken = read_broken_bonds(folder.broken_bonds());
   std::stable_sort(run.broken.begin(), run.broken.end(),
                    [](const auto &a, const auto &b) { return a.time < b.time; });
-  run.n_warnings = count_warnings(folder.log());
+  // Those without an energy are about input and files.
+  const auto &warnings = run.record.warnings;
+  run.n_warnings = std::count_if(warnings.begin(), warnings.end(),
+                                 [](const RunWarning &w) { return w.energy.has_value(); });
   return run;
 }
 

@@ -18,7 +18,7 @@ struct SceneRun
   RunRecord record;
   Table history;
   std::vector<BrokenBond> broken; // in the order of time
-  long n_warnings = 0;            // lines of the log
+  long n_warnings = 0;            // about the result
 
   /// s; empty when nothing broke.
   std::optional<double> onset() const;
