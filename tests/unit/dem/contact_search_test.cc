@@ -39,7 +39,7 @@ struct TwoParticles
 template <int dim>
 void check_sizes()
 {
-  const TwoParticles<dim> met(7, 2.9);
+  const TwoParticles<dim> met(7, 3.2);
   ASSERT_EQ(met.contacts.all().size(), 1u);
   const auto &face = met.contacts.all()[0].face;
   // Half the sum of the diameters, which the contact point divides as the sizes do; the face is in
@@ -48,6 +48,9 @@ void check_sizes()
   EXPECT_DOUBLE_EQ(face.area, 5 * std::pow(1.5, dim - 1));
   EXPECT_DOUBLE_EQ(face.lever_i.norm(), 0.5);
   EXPECT_DOUBLE_EQ(face.lever_j.norm(), 2.5);
+
+  // Found late they touch at the distance that they have: no energy comes from nowhere.
+  EXPECT_DOUBLE_EQ(TwoParticles<dim>(7, 2.9).contacts.all()[0].face.distance, 2.9);
 
   // Those nearer than that in the reference touch at that distance: no force appears at rest.
   const TwoParticles<dim> near(1.6, 1.6);

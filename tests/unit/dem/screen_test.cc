@@ -231,19 +231,19 @@ TEST(Screen, NoBondAboveTheStrengthIsMissed)
   expect_all_found<3>(lattice<3>(Kind::simple_cubic, 6, 1));
   expect_all_found<3>(random_packing<3>(5, 1));
 }
-/// Against the tensions of an intact twin: of the watched particles, of one pair, of none.
+/// Against the weakest bonds of an intact twin: of the watched particles, of one pair, of none.
 template <int dim>
-void expect_utilisation_of_watched_faces(const Packing<dim> &packing)
+void expect_utilisation_of_watched_faces(const Packing<dim> &packing,
+                                         FractureLaw::Criterion criterion)
 {
   const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
   const auto p = state(packing, 0.02, 3);
-  const ManyBodyForce<dim> intact(packing, material, {});
+  const ManyBodyForce<dim> intact(packing, material, {}, {criterion, 1});
   std::vector<double> tension(packing.size());
   for (int i = 0; i < packing.size(); ++i)
-    tension[i] = intact.max_tension(p, {i});
+    tension[i] = intact.weakest_bond(p, {i}).utilisation;
   const double strength = 1.1 * *std::max_element(tension.begin(), tension.end());
-  ManyBodyForce<dim> force(packing, material, {},
-                           {FractureLaw::Criterion::maximum_tension, strength});
+  ManyBodyForce<dim> force(packing, material, {}, {criterion, strength});
   constexpr double noted = 0.3;
   force.set_noted_share(noted);
   auto moved = p;
@@ -281,9 +281,13 @@ void expect_utilisation_of_watched_faces(const Packing<dim> &packing)
 
 TEST(Screen, UtilisationIsThatOfTheMostLoadedWatchedFace)
 {
-  expect_utilisation_of_watched_faces<2>(lattice<2>(Kind::hexagonal, 20, 1));
-  expect_utilisation_of_watched_faces<2>(random_packing<2>(10, 2));
-  expect_utilisation_of_watched_faces<3>(lattice<3>(Kind::fcc, 5, 1));
-  expect_utilisation_of_watched_faces<3>(random_packing<3>(5, 1));
+  for (const auto criterion :
+       {FractureLaw::Criterion::maximum_tension, FractureLaw::Criterion::face_tension})
+  {
+    expect_utilisation_of_watched_faces<2>(lattice<2>(Kind::hexagonal, 20, 1), criterion);
+    expect_utilisation_of_watched_faces<2>(random_packing<2>(10, 2), criterion);
+    expect_utilisation_of_watched_faces<3>(lattice<3>(Kind::fcc, 5, 1), criterion);
+    expect_utilisation_of_watched_faces<3>(random_packing<3>(5, 1), criterion);
+  }
 }
 } // namespace ligament::dem::testing

@@ -31,7 +31,8 @@ TEST(Report, HoldsEverythingInOneFile)
   core::write_file(folder.pictures() + "/peak.png", png);
   core::write_file(folder.resolved_scene(), "{\"title\": \"a & b\"}");
   SyntheticRun().write("report_reference");
-  compare("reported", "report_reference");
+  CompareResult comparison = compare("reported", "report_reference");
+  write_comparison(comparison, "reported");
 
   const std::string path = write_report("reported");
   EXPECT_EQ(path, folder.report());
