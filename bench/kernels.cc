@@ -3,6 +3,7 @@
 #include "bench/roofline.h"
 #include "core/dispatch.h"
 #include "dem/many_body_force.h"
+#include "dem/principal_tension.h"
 #include "particles/lattice_packing.h"
 #include "particles/particle_solver.h"
 #include "particles/random_packing.h"
@@ -157,8 +158,10 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
   a.pressure = pressure.data();
   dem::RowWindow window;
   std::vector<dem::RowRange> exceeded;
-  return 1e-6 * n *
-         bench::rate([&] { kernel.forces(a, bonds.segments(), 1e3, {}, window, exceeded); });
+  return 1e-6 * n * bench::rate([&] {
+           kernel.forces(a, bonds.segments(), {1e3, dem::PrincipalTension::tangent}, {}, window,
+                         exceeded);
+         });
 }
 
 template <int dim>
