@@ -159,7 +159,7 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
   dem::RowWindow window;
   std::vector<dem::RowRange> exceeded;
   return 1e-6 * n * bench::rate([&] {
-           kernel.forces(a, bonds.segments(), {1e3, dem::PrincipalTension::tangent}, {}, window,
+           kernel.forces(a, bonds.segments(), {1e3, dem::PrincipalTension<dim>::tangent}, {}, window,
                          exceeded);
          });
 }

@@ -75,7 +75,7 @@ template <int dim>
 double ManyBodyForce<dim>::size_factor(const Bond<dim> &b) const
 {
   return fracture_.whole_face > 0
-             ? PrincipalTension::size_factor<dim>(b.area / fracture_.whole_face)
+             ? PrincipalTension<dim>::size_factor(b.area / fracture_.whole_face)
              : 1;
 }
 
@@ -100,7 +100,7 @@ BreakScreen ManyBodyForce<dim>::breaking_screen(bool of_table) const
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
   const bool principal = fracture_.criterion == FractureLaw::Criterion::maximum_tension;
   return {noted_share_ * least / largest_size_factor_ * (1 - round_off),
-          principal ? PrincipalTension::tangent : 0};
+          principal ? PrincipalTension<dim>::tangent : 0};
 }
 
 template <int dim>
@@ -117,7 +117,7 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
   t.utilisation = normal;
   if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
     t.utilisation = size_factor(b) *
-                    (normal + PrincipalTension::tangent * (t.traction - normal * t.normal).norm());
+                    (normal + PrincipalTension<dim>::tangent * (t.traction - normal * t.normal).norm());
   t.utilisation /= strength_of(b);
   return t;
 }
@@ -214,9 +214,9 @@ void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &b
   };
   for (auto &t : bonds) {
     const Vector<dim> e =
-        PrincipalTension::direction(Strain<dim>((of(t.bond.i) + of(t.bond.j)) / 2));
+        PrincipalTension<dim>::direction(Strain<dim>((of(t.bond.i) + of(t.bond.j)) / 2));
     const double cosine = t.normal.dot(e);
-    t.utilisation = std::abs(cosine) < PrincipalTension::cone
+    t.utilisation = std::abs(cosine) < PrincipalTension<dim>::cone
                         ? 0
                         : size_factor(t.bond) * t.traction.dot(e) / (cosine * strength_of(t.bond));
   }
@@ -240,7 +240,7 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   find_principal_tension(found, p, work_.pressure);
   std::stable_sort(found.begin(), found.end(),
                    [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
-  PlacesApart<dim> places(PrincipalTension::apart * spacing_);
+  PlacesApart<dim> places(PrincipalTension<dim>::apart * spacing_);
   for (const auto &t : found) {
     if (t.utilisation < 1)
       break;

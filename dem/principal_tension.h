@@ -11,24 +11,22 @@
 
 namespace ligament::dem
 {
+template <int dim>
 struct PrincipalTension
 {
-  /// |n.e1| of faces that are asked: 1/sqrt(3), the best aligned ones of the simple cubic lattice
-  /// under a stress along its diagonal, with room for rounding.
-  static constexpr double cone = 0.577;
+  /// |n.e1| of faces that are asked, theory.md eq. (D12).
+  static constexpr double cone = dim == 2 ? 0.577 : 0.4;
   /// tan of that inclination: no tension is above sigma + tangent |tau|.
-  static constexpr double tangent = 1.4155;
+  static constexpr double tangent = dim == 2 ? 1.4155 : 2.2913;
   /// Of two faces closer than this (units of d) one alone breaks in a step.
   static constexpr double apart = 1.6;
 
   /// S_0 of eq. (D12b) in m^2, of unit thickness in 2D: the face of the densest lattice.
-  template <int dim>
   static double whole_face(double spacing)
   {
     return dim == 2 ? spacing / std::sqrt(3.) : spacing * spacing / std::sqrt(8.);
   }
   /// By which a face of so many whole faces counts its tension, eq. (D12b).
-  template <int dim>
   static double size_factor(double area_ratio)
   {
     return dim == 2 ? std::pow(std::max(area_ratio, 0.7), 0.3)
@@ -36,16 +34,16 @@ struct PrincipalTension
   }
 
   /// Direction of the largest principal stress (Voigt order), unit.
-  static Vector<2> direction(const Strain<2> &stress)
+  static Vector<dim> direction(const Strain<dim> &s)
   {
-    const double angle = 0.5 * std::atan2(2 * stress[2], stress[0] - stress[1]);
-    return {std::cos(angle), std::sin(angle)};
-  }
-  static Vector<3> direction(const Strain<3> &s)
-  {
-    Eigen::Matrix3d m;
-    m << s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2];
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m).eigenvectors().col(2);
+    if constexpr (dim == 2) {
+      const double angle = 0.5 * std::atan2(2 * s[2], s[0] - s[1]);
+      return {std::cos(angle), std::sin(angle)};
+    } else {
+      Eigen::Matrix3d m;
+      m << s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2];
+      return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m).eigenvectors().col(2);
+    }
   }
 };
 } // namespace ligament::dem

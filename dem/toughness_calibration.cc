@@ -1,5 +1,6 @@
 #include "dem/toughness_calibration.h"
 
+#include "dem/crack_strip.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "particles/linear_equilibrium.h"
@@ -91,7 +92,7 @@ void lay_out(particles::SpecimenParameters<dim> &p, const CrackPatch &patch)
 template <int dim>
 FractureLaw unit_law(FractureLaw::Criterion criterion)
 {
-  return {criterion, 1., {}, PrincipalTension::whole_face<dim>(spacing)};
+  return {criterion, 1., {}, PrincipalTension<dim>::whole_face(spacing)};
 }
 
 /// A crack along x in a packing laid out for it, which breaks face after face while the body around
@@ -226,13 +227,9 @@ RunningCrack<dim> crack_in_sample(const particles::RandomParameters<dim> &packin
 }
 
 /// A hard face breaks in the wave of an easier one before it: what holds a crack is the stretch of
-/// 1.5 d in which the largest factor is least. The first stretch belongs to the cut. In 3D the
-/// first face: a front that fits into a slab is no front that runs.
-template <int dim>
-double running_factor(RunningCrack<dim> crack)
+/// 1.5 d in which the largest factor is least. The first stretch belongs to the cut.
+double running_factor(RunningCrack<2> crack)
 {
-  if (dim == 3)
-    return crack.advance();
   constexpr double stretch = 1.5, whole = 6; // d
   std::vector<double> at, factor;
   double least = std::numeric_limits<double>::infinity();
@@ -248,6 +245,51 @@ double running_factor(RunningCrack<dim> crack)
     least = std::min(least, largest);
   }
   return least;
+}
+
+/// Of the crack that runs in a body of this kind, whose tip lies at (x, y) = shift, in d.
+template <int dim>
+double running_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+                      const DemMaterial &material, FractureLaw::Criterion criterion,
+                      const CrackAxes<dim> &crack, const Vector<2> &shift)
+{
+  if constexpr (dim == 2)
+    return running_factor(crack_in_lattice<2>(kind, orientation, material, criterion, crack,
+                                              {shift, 15, 0, tensile_t_stress}));
+  else {
+    const CrackStrip strip;
+    particles::LatticeParameters<3> cracked, whole;
+    cracked.kind = whole.kind = kind;
+    cracked.orientation = whole.orientation = in_crack_axes(orientation, crack);
+    strip.lay_out<3>(cracked, shift);
+    strip.lay_out_whole<3>(whole);
+    return strip.factor<3>(particles::make_lattice_packing<3>(cracked),
+                           particles::make_lattice_packing<3>(whole), material, criterion);
+  }
+}
+template <int dim>
+double running_factor(const particles::RandomParameters<dim> &packing, int seed,
+                      const DemMaterial &material, FractureLaw::Criterion criterion)
+{
+  if constexpr (dim == 2)
+    return running_factor(
+        crack_in_sample<2>(packing, seed, material, criterion, {{0, 0}, 12, 0, tensile_t_stress}));
+  else {
+    const CrackStrip strip;
+    const auto lay_out_sample = [&](auto &&lay_out) {
+      particles::RandomParameters<3> sample;
+      sample.seed = seed;
+      sample.relaxation_sweeps = packing.relaxation_sweeps;
+      sample.size_ratio = packing.size_ratio;
+      lay_out(sample);
+      return particles::make_random_packing<3>(sample).packing;
+    };
+    return strip.factor<3>(lay_out_sample([&](auto &p) {
+                             strip.lay_out<3>(p, {0, 0});
+                           }),
+                           lay_out_sample([&](auto &p) { strip.lay_out_whole<3>(p); }), material,
+                           criterion);
+  }
 }
 
 /// Whether a row (layer) of the lattice lies in the plane of the crack: all tips are alike.
@@ -290,8 +332,7 @@ double calibrate_toughness(const particles::RandomParameters<dim> &packing,
   constexpr int n = dim == 2 ? 8 : 4;
   double sum = 0;
   for (int k = 1; k <= n; ++k) // seeds that nobody chooses for a specimen
-    sum += running_factor(crack_in_sample<dim>(packing, 1000003 + 7919 * k, material, criterion,
-                                               {{0, 0}, dim == 2 ? 12. : 6., 4, tensile_t_stress}));
+    sum += running_factor<dim>(packing, 1000003 + 7919 * k, material, criterion);
   return sum / n;
 }
 
@@ -305,9 +346,7 @@ double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orienta
     shifts = {{0.1, 0.05}, {0.45, 0.3}, {0.1, -0.3}};
   double sum = 0;
   for (const Vector<2> &shift : shifts)
-    sum += running_factor(
-        crack_in_lattice<dim>(kind, orientation, material, criterion, crack,
-                              {shift, dim == 2 ? 15. : 6., 2 * std::sqrt(2.), tensile_t_stress}));
+    sum += running_factor<dim>(kind, orientation, material, criterion, crack, shift);
   return sum / double(shifts.size());
 }
 

@@ -31,15 +31,15 @@ struct CrackPatch
 };
 
 /// Raised whenever calibrate_toughness answers otherwise: what was kept before is found anew.
-inline constexpr int toughness_method = 1;
+inline constexpr int toughness_method = 2;
 
 /// c for mode I on a lattice at this orientation (LatticeParameters); strength = c K_Ic / sqrt(d)
 /// then lets a crack run at K_Ic whatever d (theory.md section 1.6).
 ///
 /// The crack runs 6 d, face after face, with the stress along it that a crack of 2a = 80 d has
 /// under tension. A face that is harder than those before it breaks in their wave: c is the least
-/// of the largest factors in stretches of 1.5 d. In 3D it is the factor of the first face. Off the
-/// rows the mean of three cracks at different places of the lattice.
+/// of the largest factors in stretches of 1.5 d. In 3D a front runs 4 d along a strip, eq. (D13c).
+/// Off the rows the mean of three cracks at different places of the lattice.
 template <int dim>
 double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, FractureLaw::Criterion criterion,

@@ -148,7 +148,7 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
   if (law.criterion == dem::FractureLaw::Criterion::none)
     return law;
   if (!scene.material.fracture.strength)
-    law.whole_face = dem::PrincipalTension::whole_face<dim>(scene.zone.spacing) *
+    law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
                      (dim == 2 ? scene.specimen.thickness : 1);
   law.strength = strength_of<dim>(scene, scene.material, "", body, log);
   if (scene.inclusions.empty())

@@ -35,6 +35,7 @@ std::vector<Case> all_cases()
   add(breaking_cases());
   add(closed_crack_cases());
   add(toughness_cases());
+  add(toughness_3d_cases());
   add(random_scene_cases());
   return cases;
 }

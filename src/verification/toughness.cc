@@ -136,7 +136,7 @@ double relative_toughness(const CrackedPlate &plate)
                                   {Criterion::maximum_tension,
                                    c * toughness / std::sqrt(plate.spacing),
                                    {},
-                                   dem::PrincipalTension::whole_face<2>(plate.spacing)}) /
+                                   dem::PrincipalTension<2>::whole_face(plate.spacing)}) /
                         width;
   return stress * std::sqrt(M_PI * a / std::cos(M_PI * a / width)) / toughness;
 }

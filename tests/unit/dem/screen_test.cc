@@ -163,7 +163,7 @@ void expect_all_breaking_found(const Packing<dim> &packing)
   std::vector<int> all(packing.size());
   std::iota(all.begin(), all.end(), 0);
   for (const double swelling : {0.02, 0., -0.002})
-    for (const double whole_face : {0., PrincipalTension::whole_face<dim>(packing.spacing)}) {
+    for (const double whole_face : {0., PrincipalTension<dim>::whole_face(packing.spacing)}) {
       auto p = state(packing, swelling, 1);
       oracle::ManyBodyOracle<dim> oracle(packing, 3., 0.3);
       auto q = p;

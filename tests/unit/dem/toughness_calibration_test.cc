@@ -73,6 +73,17 @@ TEST(ToughnessCalibration, SimpleCubicSlabIsTheSquareLatticeInPlaneStrain)
   EXPECT_NEAR(slab, plane, 0.02);
 }
 
+// A strip in plane strain against the near field of the plane packing: the stress along the crack
+// and the terms of the field that they share with no other are worth some per cent.
+TEST(ToughnessCalibration, AFrontInSimpleCubicLayersIsASquareLatticesTip)
+{
+  const double front =
+      calibrate_toughness<3>(Kind::simple_cubic, Spin<3>::Zero(), material(0.22), face_tension);
+  const double tip =
+      calibrate_toughness<2>(Kind::square, Spin<2>(0.), material(0.22), face_tension);
+  EXPECT_NEAR(front, tip, 0.05 * tip);
+}
+
 // No packing's toughness is far from another's: 2D packings of faces of like size.
 TEST(ToughnessCalibration, PackingsAreAlike)
 {
