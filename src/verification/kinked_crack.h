@@ -1,6 +1,8 @@
-// A closed crack with open wings under compression in an infinite plate, by displacement
-// discontinuities: what wing cracks of particles are compared with.
+// A closed crack with open wings under compression, by displacement discontinuities: what wing
+// cracks of particles are compared with.
 #pragma once
+
+#include <Eigen/Core>
 
 namespace ligament::program
 {
@@ -10,12 +12,16 @@ struct KinkedCrack
   double inclination;       // rad, of the crack against the normal of the pressure
   double kink;              // rad, of the wings against the crack
   double friction, poissons_ratio;
+  Eigen::Vector2d plate = {0, 0}; // m, about the crack's middle, pressed along y; 0: infinite
 };
 
 /// K_I in Pa m^0.5 at the end of a wing, per Pa of uniaxial pressure. Elements of constant
 /// displacement discontinuity (Crouch and Starfield); the factor of the one at the end comes from a
 /// straight crack under tension, of the same elements and twice the wing's length.
 double stress_intensity(const KinkedCrack &crack);
+
+/// K_I of a straight crack across a plate under tension over that in an infinite one.
+double straight_crack_in_plate(double half_length, const Eigen::Vector2d &plate);
 
 /// The largest over all kinks away from the crack.
 double largest_stress_intensity(KinkedCrack crack);
