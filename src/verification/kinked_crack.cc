@@ -13,7 +13,14 @@ namespace
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-constexpr int wing_elements = 30, crack_elements = 100, side_elements = 40;
+/// Numbers of elements; of twice as many the error is half as large.
+struct Fineness
+{
+  int factor = 1;
+  int wing() const { return 30 * factor; }
+  int crack() const { return 100 * factor; }
+  int side() const { return 30 * factor; }
+};
 
 struct Element
 {
@@ -74,7 +81,8 @@ Eigen::VectorXd solve(const std::vector<Element> &cracks, const std::vector<Elem
     // Sliding: shear = friction times pressure, against the remote shear.
     const double rubs = e.open ? 0 : std::copysign(friction, t.dot(remote * m));
     const Vec2 along = t + rubs * m;
-    if (i >= int(outline.size())) { // an outline bears the tractions of the remote stress
+    if (i >= int(outline.size())) { // an outline bears the tractions of the
+                                    // remote stress
       b[2 * i] = -along.dot(remote * m);
       b[2 * i + 1] = e.open ? -m.dot(remote * m) : 0;
     }
@@ -92,17 +100,38 @@ Eigen::VectorXd solve(const std::vector<Element> &cracks, const std::vector<Elem
   return a.partialPivLu().solve(b).segment(2 * outline.size(), 2 * cracks.size());
 }
 
-std::vector<Element> line(const Vec2 &from, const Vec2 &direction, double length, int n)
+/// Elements between places x(k/n) along a line, x growing from 0 to 1.
+template <typename Place>
+std::vector<Element> line(const Vec2 &from, const Vec2 &direction, double length, int n, bool open,
+                          Place &&x)
 {
   std::vector<Element> elements;
-  for (int k = 0; k < n; ++k)
-    elements.push_back(
-        {from + direction * length * (k + 0.5) / n, direction, length / n / 2, true});
+  for (int k = 0; k < n; ++k) {
+    const double begin = length * x(double(k) / n), end = length * x(double(k + 1) / n);
+    elements.push_back({from + direction * (begin + end) / 2, direction, (end - begin) / 2, open});
+  }
   return elements;
 }
 
+/// Places that lie closer and closer towards both ends.
+double closer_at_ends(double x)
+{
+  return (1 - std::cos(M_PI * x)) / 2;
+}
+/// And more so: the ends of the crack see the first elements of short wings.
+double much_closer_at_ends(double x)
+{
+  return closer_at_ends(closer_at_ends(x));
+}
+
+/// From the crack's end on.
+std::vector<Element> wing(const Vec2 &from, const Vec2 &direction, double length, Fineness n)
+{
+  return line(from, direction, length, n.wing(), true, closer_at_ends);
+}
+
 /// The sides of a plate of this size about the origin, anticlockwise; none of an infinite one.
-std::vector<Element> sides(const Vec2 &size)
+std::vector<Element> sides(const Vec2 &size, Fineness n)
 {
   std::vector<Element> elements;
   if (size[0] == 0)
@@ -110,7 +139,7 @@ std::vector<Element> sides(const Vec2 &size)
   Vec2 corner = -size / 2, along = Vec2::UnitX();
   for (int side = 0; side < 4; ++side) {
     const double length = size[side % 2];
-    for (const Element &e : line(corner, along, length, side_elements))
+    for (const Element &e : line(corner, along, length, n.side(), true, [](double x) { return x; }))
       elements.push_back(e);
     corner += length * along;
     along = {-along[1], along[0]};
@@ -119,52 +148,63 @@ std::vector<Element> sides(const Vec2 &size)
 }
 
 /// Overlap of the element at the end of a straight crack along x under unit tension, over 1/2G.
-double end_of_straight_crack(double half_length, double poissons_ratio, const Vec2 &plate)
+double end_of_straight_crack(double half_length, double poissons_ratio, const Vec2 &plate,
+                             Fineness n)
 {
   const Vec2 x(1, 0);
   Mat2 tension = Mat2::Zero();
   tension(1, 1) = 1;
-  const auto crack = line(-half_length * x, x, 2 * half_length, 2 * wing_elements);
-  return solve(crack, sides(plate), tension, 0, poissons_ratio)[2 * crack.size() - 1];
+  auto crack = wing(Vec2::Zero(), -x, half_length, n);
+  for (const Element &e : wing(Vec2::Zero(), x, half_length, n))
+    crack.push_back(e);
+  return solve(crack, sides(plate, n), tension, 0, poissons_ratio)[2 * crack.size() - 1];
+}
+double stress_intensity(const KinkedCrack &c, Fineness n)
+{
+  Mat2 pressure = Mat2::Zero();
+  pressure(1, 1) = -1;
+  const double end = -end_of_straight_crack(c.wing, c.poissons_ratio, Vec2::Zero(), n);
+
+  const Vec2 t(std::cos(c.inclination), std::sin(c.inclination)),
+      w(std::cos(c.inclination + c.kink), std::sin(c.inclination + c.kink));
+  auto elements =
+      line(-c.half_length * t, t, 2 * c.half_length, n.crack(), false, much_closer_at_ends);
+  for (const double side : {-1., 1.})
+    for (const Element &e : wing(side * c.half_length * t, side * w, c.wing, n))
+      elements.push_back(e);
+  const double opening = -solve(elements, sides(c.plate, n), pressure, c.friction,
+                                c.poissons_ratio)[2 * elements.size() - 1];
+  return opening / end * std::sqrt(M_PI * c.wing);
+}
+
+/// What values at two finenesses point to.
+template <typename Value>
+double limit(Value &&value)
+{
+  return 2 * value(Fineness{2}) - value(Fineness{1});
 }
 } // namespace
 
 double straight_crack_in_plate(double half_length, const Eigen::Vector2d &plate)
 {
-  return end_of_straight_crack(half_length, 0.3, plate) /
-         end_of_straight_crack(half_length, 0.3, Vec2::Zero());
+  return limit([&](Fineness n) {
+    return end_of_straight_crack(half_length, 0.3, plate, n) /
+           end_of_straight_crack(half_length, 0.3, Vec2::Zero(), n);
+  });
 }
 
-double stress_intensity(const KinkedCrack &c)
+double stress_intensity(const KinkedCrack &crack)
 {
-  Mat2 pressure = Mat2::Zero();
-  pressure(1, 1) = -1;
-  const double end = -end_of_straight_crack(c.wing, c.poissons_ratio, Vec2::Zero());
-
-  const Vec2 t(std::cos(c.inclination), std::sin(c.inclination)),
-      w(std::cos(c.inclination + c.kink), std::sin(c.inclination + c.kink));
-  std::vector<Element> elements;
-  for (int k = 0; k < crack_elements; ++k) { // finer towards the ends
-    const double from = -c.half_length * std::cos(M_PI * k / crack_elements),
-                 to = -c.half_length * std::cos(M_PI * (k + 1) / crack_elements);
-    elements.push_back({t * (from + to) / 2, t, (to - from) / 2, false});
-  }
-  for (const double side : {-1., 1.})
-    for (const Element &e : line(side * c.half_length * t, side * w, c.wing, wing_elements))
-      elements.push_back(e);
-  const double opening = -solve(elements, sides(c.plate), pressure, c.friction,
-                                c.poissons_ratio)[2 * elements.size() - 1];
-  return opening / end * std::sqrt(M_PI * c.wing);
+  return limit([&](Fineness n) { return stress_intensity(crack, n); });
 }
 
 double largest_stress_intensity(KinkedCrack crack)
 {
   double largest = 0;
-  for (double degrees = 40; degrees <= 90; degrees += 5)
-    for (const double sign : {-1., 1.}) {
-      crack.kink = sign * degrees * M_PI / 180;
-      largest = std::max(largest, stress_intensity(crack));
-    }
+  for (double degrees = 45; degrees <= 85; degrees += 5) {
+    crack.kink = degrees * M_PI / 180;
+    largest = std::max(largest, stress_intensity(crack));
+  }
   return largest;
 }
 } // namespace ligament::program

@@ -17,12 +17,13 @@ struct KinkedCrack
 
 /// K_I in Pa m^0.5 at the end of a wing, per Pa of uniaxial pressure. Elements of constant
 /// displacement discontinuity (Crouch and Starfield); the factor of the one at the end comes from a
-/// straight crack under tension, of the same elements and twice the wing's length.
+/// straight crack under tension, of the same elements and twice the wing's length. The limit of
+/// elements whose number doubles: against known cracks good to 0.1 %, short kinks to 2 %.
 double stress_intensity(const KinkedCrack &crack);
 
 /// K_I of a straight crack across a plate under tension over that in an infinite one.
 double straight_crack_in_plate(double half_length, const Eigen::Vector2d &plate);
 
-/// The largest over all kinks away from the crack.
+/// The largest over kinks of 45 to 85 degrees towards the pressure, in steps of 5.
 double largest_stress_intensity(KinkedCrack crack);
 } // namespace ligament::program
