@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <numeric>
 
 namespace
 {
@@ -377,11 +378,80 @@ void measure_plastic(const std::string &name, const particles::Packing<dim> &pac
   growth = 1 - 1e-6; // unloads
   compare("all particles plastic, none flows", *plastic, 11);
 }
+
+/// A homogeneous uniaxial tension of 1e-4 E along an oblique axis, at nu = 1/4.
+template <int dim>
+particles::Particles<dim> pull(const particles::Packing<dim> &packing)
+{
+  particles::Particles<dim> p;
+  particles::fill_particles(packing, 1., p);
+  constexpr double angle = 0.6, nu = 0.25;
+  const double along = 1e-4 * (dim == 2 ? 1 - nu * nu : 1),
+               across = -1e-4 * nu * (dim == 2 ? 1 + nu : 1);
+  Vector<dim> e = Vector<dim>::Zero();
+  e[0] = std::cos(angle);
+  e[1] = std::sin(angle);
+  for (int i = 0; i < p.size(); ++i) {
+    const Vector<dim> x = get(p.reference, i), u = across * x + (along - across) * x.dot(e) * e;
+    for (int c = 0; c < dim; ++c)
+      p.displacement[c][i] = u[c];
+  }
+  return p;
+}
+
+/// What a fracture criterion costs: forces with it over forces without, call by call in turns; far
+/// from breaking, and where the whole body bears some share of its strength. Value: what it costs,
+/// median of the pairs; reference: what it may.
+template <int dim>
+void measure_criterion(const std::string &name, const particles::Packing<dim> &packing)
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  auto uniform = pull(packing);
+  const auto compare = [&](const std::string &what, particles::Particles<dim> &p, double strength) {
+    const auto make = [&](const dem::FractureLaw &fracture) {
+      return std::make_unique<dem::ManyBodyForce<dim>>(
+          packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture);
+    };
+    const auto without = make({}),
+               with = make({dem::FractureLaw::Criterion::maximum_tension, strength});
+    double time = 0;
+    const auto seconds = [&](dem::ManyBodyForce<dim> &force) {
+      const double start = bench::seconds_now();
+      force.compute(p, time += 1);
+      return bench::seconds_now() - start;
+    };
+    std::vector<double> ratios;
+    seconds(*with);
+    for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
+      const double before = seconds(*without), now = seconds(*with), after = seconds(*without);
+      spent += before + now + after;
+      ratios.push_back(2 * now / (before + after));
+    }
+    std::sort(ratios.begin(), ratios.end());
+    print(fmt::format("{}, {} particles, forces with a criterion over forces without, {}", name,
+                      packing.size(), what),
+          ratios[ratios.size() / 2], "-", 1.05);
+    if (!with->broken_bonds().empty())
+      throw core::InputError("bonds broke in a body below its strength");
+  };
+  auto moved = move(packing);
+  compare("far from breaking", moved, 1e3);
+  std::vector<int> all(packing.size());
+  std::iota(all.begin(), all.end(), 0);
+  const double most = dem::ManyBodyForce<dim>(packing, material, {},
+                                              {dem::FractureLaw::Criterion::maximum_tension, 1})
+                          .weakest_bond(uniform, all)
+                          .utilisation; // of packings that are not relaxed above 1e-4
+  for (const double share : {0.5, 0.7, 0.95})
+    compare(fmt::format("uniform tension of {} of the strength", share), uniform, most / share);
+}
 } // namespace
 
 /// Without arguments the bodies of 33 000 particles and lattices of 880 000; "random": random
 /// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles; "shapes": plates
-/// and bars of lattices beside cubes; "plastic": what breaking and yielding cost.
+/// and bars of lattices beside cubes; "plastic": what breaking and yielding cost; "criterion": what
+/// a fracture criterion does.
 int main(int argc, char **argv)
 {
   using particles::LatticeKind;
@@ -395,6 +465,13 @@ int main(int argc, char **argv)
   else if (what == "plastic") {
     measure_plastic<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 28.5));
     measure_plastic<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 169.));
+  } else if (what == "criterion") {
+    measure_criterion<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 169.));
+    measure_criterion<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 28.5));
+    measure_criterion<2>("random 2D", make_random<2>(1 / 169.));
+    measure_criterion<3>("random 3D", make_random<3>(1 / 28.5));
+    measure_criterion<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 875.));
+    measure_criterion<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 85.5));
   } else if (what == "random") {
     measure<2>("random 2D", make_random<2>(1 / 875.), false);
     measure<3>("random 3D", make_random<3>(1 / 85.5), false);

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "coupling/nodal_matrix.h"
+#include "fem/cell_modes.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -284,6 +285,53 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
     }
   return normals;
 }
+
+/// What the cell's own modes take of its stiffness where the mesh is alone: behind the pads' depth
+/// no particle moves but with it (theory.md eq. (C21)). Their mean over that part is taken off
+/// them, so that uniform strain is as without them.
+template <int dim>
+fem::CellMatrix<dim> relief_by_modes(const Overlap<dim> &overlap,
+                                     const typename Overlap<dim>::Cell &cell,
+                                     const fem::Body<dim> &body)
+{
+  constexpr int n = dim * fem::n_cell_nodes<dim>, n_modes = fem::n_cell_modes<dim>;
+  const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
+  const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
+  const auto for_each_lonely_point = [&](auto &&visit) {
+    for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
+      const Vector<dim> s = 2 * (x - lower).cwiseQuotient(size) - Vector<dim>::Ones();
+      if (overlap.distance_to_edge(x) < overlap.depth)
+        visit(x, fem::mode_strains<dim>(s), w * (1 - overlap.weight(x)) * body.thickness);
+    });
+  };
+  double volume = 0;
+  Eigen::Matrix<double, n_strains<dim>, n_modes> mean = decltype(mean)::Zero();
+  for_each_lonely_point([&](const Vector<dim> &, const auto &modes, double w) {
+    volume += w;
+    mean += w * modes;
+  });
+  if (volume == 0)
+    return fem::CellMatrix<dim>::Zero();
+  mean /= volume;
+  Eigen::Matrix<double, n_modes, n> coupled = decltype(coupled)::Zero();
+  Eigen::Matrix<double, n_modes, n_modes> own = decltype(own)::Zero();
+  for_each_lonely_point([&](const Vector<dim> &x, const auto &modes, double w) {
+    const Eigen::Matrix<double, n_strains<dim>, n_modes> g = modes - mean;
+    const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
+    coupled += w * g.transpose() * body.stiffness * b;
+    own += w * g.transpose() * body.stiffness * g;
+  });
+  // In a thin part some modes are constant and do nothing.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n_modes, n_modes>> solver(own);
+  const double least = 1e-10 * solver.eigenvalues()[n_modes - 1];
+  fem::CellMatrix<dim> relief = fem::CellMatrix<dim>::Zero();
+  for (int m = 0; m < n_modes; ++m)
+    if (solver.eigenvalues()[m] > least) {
+      const Eigen::Matrix<double, n, 1> row = coupled.transpose() * solver.eigenvectors().col(m);
+      relief += row * row.transpose() / solver.eigenvalues()[m];
+    }
+  return relief;
+}
 } // namespace
 
 template <int dim>
@@ -302,7 +350,7 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
     const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
     k += w * b.transpose() * body.stiffness * b;
   });
-  return k;
+  return k - relief_by_modes(overlap, cell, body);
 }
 
 template <int dim>

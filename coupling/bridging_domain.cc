@@ -357,11 +357,12 @@ double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   const double still = 0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_)).sum();
   const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
   auto &zone = *bodies.zone;
-  auto &far = *bodies.far;
-  const double loss = scaling_loss(still, moving, factor) +
-                      scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor) +
-                      scaling_loss(far.kinetic_energy(0), far.kinetic_energy(step.dt), factor);
-  scale_velocities(bodies, factor);
+  double loss = scaling_loss(still, moving, factor) +
+                scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor);
+  zone.scale_velocities(factor);
+  loss += bodies.far->damp_velocities(step.dt);
+  velocity_ *= factor;
+  write_near_velocities(*bodies.far);
   return loss;
 }
 

@@ -60,8 +60,9 @@ public:
   virtual void kick(Bodies<dim> &bodies, const StepTime &step) = 0;
   /// Multiplies all velocities that no load prescribes.
   virtual void scale_velocities(Bodies<dim> &bodies, double factor) = 0;
-  /// Mass damping: velocities keep this factor in each step. After kick; returns the energy in J
-  /// that it takes (theory.md eqs. (E3), (E9)).
+  /// Mass damping: velocities keep this factor in each step, those of the far field by the rate
+  /// that it was given. After kick; returns the energy in J that it takes (theory.md eqs. (E3),
+  /// (E9)).
   virtual double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) = 0;
   /// Of a step before its kick. With the sign of dt changed: after it, of the same positions.
   virtual CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const = 0;

@@ -306,10 +306,7 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
-    auto &far = *bodies.far;
-    loss += scaling_loss(far.kinetic_energy(0),
-                         far.kinetic_energy(parameters_.step_ratio * step.dt), whole);
-    far.scale_velocities(whole);
+    loss += bodies.far->damp_velocities(parameters_.step_ratio * step.dt);
     loss += damp_coarse(bodies, step, whole);
   }
   write_velocities(bodies);

@@ -63,13 +63,13 @@ template <int dim>
 double NullCoupler<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
 {
   double loss = 0;
-  if (bodies.zone)
+  if (bodies.zone) {
     loss +=
         scaling_loss(bodies.zone->kinetic_energy(0), bodies.zone->kinetic_energy(step.dt), factor);
+    bodies.zone->scale_velocities(factor);
+  }
   if (bodies.far)
-    loss +=
-        scaling_loss(bodies.far->kinetic_energy(0), bodies.far->kinetic_energy(step.dt), factor);
-  scale_velocities(bodies, factor);
+    loss += bodies.far->damp_velocities(step.dt);
   return loss;
 }
 

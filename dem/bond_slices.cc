@@ -59,6 +59,25 @@ BondSlices<dim>::BondSlices(const BondNetwork<dim> &bonds, double shear_modulus,
   });
 }
 
+template <int dim>
+void BondSlices<dim>::set_volumes(const BondNetwork<dim> &bonds, const std::vector<double> &volume,
+                                  const std::vector<double> &weights)
+{
+  std::vector<double> covered(volume.size(), 0), shear_modulus(volume.size(), 0);
+  bonds.for_each_irregular([&](BondId, const Bond<dim> &b) {
+    covered[b.i] += b.area * b.lever_i.dot(b.normal) / dim;
+    covered[b.j] -= b.area * b.lever_j.dot(b.normal) / dim;
+    shear_modulus[b.i] = shear_modulus[b.j] = b.shear_i;
+  });
+  table_.per_volume.assign(table_.lane.size(), 0);
+  for (int l = 0; l < table_.n_records(); ++l) {
+    const int i = table_.particle[table_.lane[l] / record_size];
+    if (std::abs(covered[i] - volume[i]) < 1e-9 * volume[i])
+      table_.per_volume[l] =
+          1 / (2 * shear_modulus[i] * volume[i] * (weights.empty() ? 1 : weights[i]));
+  }
+}
+
 /// Places of all particles; empty slots refer to the particle itself and have no stiffness.
 template <int dim>
 void BondSlices<dim>::lay_out(const std::vector<int> &n_bonds_of)
@@ -110,8 +129,15 @@ template <int dim>
 void BondSlices<dim>::remove(int index)
 {
   const Vector<dim> zero = Vector<dim>::Zero();
-  for (const long place : places_[index])
+  for (const long place : places_[index]) {
     set_bond(place, {0, 0, zero, zero, zero, 0, 1, 0, 0}, true, table_.neighbour[place]);
+    if (table_.per_volume.empty())
+      continue;
+    const auto &first = table_.first_slot;
+    const auto after = std::upper_bound(first.begin(), first.end(), int(place / slice_width));
+    const long slice = after - first.begin() - 1;
+    table_.per_volume[slice * slice_width + place % slice_width] = 0;
+  }
 }
 
 template <int dim>
@@ -167,7 +193,8 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
   };
   add_slice_forces({table_, arrays, records.data(), squared(breaking.least_traction()),
                     all_particles_, &exceeded, nearness, nullptr, squared(screen.traction), screen,
-                    breaking.strength / (2 * shear_modulus_), breaking.tangent});
+                    breaking.strength / (2 * shear_modulus_), breaking.tangent,
+                    breaking.per_cosine()});
 }
 
 template <int dim>

@@ -34,6 +34,9 @@ struct SliceTable
   std::vector<int> neighbour;  // record times record_size: n_slots x slice_width
   core::LargeArray geometry;   // n_slots x n_geometry x slice_width
   core::LargeArray stiffness;  // n_slots x n_stiffness x slice_width
+  /// 1 / (2G V), its energy weight in V, of each lane whose particle has all faces here; 0 of
+  /// others. Empty when none has.
+  std::vector<double> per_volume;
 
   int n_slices() const { return int(first_slot.size()) - 1; }
   int n_records() const { return int(particle.size()); }
@@ -60,7 +63,7 @@ struct SliceSweep
   double *energy = nullptr;                // of the particles, J
   double screen2 = never;                  // (traction / 2G)^2 at which the screen marks
   TractionScreen screen = {};
-  double strain = 0, tangent = 0; // strength / 2G and tangent of BreakScreen
+  double strain = 0, tangent = 0, per_cosine = 1; // strength / 2G and angle of BreakScreen
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
@@ -85,6 +88,11 @@ class BondSlices
 public:
   /// With `all_particles` those without bonds have a place as well, and forces are overwritten.
   BondSlices(const BondNetwork<dim> &bonds, double shear_modulus, bool all_particles);
+
+  /// Volumes in m^3 and energy weights (empty: 1) of all particles of the network: bonds of cells
+  /// that are closed by bonds here are then looked at more closely before they count as exceeded.
+  void set_volumes(const BondNetwork<dim> &bonds, const std::vector<double> &volume,
+                   const std::vector<double> &weights);
 
   bool empty() const { return table_.n_records() == 0; }
 

@@ -112,15 +112,15 @@ void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
 }
 
 template <int dim>
-void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
+long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments,
                                 const BreakScreen &breaking, const TractionScreen &screen,
                                 RowWindow &window, std::vector<RowRange> &exceeded,
-                                const particles::AwakeRanges *ranges) const
+                                const particles::AwakeRanges *ranges, bool by_particle) const
 {
   exceeded.clear();
   if (constants_.n_directions == 0)
-    return;
+    return 0;
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
   if (ranges)
@@ -131,10 +131,15 @@ void LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   const auto squared = [](double value) { return value * value; };
   s.constants.strength = force(breaking.strength);
   s.constants.tangent = breaking.tangent;
+  s.constants.per_cosine = breaking.per_cosine();
   s.constants.limit2 = squared(std::min(force(breaking.least_traction()), force(screen.traction)));
   s.screen = screen;
   s.exceeded = &exceeded;
+  s.by_particle = by_particle && !ranges && screen.traction == 0;
+  long n_looked = 0;
+  s.n_looked = &n_looked;
   sweep_rows(s);
+  return n_looked;
 }
 
 template <int dim>

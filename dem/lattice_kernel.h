@@ -32,14 +32,15 @@ struct LatticeConstants
 {
   int n_directions = 0;
   std::array<std::array<double, dim>, max_directions> normal{};
-  double half = 0;     // q = r/2, m
-  double shear = 0;    // 2G S/r, N/m
-  double area_r = 0;   // S/r, m
-  double bending = 0;  // k_b, N m
-  double twist = 0;    // k_t - k_b, N m
-  double strength = 0; // times S, N: of BreakScreen; infinite when nothing breaks
-  double tangent = 0;  // of BreakScreen
-  double limit2 = 0;   // force^2 on a face, N^2: of what is looked for first
+  double half = 0;       // q = r/2, m
+  double shear = 0;      // 2G S/r, N/m
+  double area_r = 0;     // S/r, m
+  double bending = 0;    // k_b, N m
+  double twist = 0;      // k_t - k_b, N m
+  double strength = 0;   // times S, N: of BreakScreen; infinite when nothing breaks
+  double tangent = 0;    // of BreakScreen
+  double per_cosine = 1; // of BreakScreen
+  double limit2 = 0;     // force^2 on a face, N^2: of what is looked for first
 };
 
 /// Particles that each stage of the sweep takes at once.
@@ -68,8 +69,10 @@ struct BreakScreen
   double strength = 0; // Pa; 0: nothing breaks
   double tangent = 0;
 
+  /// 1 over the cosine of the angle with that tangent.
+  double per_cosine() const { return std::sqrt(1 + tangent * tangent); }
   /// No traction below this one, in any direction, reaches the strength.
-  double least_traction() const { return strength / std::sqrt(1 + tangent * tangent); }
+  double least_traction() const { return strength / per_cosine(); }
 };
 
 /// State and intermediate results of the rows at work, one stream per number; it slides along the
@@ -126,6 +129,8 @@ struct RowSweep
   RowWindow *window;
   double *energy = nullptr; // in place of forces: of each particle's forward bonds, J
   TractionScreen screen = {};
+  bool by_particle = false; // how bonds that could break are looked for, see LatticeKernel::forces
+  long *n_looked = nullptr; // grows by the particles that were looked at
 
   /// Particles that the window must hold at least.
   long window_length() const { return window_length_for(reach); }
@@ -157,11 +162,15 @@ public:
   /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
   /// there is no lattice. With `ranges` only of the particles that are stepped, and the pressures
   /// that they see; all others must be at rest, or held. Replaces `exceeded` by ranges of particles
-  /// among which are those with a forward bond that could break; ranges don't overlap.
-  void forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
+  /// among which are those with a bond that could break: its first particle, or one of both; ranges
+  /// don't overlap. Returns how many particles it looked at more closely for that. `by_particle` it
+  /// looks at the stresses of the particles, not at the tractions on each face: slower where
+  /// tractions are small, but it clears bodies under homogeneous stress below the strength. Neither
+  /// together with `ranges` nor with a screen.
+  long forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
               const BreakScreen &breaking, const TractionScreen &screen, RowWindow &window,
-              std::vector<RowRange> &exceeded,
-              const particles::AwakeRanges *ranges = nullptr) const;
+              std::vector<RowRange> &exceeded, const particles::AwakeRanges *ranges = nullptr,
+              bool by_particle = false) const;
 
   /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
   /// bonds, bending and twist included, volumes not.

@@ -7,6 +7,7 @@
 // After foreach_target.h, as Highway wants it.
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
+#include "dem/stress_bound.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -118,9 +119,10 @@ public:
             at + (g_ + 3 * m) * stride);
   }
 
-  /// True when the force on a forward face, in any direction, reaches the limit.
-  template <typename D>
-  HWY_INLINE bool forces(D d, long i, const Offsets &offsets) const
+  /// Also finds the particles to look at: those with a forward face whose force, in any direction,
+  /// reaches the limit; or, by particle, with any face that eq. (D12d) does not clear.
+  template <bool by_particle, typename D>
+  HWY_INLINE hn::Mask<D> forces(D d, long i, const Offsets &offsets) const
   {
     using V = hn::Vec<D>;
     prefetch(a_.force, i);
@@ -129,7 +131,8 @@ public:
     const V zero = hn::Zero(d);
     Triple<V> force{zero, zero, zero}, torque{zero, zero, zero};
     Quaternion<V> bend{zero, {zero, zero, zero}}, twist{zero, {zero, zero, zero}};
-    V largest = zero;
+    V largest = zero; // by particle: twice the sum of all forces^2
+    StressSum3d<V> stress(d);
     double *const at = w_ + i;
     const auto u = displacement(d, at);
     const auto q = quaternion(d, at);
@@ -142,9 +145,14 @@ public:
           masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
       const auto t_b =
           masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
-      force = force + (t_f - t_b);
-      torque = add_cross(n + along<k, h_>(d, at), t_f + t_b, torque);
-      largest = hn::Max(largest, add_dot(t_f, t_f, zero));
+      const auto net = t_f - t_b, both = t_f + t_b, a = n + along<k, h_>(d, at);
+      force = force + net;
+      torque = add_cross(a, both, torque);
+      if constexpr (by_particle) {
+        stress.add(a, both);
+        largest = add_dot(net, net, add_dot(both, both, largest));
+      } else
+        largest = hn::Max(largest, add_dot(t_f, t_f, zero));
 
       // With w the real part of the rotation of j as i sees it and s its part along n:
       // bending w q_j, twist s q_j n.
@@ -157,6 +165,13 @@ public:
       turned = mul_add(mask(dot(qn, q_b), n_dir + k), q_b, turned);
       twist = add_product(turned, n, twist);
     });
+    const auto look = [&]() HWY_ATTR {
+      if constexpr (by_particle) {
+        const V angle = hn::Sqrt(hn::Mul(hn::Set(d, 4.1), add_dot(q.v, q.v, zero))); // or more
+        return not_cleared<n_dir, 3>(d, c_, mask, angle, stress, torque, largest);
+      } else
+        return hn::Ge(largest, hn::Set(d, c_.limit2));
+    }();
     const auto half = hn::Set(d, c_.half);
     torque = half * torque;
     if (volumetric_)
@@ -173,7 +188,7 @@ public:
     hn::StoreU(torque.x, d, a_.torque[0] + i);
     hn::StoreU(torque.y, d, a_.torque[1] + i);
     hn::StoreU(torque.z, d, a_.torque[2] + i);
-    return !hn::AllFalse(d, hn::Ge(largest, hn::Set(d, c_.limit2)));
+    return look;
   }
 
   /// Of the forward bonds.
@@ -204,30 +219,37 @@ public:
         hn::MulAdd(hn::Set(d, 2 * c_.bending), v2, hn::Mul(hn::Set(d, 2 * c_.twist), vn2)));
   }
 
-  /// The particles with a forward face that could break.
-  template <typename D>
+  /// The particles with a forward face that could break, with `backward` with any face.
+  template <bool backward, typename D>
   HWY_INLINE hn::Mask<D> could_break(D d, long i, const Offsets &offsets) const
   {
     const BondMask<D> mask(d, a_.mask, i);
-    const auto zero = hn::Zero(d);
-    auto found = hn::Lt(zero, zero);
+    auto found = hn::Lt(hn::Zero(d), hn::Zero(d));
     double *const at = w_ + i;
-    const auto u = displacement(d, at);
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
-      const double *const f = at + offsets.forward[k];
-      const auto t = masked(mask,
-                            mul_add(hn::Set(d, c_.shear), displacement(d, f) - u,
-                                    along<k, g_>(d, at) + along<k, g_>(d, f)),
-                            k);
-      const auto n = normal(d, k);
-      const auto mean = (n + n) + (along<k, h_>(d, at) + along<k, h_>(d, f));
-      found = hn::Or(found, reaches(d, t, mean, hn::Set(d, c_.strength), c_.tangent));
+      found = hn::Or(found, face_reaches<k>(d, mask, k, at, at + offsets.forward[k]));
+      if (backward)
+        found = hn::Or(found, face_reaches<k>(d, mask, n_dir + k, at + offsets.backward[k], at));
     });
     return found;
   }
 
 private:
+  /// Of the face in direction k between two particles, bit `bit` of the mask.
+  template <int k, typename D>
+  HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,
+                                      const double *to) const
+  {
+    const auto t = masked(mask,
+                          mul_add(hn::Set(d, c_.shear), displacement(d, to) - displacement(d, from),
+                                  along<k, g_>(d, from) + along<k, g_>(d, to)),
+                          bit);
+    const auto n = normal(d, k);
+    const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
+    return reaches(d, t, mean, hn::Set(d, c_.strength), c_.tangent);
+  }
+
   template <typename Visit, int... k>
   static HWY_INLINE void for_directions(Visit &&visit, std::integer_sequence<int, k...>)
   {

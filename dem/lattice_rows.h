@@ -9,6 +9,7 @@
 
 #include "dem/lane_vectors.h"
 #include "dem/lattice_kernel.h"
+#include "dem/stress_bound.h"
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -44,7 +45,33 @@ struct BondMask
     const auto carries = hn::TestBit(bits, hn::Set(d, std::uint64_t(1) << k));
     return hn::IfThenElseZero(hn::RebindMask(D(), carries), v);
   }
+  /// Where the first n bonds all carry.
+  HWY_INLINE hn::Mask<D> all(int n) const
+  {
+    const hn::Rebind<std::uint64_t, D> d;
+    const auto every = hn::Set(d, (std::uint64_t(1) << n) - 1);
+    return hn::RebindMask(D(), hn::Eq(hn::And(bits, every), every));
+  }
 };
+
+/// Particles with a face that could break by eq. (D12d), from sums over all their faces of products
+/// of levers (of length 1) and forces, of moments, and of forces^2 (twice). Particles that miss a
+/// face or have turned far are those with a force that reaches the limit.
+template <int n_dir, int dim, typename D, typename Stress, typename Moment, typename V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> not_cleared(D d, const LatticeConstants<dim> &c, const BondMask<D> &mask,
+                                   V angle, Stress stress, const Moment &moment, V twice_force2)
+{
+  constexpr double faces = 2 * n_dir, share = dim / faces; // S q / V of a face
+  constexpr double most_turn = 0.004;                      // rad: takes 0.7 % of the strength
+  const V force2 = hn::Mul(hn::Set(d, 0.5), twice_force2);
+  stress.finish(moment, hn::Set(d, share));
+  // The sum of |t - S n|^2: the sum of n n is that of the unit tensor.
+  const V residual2 = hn::NegMulAdd(hn::Set(d, 1 / share), stress.square(), force2);
+  const V bound = tension_bound(stress, residual2, most_turn, c.per_cosine);
+  const auto known = hn::And(mask.all(2 * n_dir), hn::Lt(angle, hn::Set(d, most_turn)));
+  const auto cleared = hn::And(known, hn::Lt(bound, hn::Set(d, c.strength)));
+  return hn::AndNot(cleared, hn::Ge(force2, hn::Set(d, c.limit2)));
+}
 
 /// Asks for what several arrays hold some vectors after particle i: there are more of them than the
 /// processor follows by itself.
@@ -144,8 +171,10 @@ public:
       bonds_.set_window(sweep_.window->origin());
       if (sweep_.energy)
         energies(piece);
+      else if (sweep_.by_particle)
+        forces<true>(piece);
       else
-        forces(piece);
+        forces<false>(piece);
     }
   }
 
@@ -204,29 +233,35 @@ private:
                     [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
   }
 
+  template <bool by_particle>
   HWY_INLINE void forces(const PieceCursor &piece)
   {
     const typename Bonds::Offsets offsets(piece.segment());
     int done = piece.begin;
     for_each_vector(piece.first, piece.begin, piece.end, [&](auto d, long i) HWY_ATTR {
       const int after = int(i) + int(hn::Lanes(d));
-      if (HWY_UNLIKELY(bonds_.forces(d, i, offsets)))
-        note(d, i, offsets, {std::max(int(i), done), after});
+      const auto look = bonds_.template forces<by_particle>(d, i, offsets);
+      if (HWY_UNLIKELY(!hn::AllFalse(d, look)))
+        note<by_particle>(d, i, offsets, look, {std::max(int(i), done), after});
       done = after;
     });
   }
 
-  /// Where the limit was reached: marks of the screen, and particles with bonds that could break.
-  template <typename D>
-  HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, const RowRange &range)
+  /// Where there is something to look at: marks of the screen, and particles with bonds that could
+  /// break.
+  template <bool by_particle, typename D>
+  HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, hn::Mask<D> look,
+                       const RowRange &range)
   {
+    *sweep_.n_looked += range.end - range.begin;
     if (sweep_.screen.traction > 0) {
       sweep_.screen.mark(range.begin);
       sweep_.screen.mark(range.end - 1);
     }
     if (!std::isfinite(sweep_.constants.strength))
       return;
-    const std::uint32_t found = lane_bits(d, bonds_.could_break(d, i, offsets));
+    const auto could = bonds_.template could_break<by_particle>(d, i, offsets);
+    const std::uint32_t found = lane_bits(d, by_particle ? hn::And(look, could) : could);
     if (found == 0)
       return;
     int first = 0, last = int(hn::Lanes(d)) - 1;

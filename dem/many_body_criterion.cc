@@ -116,8 +116,8 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
     return t;
   t.utilisation = normal;
   if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
-    t.utilisation = size_factor(b) *
-                    (normal + PrincipalTension<dim>::tangent * (t.traction - normal * t.normal).norm());
+    t.utilisation = size_factor(b) * (normal + PrincipalTension<dim>::tangent *
+                                                   (t.traction - normal * t.normal).norm());
   t.utilisation /= strength_of(b);
   return t;
 }
@@ -131,31 +131,46 @@ std::vector<BondTension<dim>> ManyBodyForce<dim>::suspected_bonds(const Particle
     if (t.utilisation >= noted_share_)
       found.push_back(t);
   };
-  const auto test_bonds_of = [&](int i, bool lattice) {
+  // A bond of two noted particles is its first one's.
+  const auto test_bonds_of = [&](int i, bool lattice, auto &&is_noted) {
     bonds_.for_each_bond_of(i, [&](BondId id, const Bond<dim> &b) {
-      if (lattice == (id.direction >= 0) && !b.joins_materials && b.i == i)
+      if (lattice == (id.direction >= 0) && !b.joins_materials && (b.i == i || !is_noted(b.i)))
         test(id, b);
     });
   };
-  for (const RowRange &range : work_.exceeded_rows)
+  const auto &rows = work_.exceeded_rows;
+  const auto is_in_rows = [&](int i) {
+    const auto after = std::upper_bound(rows.begin(), rows.end(), i,
+                                        [](int k, const RowRange &r) { return k < r.begin; });
+    return after != rows.begin() && i < (after - 1)->end;
+  };
+  for (const RowRange &range : rows)
     for (int i = range.begin; i < range.end; ++i)
-      test_bonds_of(i, true);
-  for (const int i : work_.exceeded_particles)
-    test_bonds_of(i, false);
+      test_bonds_of(i, true, is_in_rows);
+  auto few = work_.exceeded_particles;
+  std::sort(few.begin(), few.end());
+  for (const int i : few)
+    test_bonds_of(i, false, [&](int k) { return std::binary_search(few.begin(), few.end(), k); });
   bonds_.for_each_interface(test);
+  const auto none = [](int) { return false; };
   if (plastic_) // the kernels don't know plastic strains
     for (const RowRange &range : plastic_->around_plastic())
       for (int i = range.begin; i < range.end; ++i) {
-        test_bonds_of(i, true);
-        test_bonds_of(i, false);
+        test_bonds_of(i, true, none);
+        test_bonds_of(i, false, none);
       }
-  const auto ids = [&](const BondTension<dim> &t) { return global_ids(t.bond, p); };
-  std::sort(found.begin(), found.end(),
-            [&](const auto &a, const auto &b) { return ids(a) < ids(b); });
-  found.erase(std::unique(found.begin(), found.end(),
-                          [&](const auto &a, const auto &b) { return ids(a) == ids(b); }),
-              found.end());
   return found;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::sort_by_ids(std::vector<BondTension<dim>> &bonds, const Particles &p)
+{
+  const auto ids = [&](const BondTension<dim> &t) { return global_ids(t.bond, p); };
+  std::sort(bonds.begin(), bonds.end(),
+            [&](const auto &a, const auto &b) { return ids(a) < ids(b); });
+  bonds.erase(std::unique(bonds.begin(), bonds.end(),
+                          [&](const auto &a, const auto &b) { return ids(a) == ids(b); }),
+              bonds.end());
 }
 
 template <int dim>
@@ -201,7 +216,8 @@ std::vector<Strain<dim>> ManyBodyForce<dim>::stresses_of(const std::vector<int> 
 template <int dim>
 void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &bonds,
                                                 const Particles &p,
-                                                const std::vector<double> &pressure) const
+                                                const std::vector<double> &pressure,
+                                                double least) const
 {
   std::vector<int> few;
   for (const auto &t : bonds)
@@ -213,12 +229,16 @@ void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &b
     return stress[std::lower_bound(few.begin(), few.end(), i) - few.begin()];
   };
   for (auto &t : bonds) {
-    const Vector<dim> e =
-        PrincipalTension<dim>::direction(Strain<dim>((of(t.bond.i) + of(t.bond.j)) / 2));
+    constexpr double round_off = 1e-12;
+    const double share = size_factor(t.bond) / strength_of(t.bond);
+    const Strain<dim> mean = (of(t.bond.i) + of(t.bond.j)) / 2;
+    t.utilisation = share * PrincipalTension<dim>::bound(mean, t.normal, t.traction);
+    if (t.utilisation < least * (1 - round_off))
+      continue;
+    const Vector<dim> e = PrincipalTension<dim>::direction(mean);
     const double cosine = t.normal.dot(e);
-    t.utilisation = std::abs(cosine) < PrincipalTension<dim>::cone
-                        ? 0
-                        : size_factor(t.bond) * t.traction.dot(e) / (cosine * strength_of(t.bond));
+    t.utilisation =
+        std::abs(cosine) < PrincipalTension<dim>::cone ? 0 : share * t.traction.dot(e) / cosine;
   }
 }
 
@@ -228,25 +248,29 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
   if (fracture_.criterion == FractureLaw::Criterion::none)
     return {};
   auto found = suspected_bonds(p);
-  found.erase(std::remove_if(found.begin(), found.end(),
-                             [](const auto &t) { return t.utilisation < 1; }),
-              found.end());
+  const auto keep_exceeding = [&] {
+    found.erase(
+        std::remove_if(found.begin(), found.end(), [](const auto &t) { return t.utilisation < 1; }),
+        found.end());
+  };
+  keep_exceeding();
+  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension) {
+    find_principal_tension(found, p, work_.pressure, 1);
+    keep_exceeding();
+  }
+  sort_by_ids(found, p); // few are left
   std::vector<BondId> exceeding;
   if (fracture_.criterion == FractureLaw::Criterion::face_tension) {
     for (const auto &t : found)
       exceeding.push_back(t.id);
     return exceeding;
   }
-  find_principal_tension(found, p, work_.pressure);
   std::stable_sort(found.begin(), found.end(),
                    [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   PlacesApart<dim> places(PrincipalTension<dim>::apart * spacing_);
-  for (const auto &t : found) {
-    if (t.utilisation < 1)
-      break;
+  for (const auto &t : found)
     if (places.add(get(p.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);
-  }
   return exceeding;
 }
 
@@ -264,7 +288,7 @@ Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
                              }),
               found.end());
   if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
-    find_principal_tension(found, p, work_.pressure);
+    find_principal_tension(found, p, work_.pressure, noted_share_);
   for (const auto &t : found)
     if (t.utilisation >= noted_share_ && t.utilisation > most.share)
       most = {t.utilisation, Vector<dim>(get(p.reference, t.bond.i) + t.bond.lever_i)};
@@ -298,7 +322,7 @@ BondTension<dim> ManyBodyForce<dim>::weakest_bond(const Particles &p,
   {
     std::vector<BondTension<dim>> now(bonds.begin() + k,
                                       bonds.begin() + std::min(k + some, bonds.size()));
-    find_principal_tension(now, p, work.pressure);
+    find_principal_tension(now, p, work.pressure, 0);
     for (const auto &t : now)
       if (t.utilisation > weakest.utilisation)
         weakest = t;

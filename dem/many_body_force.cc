@@ -38,6 +38,8 @@ ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materia
   for (const auto &wall : surface_.walls())
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
                            packing.volume[wall.i];
+  if (bonds_.n_directions() == 0)
+    volumes_ = packing.volume;
   lay_out_slices();
   for (int i = 0; i < packing.size(); ++i) {
     update_volumetric_stiffness(i, packing.volume[i]);
@@ -69,6 +71,8 @@ template <int dim>
 void ManyBodyForce<dim>::lay_out_slices()
 {
   slices_ = BondSlices<dim>(bonds_, materials_.base().shear_modulus(), bonds_.n_directions() == 0);
+  if (!volumes_.empty())
+    slices_.set_volumes(bonds_, volumes_, energy_weights_);
   records_ = {};
   find_other_particles();
 }
@@ -239,8 +243,11 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
-  kernel_.forces(a, bonds_.segments(), may_break ? breaking_screen(false) : BreakScreen(), screen,
-                 rows_, work.exceeded_rows, awake_ranges(work));
+  const long n_looked = kernel_.forces(
+      a, bonds_.segments(), may_break ? breaking_screen(false) : BreakScreen(), screen, rows_,
+      work.exceeded_rows, awake_ranges(work), may_break && work.way.by_particle);
+  if (may_break)
+    work.way.choose(n_looked, p.n_owned);
   slices_.forces(a, may_break ? breaking_screen(true) : BreakScreen(), screen, records_,
                  work.exceeded_particles, awake_slices(work));
   interfaces_.add_forces(p, work.pressure);

@@ -157,9 +157,30 @@ public:
   /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength);
   const FractureLaw &fracture() const { return fracture_; }
+  /// How the next compute() looks for breaking bonds of the lattice; its result is the same.
+  bool looks_by_particle() const { return work_.way.by_particle; }
   const Materials &materials() const { return materials_; }
 
 private:
+  /// Face by face costs nothing while few faces bear much, by particle a little always.
+  struct WayToLook
+  {
+    bool by_particle = false;
+    int since_face = 0, patience = 0; // steps by particle, and after how many faces are asked again
+    /// After a step that looked at so many of n particles more closely.
+    void choose(long n_looked, long n)
+    {
+      constexpr int many = 8, least = 64, most = 4096;
+      if (by_particle) {
+        by_particle = ++since_face < patience;
+        return;
+      }
+      by_particle = many * n_looked > n;
+      patience = by_particle ? std::clamp(2 * patience, least, most) : 0;
+      since_face = 0;
+    }
+  };
+
   /// What one evaluation leaves behind.
   struct Workspace
   {
@@ -170,6 +191,7 @@ private:
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
     double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
+    WayToLook way;
     SliceNearness nearness;
     long nearness_version = -1; // of rest
   };
@@ -247,17 +269,19 @@ private:
   /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                                 const std::vector<double> &pressure) const;
-  /// The bonds whose bound reaches the noted share, in the order of global ids, after
-  /// elastic_forces().
+  /// The bonds whose bound reaches the noted share, some of them twice, after elastic_forces().
   std::vector<BondTension<dim>> suspected_bonds(const Particles &particles) const;
+  /// Each once.
+  static void sort_by_ids(std::vector<BondTension<dim>> &bonds, const Particles &particles);
   static std::pair<std::int64_t, std::int64_t> global_ids(const Bond<dim> &bond,
                                                           const Particles &particles);
   /// Averaged stresses (D10) in Pa of these particles, ascending.
   std::vector<Strain<dim>> stresses_of(const std::vector<int> &few, const Particles &particles,
                                        const std::vector<double> &pressure) const;
-  /// Utilisations by eq. (D12) in place of their bounds.
+  /// Utilisations by eq. (D12) in place of their bounds; where they stay below `least`, something
+  /// not smaller and below it may stand instead.
   void find_principal_tension(std::vector<BondTension<dim>> &bonds, const Particles &particles,
-                              const std::vector<double> &pressure) const;
+                              const std::vector<double> &pressure, double least) const;
   /// The bonds that break now, in this order.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);
@@ -301,6 +325,7 @@ private:
   std::map<int, double> wall_share_;      // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_; // lambda_i / V_i, Pa/m^3, energy weight included
   std::vector<double> energy_weights_;    // of the particles; empty: all 1
+  std::vector<double> volumes_;           // m^3, of packings without a lattice
   particles::RestBlocks<dim> *rest_ = nullptr;
   Workspace work_;
   mutable RowWindow rows_; // scratch: nothing in it outlives a call

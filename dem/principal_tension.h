@@ -33,6 +33,26 @@ struct PrincipalTension
                     : std::pow(std::max(area_ratio, 0.5), 0.15);
   }
 
+  /// What no tension is above that a traction on a face with this normal has along the largest
+  /// principal stress of a tensor (Voigt order), eq. (D12d).
+  static double bound(const Strain<dim> &s, const Vector<dim> &normal, const Vector<dim> &traction)
+  {
+    double largest;
+    Vector<dim> own;
+    if constexpr (dim == 2) {
+      largest = (s[0] + s[1]) / 2 + std::hypot((s[0] - s[1]) / 2, s[2]);
+      own = {s[0] * normal[0] + s[2] * normal[1], s[2] * normal[0] + s[1] * normal[1]};
+    } else {
+      const double mean = (s[0] + s[1] + s[2]) / 3;
+      const Vector<3> deviator = s.template head<3>().array() - mean, off = s.template tail<3>();
+      largest = mean + std::sqrt(2. / 3 * (deviator.squaredNorm() + 2 * off.squaredNorm()));
+      own = {s[0] * normal[0] + s[5] * normal[1] + s[4] * normal[2],
+             s[5] * normal[0] + s[1] * normal[1] + s[3] * normal[2],
+             s[4] * normal[0] + s[3] * normal[1] + s[2] * normal[2]};
+    }
+    return largest + (traction - own).norm() / cone;
+  }
+
   /// Direction of the largest principal stress (Voigt order), unit.
   static Vector<dim> direction(const Strain<dim> &s)
   {

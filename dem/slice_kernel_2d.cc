@@ -109,19 +109,31 @@ public:
     sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, add_dot(f, f, zero)));
   }
 
-  /// `strain`: the strength of a whole bond over 2G.
+  using Stress = StressSum2d<V>;
+  using Moment = V;
+  static HWY_INLINE Moment no_moment(D d)
+  {
+    const V zero = hn::Zero(d);
+    return zero;
+  }
+
+  /// What the criterion asks of a bond: force, present normal (of any length), lever, and the force
+  /// of a traction of 2G.
+  struct Face
+  {
+    V2 force, normal, lever;
+    V unit;
+  };
   template <typename Bonds>
-  static HWY_INLINE hn::Mask<D> could_break(D d, const Own &own, const Bonds &bond,
-                                            const Record<D> &other, double strain, double tangent)
+  static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Record<D> &other)
   {
     const Motion m(d, own, bond, other);
     const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
     const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
-    const V2 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
     const V2 n = m.lever_i - m.lever_j;
-    const V2 mean = (n + n) + (own.change(n) + m.other.change(n));
-    const V r = hn::Sqrt(add_dot(n, n, hn::Zero(d)));
-    return reaches(d, f, mean, hn::Mul(hn::Set(d, strain), hn::Mul(shear, r)), tangent);
+    return {mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j),
+            (n + n) + (own.change(n) + m.other.change(n)), m.a_i,
+            hn::Mul(shear, hn::Sqrt(add_dot(n, n, hn::Zero(d))))};
   }
 
 private:

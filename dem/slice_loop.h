@@ -9,6 +9,7 @@
 
 #include "dem/bond_slices.h"
 #include "dem/lane_vectors.h"
+#include "dem/stress_bound.h"
 
 #include <hwy/cache_control.h>
 
@@ -257,17 +258,51 @@ private:
       visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
   }
 
+  /// visit(face) of each bond of a vector of particles.
+  template <typename Visit>
+  HWY_INLINE void for_each_face(int s, int lane, Visit &&visit) const
+  {
+    const SliceLanes d;
+    const typename Law::Own own(d, own_record(s, lane));
+    for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
+      visit(Law::face(d, own, b, record(b.neighbour())));
+  }
+
   /// Bits of the lanes whose particles have a bond that could break.
   HWY_NOINLINE std::uint32_t could_break(int s, int lane) const
   {
     const SliceLanes d;
-    const typename Law::Own own(d, own_record(s, lane));
-    const auto zero = hn::Zero(d);
-    auto found = hn::Lt(zero, zero);
-    for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
-      found = hn::Or(
-          found, Law::could_break(d, own, b, record(b.neighbour()), sweep_.strain, sweep_.tangent));
-    return lane_bits(d, found);
+    const auto strain = hn::Set(d, sweep_.strain);
+    const auto reached = [&](const typename Law::Face &face) HWY_ATTR {
+      return reaches(d, face.force, face.normal, hn::Mul(strain, face.unit), sweep_.tangent);
+    };
+    auto found = hn::Lt(strain, hn::Zero(d));
+    for_each_face(s, lane,
+                  [&](const auto &face) HWY_ATTR { found = hn::Or(found, reached(face)); });
+    if (table_.per_volume.empty() || sweep_.nearness || hn::AllFalse(d, found))
+      return lane_bits(d, found);
+
+    // Eq. (D12d), face by face.
+    const auto per_volume = hn::LoadU(d, table_.per_volume.data() + s * slice_width + lane);
+    typename Law::Stress stress(d);
+    auto moment = Law::no_moment(d);
+    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
+      stress.add(face.lever, face.force);
+      moment = add_cross(face.lever, face.force, moment);
+    });
+    stress.finish(moment, per_volume);
+    const auto room = hn::Sub(strain, stress.largest_principal());
+    auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
+    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
+      const auto zero = hn::Zero(d);
+      const auto length = hn::Sqrt(add_dot(face.normal, face.normal, zero));
+      const auto residual = length * face.force - face.unit * stress.times(face.normal);
+      const auto deviation =
+          hn::Mul(hn::Set(d, sweep_.per_cosine), hn::Sqrt(add_dot(residual, residual, zero)));
+      const auto bound_reached = hn::Ge(deviation, hn::Mul(room, hn::Mul(length, face.unit)));
+      not_cleared = hn::Or(not_cleared, hn::And(bound_reached, reached(face)));
+    });
+    return lane_bits(d, hn::And(found, not_cleared));
   }
 
   HWY_INLINE void finish_forces(int s, const double (&sums)[Law::n_sums][slice_width]) const

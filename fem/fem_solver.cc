@@ -238,6 +238,44 @@ void FemSolver<dim>::scale_velocities(double factor)
 }
 
 template <int dim>
+void FemSolver<dim>::set_mass_damping(double rate)
+{
+  damping_rate_ = rate;
+}
+
+template <int dim>
+double FemSolver<dim>::damp_velocities(double dt)
+{
+  const double factor = std::exp(-damping_rate_ * dt);
+  double loss = held_drag(dt);
+  for (int c = 0; c < dim; ++c)
+    for (const auto &[begin, end] : own_ranges_)
+      for (int i = begin; i < end; ++i)
+        if (!held_[c][i]) {
+          double &v = velocity[c][i];
+          const double momentum = mass_[i] * v;
+          loss += (1 - factor) / 2 * v * ((1 + factor) * momentum - dt * force[c][i]);
+          v *= factor;
+        }
+  return loss;
+}
+
+template <int dim>
+double FemSolver<dim>::held_drag(double dt) const
+{
+  if (support_step_ == 0)
+    return 0;
+  const double growth = std::exp(damping_rate_ * support_step_);
+  double loss = 0;
+  for (const LoadedComponent &h : held_components_)
+    if (!released_node_[h.node]) {
+      const double v = velocity[h.component][h.node], momentum = mass_[h.node] * v;
+      loss += (growth - 1) / 2 * v * ((1 + growth) * momentum - dt * force[h.component][h.node]);
+    }
+  return loss;
+}
+
+template <int dim>
 void FemSolver<dim>::follow_masters(Components<dim> &field) const
 {
   for (auto &values : field)
@@ -268,19 +306,28 @@ void FemSolver<dim>::compute_forces(double time)
     kernel_->subtract_forces(displacement, force);
   for (auto &f : force)
     hand_to_masters(f);
-  force_time_ = time;
-  for (const LoadedComponent &t : traction_components_)
-    force[t.component][t.node] += load_force(t);
+  for (LoadedComponent &t : traction_components_) {
+    t.force = t.area * loads_[t.load].traction(time)[t.component];
+    force[t.component][t.node] += t.force;
+  }
+  support_step_ = step_;
+  for (LoadedComponent &h : held_components_) {
+    h.force = support_force(h, time);
+    force[h.component][h.node] += h.force;
+  }
   book_work();
 }
 
+// theory.md eq. (F9)
 template <int dim>
-double FemSolver<dim>::load_force(const LoadedComponent &c) const
+double FemSolver<dim>::support_force(const LoadedComponent &h, double time) const
 {
-  const core::BoundaryLoad<dim> &load = loads_[c.load];
-  if (load.kind == core::BoundaryLoad<dim>::Kind::traction)
-    return c.area * load.traction(force_time_)[c.component];
-  return -force[c.component][c.node];
+  const double others = force[h.component][h.node];
+  if (step_ == 0 || released_node_[h.node])
+    return -others;
+  const double next = (prescribed(h, time + step_) - displacement[h.component][h.node]) / step_;
+  const double undamped = next * std::exp(damping_rate_ * step_);
+  return mass_[h.node] * (undamped - velocity[h.component][h.node]) / step_ - others;
 }
 
 template <int dim>
@@ -288,10 +335,10 @@ void FemSolver<dim>::book_work()
 {
   for (auto *components : {&held_components_, &traction_components_})
     for (LoadedComponent &c : *components) {
-      const double f = load_force(c), u = displacement[c.component][c.node];
+      const double u = displacement[c.component][c.node];
       if (has_previous_forces_ && !released_node_[c.node])
-        external_work_ += (c.old_force + f) / 2 * (u - c.old_displacement);
-      c.old_force = f;
+        external_work_ += (c.old_force + c.force) / 2 * (u - c.old_displacement);
+      c.old_force = c.force;
       c.old_displacement = u;
     }
   has_previous_forces_ = true;
@@ -302,9 +349,8 @@ bool FemSolver<dim>::is_loaded(double time) const
 {
   const auto acts = [&](const LoadedComponent &c) {
     const core::BoundaryLoad<dim> &load = loads_[c.load];
-    return (load.kind == core::BoundaryLoad<dim>::Kind::traction
-                ? load.traction(time)[c.component]
-                : load.displacement(c.component, time)) != 0;
+    return (load.kind == core::BoundaryLoad<dim>::Kind::traction ? load.traction(time)[c.component]
+                                                                 : prescribed(c, time)) != 0;
   };
   return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
          std::any_of(traction_components_.begin(), traction_components_.end(), acts);
@@ -313,11 +359,14 @@ bool FemSolver<dim>::is_loaded(double time) const
 template <int dim>
 Vector<dim> FemSolver<dim>::reaction(int load) const
 {
+  const auto &l = loads_[load];
+  const bool is_jump =
+      l.kind == core::BoundaryLoad<dim>::Kind::displacement && l.ramp.duration == 0;
   Vector<dim> sum = Vector<dim>::Zero();
   for (const auto *components : {&held_components_, &traction_components_})
     for (const LoadedComponent &c : *components)
       if (c.load == load)
-        sum[c.component] += load_force(c);
+        sum[c.component] += c.force - (is_jump ? force[c.component][c.node] : 0);
   return sum;
 }
 
@@ -334,10 +383,14 @@ void FemSolver<dim>::kick(double dt, double time)
   dashpots_.act(
       dt, [this](int i) { return inverse_mass_[i]; }, force, velocity);
   for (const LoadedComponent &h : held_components_)
-    if (!released_node_[h.node])
-      velocity[h.component][h.node] = (loads_[h.load].displacement(h.component, time + dt) -
-                                       displacement[h.component][h.node]) /
-                                      dt;
+    if (!released_node_[h.node]) {
+      double &v = velocity[h.component][h.node];
+      const double before = v - dt * force[h.component][h.node] * inverse_mass_[h.node];
+      v = (prescribed(h, time + dt) - displacement[h.component][h.node]) / dt;
+      if (step_ == 0)
+        external_work_ += mass_[h.node] * (v - before) * (v + before) / 2;
+    }
+  step_ = dt;
 }
 
 template <int dim>
@@ -387,8 +440,7 @@ Components<dim> FemSolver<dim>::halfway_velocity(double dt) const
   Components<dim> v = velocity;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < mesh_.n_nodes(); ++i)
-      if (!held_[c][i])
-        v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
+      v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
   follow_masters(v);
   return v;
 }
@@ -399,8 +451,7 @@ double FemSolver<dim>::squared_force() const
   double sum = 0;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < mesh_.n_nodes(); ++i)
-      if (!held_[c][i])
-        sum += force[c][i] * force[c][i] * inverse_mass_[i];
+      sum += force[c][i] * force[c][i] * inverse_mass_[i];
   return sum;
 }
 
@@ -411,8 +462,7 @@ double FemSolver<dim>::kinetic_energy(double dt) const
   for (int c = 0; c < dim; ++c)
     for (const auto &[begin, end] : own_ranges_)
       for (int i = begin; i < end; ++i)
-        if (!held_[c][i])
-          sum += velocity[c][i] * (mass_[i] * velocity[c][i] + dt * force[c][i]);
+        sum += velocity[c][i] * (mass_[i] * velocity[c][i] + dt * force[c][i]);
   return sum / 2;
 }
 

@@ -54,9 +54,11 @@ public:
   };
   Motion largest_motion() const;
 
-  /// Overwrites `force`: minus the internal force of the solver's own cells plus tractions, with
-  /// forces on hanging nodes handed to their masters. Held components get the internal force too:
-  /// it is their reaction. Hanging nodes are distributed first; external work is booked.
+  /// Overwrites `force`: minus the internal force of the solver's own cells plus tractions and the
+  /// forces of supports, with forces on hanging nodes handed to their masters. The force on a held
+  /// component thus is the one that moves its mass as the load prescribes in steps of the last
+  /// kick (theory.md eq. (F9)), none before the first. Hanging nodes are distributed first;
+  /// external work is booked.
   void compute_forces(double time);
 
   /// v += dt f/m of all nodes that are not released; held components get the velocity that
@@ -68,6 +70,13 @@ public:
 
   /// Velocities of all nodes times factor, except held components, which move as prescribed.
   void scale_velocities(double factor);
+
+  /// The rate in 1/s of the mass damping that damp_velocities() applies. Supports then carry the
+  /// drag of the components that they hold.
+  void set_mass_damping(double rate);
+  /// Mass damping over dt, after kick(dt). Returns the energy in J that it takes (theory.md eq.
+  /// (E3)), that of held components included.
+  double damp_velocities(double dt);
 
   /// Hanging nodes take displacement and velocity of their masters.
   void distribute();
@@ -81,20 +90,20 @@ public:
   /// stiffness in the present state when the cells turn.
   double quadratic_form(const Components<dim> &u) const;
 
-  /// Velocities half-way through kick(dt); those of held components and released nodes as they are.
+  /// Velocities half-way through kick(dt); those of released nodes as they are.
   Components<dim> halfway_velocity(double dt) const;
 
-  /// sum f.f/m, in N^2/kg, of the free components of nodes that are not released.
+  /// sum f.f/m, in N^2/kg, of nodes that are not released.
   double squared_force() const;
 
-  /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m, in J, of the free components of nodes that are not
-  /// released; before kick. Held components move as prescribed: their inertia is neither counted
-  /// here nor in external_work nor in reaction.
+  /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m, in J, of nodes that are not released; before kick.
+  /// Inertia and drag of held components are in `force`, in external_work and in reaction, too.
   double kinetic_energy(double dt) const;
 
   /// Work done on the body by supports and tractions at nodes that are not released, since
   /// reset_work, in J: the force of the previous and the present compute_forces, averaged, times
   /// the displacement in between. kinetic + potential - external work is then an exact invariant.
+  /// Where a motion jumps at the first kick, what this gives the held nodes.
   double external_work() const { return external_work_; }
 
   /// Energy that absorbing sides and their layers have taken, in J.
@@ -112,8 +121,9 @@ public:
   /// Whether a load moves or pulls any of the nodes at a time in s.
   bool is_loaded(double time) const;
 
-  /// Sum over the nodes that the load holds of the force the support exerts on the body, in N;
-  /// for traction loads the sum of applied forces. Index as in the list given to the constructor.
+  /// Sum over the nodes that the load holds of the force the support exerts on the body, in N,
+  /// without inertia where it is a displacement that jumps; for traction loads the sum of applied
+  /// forces. Index as in the list given to the constructor.
   Vector<dim> reaction(int load) const;
 
   const Mesh<dim> &mesh() const { return mesh_; }
@@ -129,7 +139,8 @@ private:
   {
     int node, component, load;
     double area;                                // m^2, of tractions: the node's share of the side
-    double old_force = 0, old_displacement = 0; // at the previous compute_forces
+    double force = 0;                           // N, on the body, at the last compute_forces
+    double old_force = 0, old_displacement = 0; // at the one before
   };
 
   void find_held_components();
@@ -138,7 +149,13 @@ private:
   std::vector<double> side_areas(int boundary, bool times_depth = false) const;
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
-  double load_force(const LoadedComponent &c) const; // on the body, in N
+  /// Displacement of a held component at a time in s, in m.
+  double prescribed(const LoadedComponent &h, double time) const
+  {
+    return loads_[h.load].displacement(h.component, time);
+  }
+  double support_force(const LoadedComponent &h, double time) const; // on the body, in N
+  double held_drag(double dt) const; // J, taken from held components in the last kick
   void book_work();
 
   Mesh<dim> mesh_;
@@ -152,7 +169,10 @@ private:
   std::vector<double> mass_, inverse_mass_;
   std::vector<LoadedComponent> held_components_, traction_components_;
   core::Dashpots<dim> dashpots_;
-  double external_work_ = 0, force_time_ = 0;
+  double external_work_ = 0;
+  double damping_rate_ = 0; // 1/s
+  double step_ = 0;         // s, of the last kick; 0: none yet
+  double support_step_ = 0; // s, of which supports gave inertia and drag at the last compute_forces
   bool has_previous_forces_ = false;
 };
 } // namespace ligament::fem

@@ -1,4 +1,4 @@
-#include "fem/mesh.h"
+#include "fem/cell_modes.h"
 
 #include <Eigen/Cholesky>
 
@@ -59,10 +59,6 @@ strain_matrix(const Eigen::Matrix<double, dim, n_cell_nodes<dim>> &gradients)
   return b;
 }
 
-namespace
-{
-/// Strains of a cell's own modes at s in [-1, 1]^dim: what the corners' motion leaves out of a
-/// bending cell, and in 3D what it needs to keep its volume at every Gauss point.
 template <int dim>
 Eigen::Matrix<double, n_strains<dim>, n_cell_modes<dim>> mode_strains(const Vector<dim> &s)
 {
@@ -80,7 +76,6 @@ Eigen::Matrix<double, n_strains<dim>, n_cell_modes<dim>> mode_strains(const Vect
       g.col(mode++).template head<3>().setConstant(s[(k + 1) % 3] * s[(k + 2) % 3]);
   return g;
 }
-} // namespace
 
 template <int dim>
 CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness)
@@ -115,6 +110,8 @@ template Eigen::Matrix<double, 3, 8> shape_gradients<3>(const Vector<3> &, const
                                                         const Vector<3> &);
 template Eigen::Matrix<double, 3, 8> strain_matrix<2>(const Eigen::Matrix<double, 2, 4> &);
 template Eigen::Matrix<double, 6, 24> strain_matrix<3>(const Eigen::Matrix<double, 3, 8> &);
+template Eigen::Matrix<double, 3, 4> mode_strains<2>(const Vector<2> &);
+template Eigen::Matrix<double, 6, 12> mode_strains<3>(const Vector<3> &);
 template CellMatrix<2> cell_stiffness<2>(const Vector<2> &, const Stiffness<2> &, double);
 template CellMatrix<3> cell_stiffness<3>(const Vector<3> &, const Stiffness<3> &, double);
 } // namespace ligament::fem

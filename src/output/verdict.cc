@@ -14,6 +14,8 @@ namespace
 {
 /// Above this share of the external work the ledger is not closed well enough to trust a run.
 constexpr double largest_good_residual = 1e-2;
+/// Up to here the ledger counts as closed: the share that any figure of the run may owe to it.
+constexpr double closed_residual = 1e-4;
 
 std::string join(const std::vector<std::string> &parts)
 {
@@ -41,6 +43,14 @@ std::string model_part(const RunRecord &r)
   if (const auto saving = predicted_saving(r))
     text += fmt::format(": {:.1f} x {} than pure discrete elements would be at this rate",
                         *saving >= 1 ? *saving : 1 / *saving, *saving >= 1 ? "faster" : "slower");
+  return text;
+}
+
+std::string residual_part(double residual)
+{
+  std::string text = fmt::format("energy residual {:.1g}", residual);
+  if (residual > closed_residual && residual <= largest_good_residual)
+    text += fmt::format(" of the work, above the {:.0e} of a closed balance", closed_residual);
   return text;
 }
 } // namespace
@@ -78,7 +88,7 @@ std::string verdict(const RunRecord &r)
 {
   std::vector<std::string> parts = {model_part(r)};
   if (r.energy_residual)
-    parts.push_back(fmt::format("energy residual {:.1g}", *r.energy_residual));
+    parts.push_back(residual_part(*r.energy_residual));
   if (r.status != "running" && !r.is_complete())
     parts.push_back(fmt::format("it {}: {}", incompleteness(r), r.reason));
   if (r.energy_residual && !(*r.energy_residual <= largest_good_residual))

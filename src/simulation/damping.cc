@@ -114,6 +114,8 @@ template <int dim>
 void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepTime &step)
 {
   const bool far_acts = step.step % body.coupler->step_ratio() == 0;
+  if (body.far)
+    body.far->set_mass_damping(parameters_.mass);
   if (parameters_.kinetic && far_acts) {
     auto bodies = body.bodies();
     const auto energy = body.coupler->energy(bodies, step);

@@ -53,7 +53,7 @@ std::vector<Result> energy_residual(int n, bool coupled)
     Scene scene = plate(random, k);
     if (coupled) {
       scene.specimen.size[1] = 120;
-      add_far_field(scene, {0, 40, 0}, 4);
+      add_far_field(scene, {0, 50, 0}, 5); // whose far step is at least three zone steps
       scene.coupling.fine_damper = 8;
       scene.coupling.gap_filter = 4;
       scene.coupling.step_ratio = 1 + k % 3;

@@ -14,8 +14,17 @@ namespace
 {
 constexpr double toughness = 1e6, friction = 0.3, half = 10e-3, width = 60e-3, height = 160e-3;
 
+struct Plate
+{
+  std::string packing;
+  double degrees = 0; // lattices
+  int seed = 1;
+  bool coupled = false;
+  double local_damping = 0; // 0: mass damping as in examples/closed_crack
+};
+
 /// examples/closed_crack, on any packing.
-Scene pressed_plate(const std::string &packing, double degrees, int seed)
+Scene pressed_plate(const Plate &plate)
 {
   Scene scene = unit_scene(2, {width, height, 0}, 0.25);
   scene.material.youngs_modulus = 40e9;
@@ -24,15 +33,18 @@ Scene pressed_plate(const std::string &packing, double degrees, int seed)
   scene.material.fracture = {"maximum_tension", {}, toughness};
   const double tip = half / std::sqrt(2.);
   scene.specimen.cracks = {{{{-tip, -tip, 0}, {tip, tip, 0}}}};
-  scene.zone.packing = packing;
-  scene.zone.orientation[0] = degrees * M_PI / 180;
-  scene.zone.seed = seed;
+  scene.zone.packing = plate.packing;
+  scene.zone.orientation[0] = plate.degrees * M_PI / 180;
+  scene.zone.seed = plate.seed;
   scene.zone.spacing = 0.7e-3;
-  add_far_field(scene, {0, 80e-3, 0}, 2.1e-3);
-  scene.coupling.fine_damper = 8;
-  scene.coupling.gap_filter = 4;
-  scene.coupling.step_ratio = 2;
-  scene.damping.mass = 1e4;
+  if (plate.coupled) {
+    add_far_field(scene, {0, 80e-3, 0}, 2.1e-3);
+    scene.coupling.fine_damper = 8;
+    scene.coupling.gap_filter = 4;
+    scene.coupling.step_ratio = 2;
+  }
+  scene.damping.mass = plate.local_damping == 0 ? 1e4 : 0;
+  scene.damping.local = plate.local_damping;
   add_pull(scene, 1, -20e-3, 0.2e-3);
   return scene;
 }
@@ -62,7 +74,8 @@ Wings grow_wings(const Scene &scene)
       continue;
     for (const int load : {0, 1}) {
       const auto &body = run.body();
-      double force = body.far->reaction(load)[1] + body.force->reaction(load)[1];
+      const double force =
+          body.force->reaction(load)[1] + (body.far ? body.far->reaction(load)[1] : 0);
       wings.load += std::abs(force) / width / body.thickness / 2;
     }
     wings.residual = run.unbooked() / run.work();
@@ -71,34 +84,54 @@ Wings grow_wings(const Scene &scene)
   return {};
 }
 
-/// Load over that of K_Ic at the end of wings of the same length.
+/// Load over that of K_Ic at the end of wings of the same length in a plate of the same size.
 double over_theory(const Wings &wings)
 {
   if (wings.load == 0)
     return std::nan("");
-  const KinkedCrack crack = {half, wings.length, M_PI / 4, 0, friction, 0.25};
+  const KinkedCrack crack = {half, wings.length, M_PI / 4, 0, friction, 0.25, {width, height}};
   return wings.load * largest_stress_intensity(crack) / toughness;
 }
 
+class WingTable
+{
+public:
+  /// Mean over the seeds, of a lattice one.
+  void add(const std::string &name, Plate plate, int n_seeds = 1)
+  {
+    double sum = 0;
+    for (; plate.seed <= n_seeds; ++plate.seed) {
+      const Wings wings = grow_wings(pressed_plate(plate));
+      keep_worst(worst_residual_, wings.residual);
+      sum += over_theory(wings);
+    }
+    results_.push_back({"closed_crack/" + name, std::abs(sum / n_seeds - 1), 0.15, 0.07});
+  }
+
+  std::vector<Result> results() const
+  {
+    auto results = results_;
+    results.push_back({"closed_crack/residual_over_work", worst_residual_, 1e-4, 1e-5});
+    return results;
+  }
+
+private:
+  std::vector<Result> results_;
+  double worst_residual_ = 0;
+};
+
 std::vector<Result> closed_crack()
 {
-  std::vector<Result> results;
-  double worst_residual = 0;
-  const auto measure = [&](const std::string &packing, double degrees, int seed) {
-    const Wings wings = grow_wings(pressed_plate(packing, degrees, seed));
-    keep_worst(worst_residual, wings.residual);
-    return over_theory(wings);
-  };
+  WingTable table;
   for (const double degrees : {0, 15, 30})
-    results.push_back({fmt::format("closed_crack/hexagonal_{:.0f}", degrees),
-                       std::abs(measure("hexagonal", degrees, 1) - 1), 0.15, 0.07});
-  results.push_back({"closed_crack/square", std::abs(measure("square", 0, 1) - 1), 0.15, 0.07});
-  double mean = 0;
-  for (int seed = 1; seed <= 5; ++seed)
-    mean += measure("random", 0, seed) / 5;
-  results.push_back({"closed_crack/random", std::abs(mean - 1), 0.15, 0.07});
-  results.push_back({"closed_crack/residual_over_work", worst_residual, 1e-4, 1e-5});
-  return results;
+    table.add(fmt::format("hexagonal_{:.0f}", degrees), {"hexagonal", degrees});
+  table.add("square", {"square"});
+  table.add("random", {"random"}, 5);
+  table.add("coupled_hexagonal_0", {"hexagonal", 0, 1, true});
+  table.add("coupled_random", {"random", 0, 1, true});
+  // The waves of a face that breaks die at once: the wings grow face by face, as in theory.
+  table.add("slow_hexagonal_0", {"hexagonal", 0, 1, false, 0.7});
+  return table.results();
 }
 } // namespace
 

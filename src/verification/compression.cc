@@ -214,7 +214,7 @@ std::vector<Result> run_all_3d()
   for (Material material : packings_3d)
     for (const double nu : {0., 0.3, 0.45}) {
       material.poissons_ratio = nu;
-      press<3>({0.01, 0.01, 0.08}, 0.02, 3, material, worst);
+      press<3>({0.01, 0.01, 0.1}, 0.02, 3, material, worst);
     }
   return report("compression_runs_3d", worst);
 }
@@ -243,6 +243,6 @@ std::vector<Case> compression_cases()
          return run_2d("compression_run_random", {{"random", 0, 1, 0.45}});
        }},
       {"compression_runs_2d", runs + all, true, run_all_2d},
-      {"compression_runs_3d", "bar of 10 x 10 x 80 mm pressed likewise, " + all, true, run_all_3d}};
+      {"compression_runs_3d", "bar of 10 x 10 x 100 mm pressed likewise, " + all, true, run_all_3d}};
 }
 } // namespace ligament::program

@@ -44,18 +44,16 @@ double end_of(const SceneRun &run)
   return std::min(run.record.simulated_time, run.onset().value_or(stated));
 }
 
-/// Slope of the load over the displacement of the sides, by least squares.
+/// Slope of the load over the displacement of the sides, by least squares; a line through 0.
 double slope(const SceneRun &run, double from, double to)
 {
   const auto time = run.history.column("time", "s"), load = run.history.column("load", "N"),
              way = run.history.column("displacement", "m");
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  double xx = 0, xy = 0;
   for (std::size_t k = 0; k < time.size(); ++k)
-    if (time[k] >= from && time[k] <= to) {
-      n += 1, x += way[k], y += load[k];
+    if (time[k] >= from && time[k] <= to)
       xx += way[k] * way[k], xy += way[k] * load[k];
-    }
-  return (xy - x * y / n) / (xx - x * x / n);
+  return xy / xx;
 }
 
 // The first wave has come and gone by a third of the way.

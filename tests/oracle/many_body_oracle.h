@@ -105,7 +105,7 @@ public:
       Vector<dim> e = solver.eigenvectors().col(dim - 1);
       if (e.dot(own) < 0)
         e = -e;
-      if (t.dot(own) <= 0 || own.dot(e) < 0.577)
+      if (t.dot(own) <= 0 || own.dot(e) < (dim == 2 ? 0.577 : 0.4))
         return;
       const double ratio = whole_face > 0 ? f.area / whole_face : 1;
       const double size =

@@ -318,6 +318,89 @@ void check_held_components_follow_their_load()
     for (int i = 0; i < solver.mesh().n_nodes(); ++i)
       EXPECT_EQ(solver.velocity[c][i], (solver.is_held(i, c) ? 1 : 0.5) * before[c][i]);
 }
+
+template <int dim>
+double momentum(const FemSolver<dim> &solver, int component)
+{
+  double sum = 0;
+  for (int i = 0; i < solver.mesh().n_nodes(); ++i)
+    sum += solver.lumped_mass()[i] * solver.velocity[component][i];
+  return sum;
+}
+
+/// Newton's law for the whole body under mass damping: the support carries inertia and drag of all
+/// nodes, its own included.
+template <int dim>
+void check_supports_carry_what_they_hold()
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  const double v0 = 3, ramp = 1e-3;
+  FemSolver<dim> solver(make_mesh(band<dim>()), body<dim>(),
+                        {load<dim>(2 * dim - 1, Kind::velocity, dim - 1, v0, ramp)});
+  const double dt = 0.9 * solver.stable_step(), rate = 0.1 / dt;
+  solver.set_mass_damping(rate);
+  double time = 0, largest = 0, error = 0;
+  for (int step = 0; step < 40; ++step, time += dt) {
+    solver.compute_forces(time);
+    const double before = momentum(solver, dim - 1), load = solver.reaction(0)[dim - 1];
+    solver.kick(dt, time);
+    solver.damp_velocities(dt);
+    const double needed = (momentum(solver, dim - 1) * std::exp(rate * dt) - before) / dt;
+    if (step > 0) {
+      error = std::max(error, std::abs(load - needed));
+      largest = std::max(largest, std::abs(needed));
+    }
+    solver.drift(dt);
+  }
+  EXPECT_LT(error, 1e-11 * largest);
+  EXPECT_GT(largest, 0);
+}
+
+/// A side that moves at once gives its nodes their kinetic energy by an impulse, which is work.
+template <int dim>
+void check_motion_that_jumps()
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  const double v0 = 3;
+  FemSolver<dim> solver(make_mesh(band<dim>()), body<dim>(),
+                        {load<dim>(2 * dim - 1, Kind::velocity, dim - 1, v0, 0)});
+  const double dt = 0.9 * solver.stable_step();
+  double held_mass = 0;
+  for (int i = 0; i < solver.mesh().n_nodes(); ++i)
+    held_mass += solver.is_held(i, dim - 1) * solver.lumped_mass()[i];
+  solver.compute_forces(0);
+  EXPECT_EQ(solver.reaction(0).norm(), 0);
+  solver.kick(dt, 0);
+  EXPECT_NEAR(solver.external_work() / (held_mass * v0 * v0 / 2), 1, 1e-14);
+  solver.drift(dt);
+  solver.compute_forces(dt);
+  EXPECT_NEAR(solver.kinetic_energy(dt) / (held_mass * v0 * v0 / 2), 1, 1e-12);
+}
+
+/// A displacement that comes at once is no load: what it leaves behind is the internal force.
+template <int dim>
+void check_displacement_that_jumps()
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  FemSolver<dim> jumps(make_mesh(band<dim>()), body<dim>(),
+                       {load<dim>(2 * dim - 1, Kind::displacement, dim - 1, 1e-3, 0)});
+  const double dt = 0.9 * jumps.stable_step();
+  jumps.compute_forces(0);
+  jumps.kick(dt, 0);
+  jumps.drift(dt);
+  FemSolver<dim> still = unloaded<dim>(band<dim>());
+  still.displacement = jumps.displacement;
+  still.compute_forces(dt);
+  jumps.compute_forces(dt);
+  double internal = 0, size = 0;
+  for (int i = 0; i < still.mesh().n_nodes(); ++i)
+    if (jumps.is_held(i, dim - 1)) {
+      internal -= still.force[dim - 1][i];
+      size += std::abs(still.force[dim - 1][i]);
+    }
+  EXPECT_GT(size, 0);
+  EXPECT_NEAR(jumps.reaction(0)[dim - 1], internal, 1e-12 * size);
+}
 } // namespace
 
 TEST(FemSolver, constant_strain_in_2d)
@@ -368,6 +451,18 @@ TEST(FemSolver, held_components_follow_their_load)
 {
   check_held_components_follow_their_load<2>();
   check_held_components_follow_their_load<3>();
+}
+TEST(FemSolver, supports_carry_what_they_hold)
+{
+  check_supports_carry_what_they_hold<2>();
+  check_supports_carry_what_they_hold<3>();
+}
+TEST(FemSolver, motions_that_jump)
+{
+  check_motion_that_jumps<2>();
+  check_motion_that_jumps<3>();
+  check_displacement_that_jumps<2>();
+  check_displacement_that_jumps<3>();
 }
 
 TEST(FemSolver, stable_step_of_square_and_cubic_cells)

@@ -62,6 +62,22 @@ TEST(Verdict, ScalesTheMeasuredRateToThePureModel)
   EXPECT_FALSE(predicted_saving(r));
 }
 
+TEST(Verdict, SaysWhereTheBalanceIsNotClosed)
+{
+  RunRecord r;
+  r.kind = "coupled";
+  r.status = "done";
+  const auto says = [&](double residual) {
+    r.energy_residual = residual;
+    return verdict(r).find("above the 1e-04 of a closed balance") != std::string::npos;
+  };
+  EXPECT_FALSE(says(9e-5));
+  EXPECT_TRUE(says(6e-4));
+  EXPECT_TRUE(is_stable(r)) << "a remark, no fault";
+  EXPECT_NE(verdict(r).find("nothing unstable"), std::string::npos);
+  EXPECT_FALSE(says(0.5)) << "that run is not to be trusted at all";
+}
+
 TEST(Verdict, RepeatsEveryWarningWithItsEnergy)
 {
   RunRecord r;

@@ -37,6 +37,15 @@ TEST(LoadCurve, ReboundsAreNoPeak)
   }
 }
 
+// From one reading to the next: it never was below a tenth in magnitude.
+TEST(LoadCurve, ALoadThatHasTurnedHasFallen)
+{
+  for (const double sign : {1., -1.}) {
+    const RunRecord r = record_of({{0, 0}, {sign * 3, 0}, {sign * -4, 9}, {sign * 5, 9}});
+    EXPECT_EQ(r.peak_load.value(), sign * 3);
+  }
+}
+
 // A load of 11 % is one still: arrested cracks go on.
 TEST(LoadCurve, ALoadThatHasNotFallenGoesOn)
 {

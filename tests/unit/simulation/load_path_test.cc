@@ -63,32 +63,58 @@ TEST(LoadPath, AMeshHoldsTogether)
   EXPECT_TRUE(std::isinf(section(small, 1)));
 }
 
-// Without lateral contraction only the faces that are opened bear a tension.
-TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
+/// A body without lateral contraction, of which only the faces bear a tension that are opened.
+struct OpenedPlate
 {
-  SmallBody small(
-      small_scene({"/specimen/cracks=[{\"points\": [[-12, 0], [-2, 0]]}]", square,
-                   "/material/poissons_ratio=0", "/far_field=none",
-                   R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"}));
-  auto &body = small.body;
-  auto &state = body.zone->state;
-  LoadPath<2> path(1);
-  double time = 0;
-  const auto open = [&](double from, double to) {
+  explicit OpenedPlate(std::vector<std::string> overrides)
+      : small(small_scene([&] {
+          for (const char *o :
+               {R"(/discrete_zone/packing="square")", "/material/poissons_ratio=0",
+                "/far_field=none",
+                R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"})
+            overrides.push_back(o);
+          return overrides;
+        }()))
+  {
+  }
+
+  /// Opens the faces in the middle between these places.
+  std::optional<double> open(double from, double to)
+  {
+    auto &state = small.body.zone->state;
     for (int i = 0; i < state.n_owned; ++i)
       if (state.reference[1][i] > 0 && state.reference[0][i] > from && state.reference[0][i] < to)
         state.displacement[1][i] = 2e-3;
-    body.force->compute(state, ++time);
-    return path.lost(body);
-  };
-  EXPECT_FALSE(path.lost(body));
-  EXPECT_FALSE(open(-12, 0)); // 12 of 14 are left
-  EXPECT_FALSE(open(0, 11));  // 1 of 14: more than 5 %
+    small.body.force->compute(state, ++time);
+    return path.lost(small.body);
+  }
+
+  SmallBody small;
+  LoadPath<2> path{1};
+  double time = 0;
+};
+
+TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
+{
+  OpenedPlate plate({"/specimen/cracks=[{\"points\": [[-12, 0], [-2, 0]]}]"});
+  const auto &body = plate.small.body;
+  EXPECT_FALSE(plate.path.lost(body));
+  EXPECT_FALSE(plate.open(-12, 0)); // 12 of 14 are left
+  EXPECT_FALSE(plate.open(0, 11));  // 1 of 14: more than 5 %
   EXPECT_EQ(body.force->broken_bonds().size(), 13u);
-  EXPECT_NEAR(section(small, 1), 1, 1e-9);
+  EXPECT_NEAR(section(plate.small, 1), 1, 1e-9);
   EXPECT_NEAR(smallest_section(body, 1, Carrying::at_start), 14, 1e-9);
-  const auto left = open(11, 12);
+  const auto left = plate.open(11, 12);
   ASSERT_TRUE(left);
   EXPECT_EQ(*left, 0);
+}
+
+TEST(LoadPath, IsLostWithABridgeOfAFewBonds)
+{
+  OpenedPlate plate({});
+  EXPECT_FALSE(plate.open(-12, 10)); // 2 of 24 are left
+  const auto left = plate.open(10, 11);
+  ASSERT_TRUE(left); // 1 of 24: less than 5 %
+  EXPECT_NEAR(*left, 1 / 24., 1e-9);
 }
 } // namespace

@@ -119,6 +119,9 @@ TEST(Judgement, CoupledAgainstDiscrete)
   s.runs.discrete.history = history([](int, double &load) { load *= 1.004; });
   EXPECT_EQ(s.failing(), Names{"stiffness"});
   s = Sound();
+  s.runs.discrete.history = history([](int, double &load) { load += 0.01; });
+  EXPECT_EQ(s.failing(), Names{"stiffness"});
+  s = Sound();
   s.runs.discrete.broken[0].time = 1.02 * onset;
   EXPECT_EQ(s.failing(), Names{"onset"});
   s = Sound();

@@ -20,25 +20,28 @@ void set_noise(FemSolver<dim> &solver)
       x = uniform(random);
 }
 
-/// Largest change of kinetic + potential - work, over the largest energy on the way.
+/// Largest change of kinetic + potential + damped - work, over the largest energy on the way.
 template <int dim>
-double drift_of_the_invariant(FemSolver<dim> &solver, int n_steps)
+double drift_of_the_invariant(FemSolver<dim> &solver, int n_steps, bool is_damped = false)
 {
   const double dt = 0.95 * solver.stable_step();
-  double time = 0, first = 0, error = 0, largest = 0;
+  double time = 0, first = 0, error = 0, largest = 0, damped = 0;
+  solver.set_mass_damping(is_damped ? 0.02 / dt : 0);
   for (int step = 0; step <= n_steps; ++step, time += dt) {
     solver.compute_forces(time);
     if (step == 0)
       solver.reset_work();
     if (step % 50 == 0) {
       const double kinetic = solver.kinetic_energy(dt), potential = solver.potential_energy();
-      const double energy = kinetic + potential - solver.external_work();
+      const double energy = kinetic + potential + damped - solver.external_work();
       if (step == 0)
         first = energy;
       error = std::max(error, std::abs(energy - first));
       largest = std::max({largest, std::abs(kinetic), std::abs(potential)});
     }
     solver.kick(dt, time);
+    if (is_damped)
+      damped += solver.damp_velocities(dt);
     solver.drift(dt);
   }
   return error / largest;
@@ -61,7 +64,7 @@ void check_noise()
 }
 
 template <int dim>
-void check_work()
+void check_work(bool is_damped)
 {
   using Load = core::BoundaryLoad<dim>;
   Load pull, push, side;
@@ -80,7 +83,7 @@ void check_work()
   side.value[dim - 1] = -0.05;
   side.ramp.duration = 2;
   FemSolver<dim> solver(make_mesh(ring<dim>()), {isotropic<dim>(3, 2), 0.5, 1}, {pull, push, side});
-  EXPECT_LT(drift_of_the_invariant(solver, 1000), 1e-12);
+  EXPECT_LT(drift_of_the_invariant(solver, 1000, is_damped), 1e-12);
   EXPECT_GT(solver.external_work(), 1e-3);
 }
 } // namespace
@@ -95,7 +98,12 @@ TEST(Energy, of_noise_is_kept_in_3d)
 }
 TEST(Energy, grows_by_the_work_of_loads)
 {
-  check_work<2>();
-  check_work<3>();
+  check_work<2>(false);
+  check_work<3>(false);
+}
+TEST(Energy, that_damping_takes_is_booked_at_held_nodes_too)
+{
+  check_work<2>(true);
+  check_work<3>(true);
 }
 } // namespace ligament::fem

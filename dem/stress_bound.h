@@ -1,0 +1,133 @@
+// Averaged stresses of vectors of particles, and the bound of the tension of their faces that
+// follows from them, theory.md eq. (D12d); compiled once for every instruction set.
+#if defined(LIGAMENT_DEM_STRESS_BOUND_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIGAMENT_DEM_STRESS_BOUND_H
+#undef LIGAMENT_DEM_STRESS_BOUND_H
+#else
+#define LIGAMENT_DEM_STRESS_BOUND_H
+#endif
+
+#include "dem/lane_vectors.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+/// Sums of products of levers and forces. Off the diagonal one of two products is summed: the other
+/// follows from the sum of the moments a x f, which the kernels have anyway.
+template <typename V>
+struct StressSum2d
+{
+  V xx, yy, xy;
+
+  template <typename D>
+  HWY_INLINE explicit StressSum2d(D d) : xx(hn::Zero(d)), yy(xx), xy(xx)
+  {
+  }
+  HWY_INLINE void add(const Pair<V> &a, const Pair<V> &f)
+  {
+    xx = hn::MulAdd(a.x, f.x, xx);
+    yy = hn::MulAdd(a.y, f.y, yy);
+    xy = hn::MulAdd(a.x, f.y, xy);
+  }
+  /// The symmetric part times factor, from the sum of a x f.
+  HWY_INLINE void finish(V moment, V factor)
+  {
+    xy = hn::Mul(factor, hn::NegMulAdd(hn::Set(hn::DFromV<V>(), 0.5), moment, xy));
+    xx = hn::Mul(factor, xx);
+    yy = hn::Mul(factor, yy);
+  }
+  HWY_INLINE Pair<V> times(const Pair<V> &n) const
+  {
+    return {hn::MulAdd(xx, n.x, hn::Mul(xy, n.y)), hn::MulAdd(xy, n.x, hn::Mul(yy, n.y))};
+  }
+  /// Sum of the squares of all components.
+  HWY_INLINE V square() const
+  {
+    return hn::MulAdd(xx, xx, hn::MulAdd(yy, yy, hn::Mul(hn::Add(xy, xy), xy)));
+  }
+  HWY_INLINE V largest_principal() const
+  {
+    const V half = hn::Set(hn::DFromV<V>(), 0.5);
+    const V difference = hn::Mul(half, hn::Sub(xx, yy));
+    return hn::MulAdd(half, hn::Add(xx, yy),
+                      hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy))));
+  }
+};
+
+template <typename V>
+struct StressSum3d
+{
+  V xx, yy, zz, yz, xz, xy;
+
+  template <typename D>
+  HWY_INLINE explicit StressSum3d(D d) : xx(hn::Zero(d)), yy(xx), zz(xx), yz(xx), xz(xx), xy(xx)
+  {
+  }
+  HWY_INLINE void add(const Triple<V> &a, const Triple<V> &f)
+  {
+    xx = hn::MulAdd(a.x, f.x, xx);
+    yy = hn::MulAdd(a.y, f.y, yy);
+    zz = hn::MulAdd(a.z, f.z, zz);
+    yz = hn::MulAdd(a.y, f.z, yz);
+    xz = hn::MulAdd(a.x, f.z, xz);
+    xy = hn::MulAdd(a.x, f.y, xy);
+  }
+  HWY_INLINE void finish(const Triple<V> &moment, V factor)
+  {
+    const V half = hn::Set(hn::DFromV<V>(), 0.5);
+    xx = hn::Mul(factor, xx);
+    yy = hn::Mul(factor, yy);
+    zz = hn::Mul(factor, zz);
+    yz = hn::Mul(factor, hn::NegMulAdd(half, moment.x, yz));
+    xz = hn::Mul(factor, hn::MulAdd(half, moment.y, xz));
+    xy = hn::Mul(factor, hn::NegMulAdd(half, moment.z, xy));
+  }
+  HWY_INLINE Triple<V> times(const Triple<V> &n) const
+  {
+    return {hn::MulAdd(xx, n.x, hn::MulAdd(xy, n.y, hn::Mul(xz, n.z))),
+            hn::MulAdd(xy, n.x, hn::MulAdd(yy, n.y, hn::Mul(yz, n.z))),
+            hn::MulAdd(xz, n.x, hn::MulAdd(yz, n.y, hn::Mul(zz, n.z)))};
+  }
+  HWY_INLINE V square() const
+  {
+    const V off = hn::MulAdd(yz, yz, hn::MulAdd(xz, xz, hn::Mul(xy, xy)));
+    return hn::MulAdd(xx, xx, hn::MulAdd(yy, yy, hn::MulAdd(zz, zz, hn::Add(off, off))));
+  }
+  /// Or a little more: the characteristic polynomial is convex above its largest root, which
+  /// Newton's steps therefore never pass.
+  HWY_INLINE V largest_principal() const
+  {
+    const hn::DFromV<V> d;
+    const V mean = hn::Mul(hn::Set(d, 1 / 3.), hn::Add(xx, hn::Add(yy, zz)));
+    const V a = hn::Sub(xx, mean), b = hn::Sub(yy, mean), c = hn::Sub(zz, mean);
+    const V yz2 = hn::Mul(yz, yz), xz2 = hn::Mul(xz, xz), xy2 = hn::Mul(xy, xy);
+    const V squares = hn::MulAdd(a, a, hn::MulAdd(b, b, hn::Mul(c, c)));
+    const V j2 = hn::MulAdd(hn::Set(d, 0.5), squares, hn::Add(yz2, hn::Add(xz2, xy2)));
+    const V products = hn::MulAdd(a, hn::Mul(b, c), hn::Mul(hn::Add(yz, yz), hn::Mul(xz, xy)));
+    const V j3 = hn::NegMulAdd(a, yz2, hn::NegMulAdd(b, xz2, hn::NegMulAdd(c, xy2, products)));
+    V x = hn::Sqrt(hn::Mul(hn::Set(d, 4 / 3.), j2));
+    for (int step = 0; step < 3; ++step) {
+      const V x2 = hn::Mul(x, x);
+      const V slope = hn::Max(hn::MulSub(hn::Set(d, 3.), x2, j2), hn::Set(d, 1e-300));
+      x = hn::Div(hn::MulAdd(hn::Add(x, x), x2, j3), slope);
+    }
+    return hn::Add(mean, x);
+  }
+};
+
+/// Eq. (D12d) of particles whose faces differ from S n by residual2 in the square and turn by at
+/// most `turn` against the normals of the criterion; the inverse of its least cosine comes in.
+template <typename Stress, typename V>
+HWY_INLINE V tension_bound(const Stress &stress, V residual2, double turn, double per_cosine)
+{
+  const hn::DFromV<V> d;
+  const V square = stress.square();
+  constexpr double round_off = 1e-12; // of a residual that is the difference of squares
+  const V deviation = hn::MulAdd(
+      hn::Set(d, turn), hn::Sqrt(square),
+      hn::Sqrt(hn::MulAdd(hn::Set(d, round_off), square, hn::Max(residual2, hn::Zero(d)))));
+  return hn::MulAdd(hn::Set(d, per_cosine), deviation, stress.largest_principal());
+}
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
