@@ -345,8 +345,9 @@ void expect_utilisation_of_watched_faces(const Packing<dim> &packing,
     EXPECT_EQ(force.utilisation(p, pair).share, 0);
     pair[face.j] = Watch::none;
     const auto found = force.utilisation(p, pair);
-    if (found.share > 0)
+    if (found.share > 0) {
       EXPECT_LT((found.place - face.centroid).norm(), 1e-12);
+    }
     over_neighbours = std::max(over_neighbours, found.share);
   });
   EXPECT_NEAR(over_neighbours, tension[i] / strength, 1e-12);
