@@ -343,7 +343,7 @@ double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orienta
 {
   std::vector<Vector<2>> shifts = {{0.1, 0}};
   if (!is_aligned<dim>(kind, orientation, crack))
-    shifts = {{0.1, 0.05}, {0.45, 0.3}, {0.1, -0.3}};
+    shifts = {{0.1, 0.1}, {0.1, -0.1}, {0.45, 0.3}, {0.45, -0.3}}; // as the mirror image has them
   double sum = 0;
   for (const Vector<2> &shift : shifts)
     sum += running_factor<dim>(kind, orientation, material, criterion, crack, shift);

@@ -31,7 +31,7 @@ struct CrackPatch
 };
 
 /// Raised whenever calibrate_toughness answers otherwise: what was kept before is found anew.
-inline constexpr int toughness_method = 2;
+inline constexpr int toughness_method = 3;
 
 /// c for mode I on a lattice at this orientation (LatticeParameters); strength = c K_Ic / sqrt(d)
 /// then lets a crack run at K_Ic whatever d (theory.md section 1.6).
@@ -39,7 +39,8 @@ inline constexpr int toughness_method = 2;
 /// The crack runs 6 d, face after face, with the stress along it that a crack of 2a = 80 d has
 /// under tension. A face that is harder than those before it breaks in their wave: c is the least
 /// of the largest factors in stretches of 1.5 d. In 3D a front runs 4 d along a strip, eq. (D13c).
-/// Off the rows the mean of three cracks at different places of the lattice.
+/// Off the rows the mean of four cracks at different places of the lattice, as the mirror image has
+/// them.
 template <int dim>
 double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, FractureLaw::Criterion criterion,

@@ -160,6 +160,8 @@ std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
   const auto &broken = body.force->broken_bonds();
   if (at_start_ < 0)
     at_least_ = at_start_ = smallest_section(body, axis_, Carrying::at_start);
+  if (std::isinf(at_start_)) // the mesh goes round the zone
+    return {};
   const double least = lost_share * at_start_;
   if (counted_ < broken.size()) {
     for (; counted_ < broken.size(); ++counted_)

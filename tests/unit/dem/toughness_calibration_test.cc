@@ -38,6 +38,13 @@ TEST(ToughnessCalibration, TurnedLatticeAndTurnedCrackAreTheSame)
       calibrate_toughness<2>(Kind::hexagonal, Spin<2>(0.), material(0.3), principal), 1e-9);
 }
 
+TEST(ToughnessCalibration, MirrorImagesAreAsTough)
+{
+  for (const Kind kind : {Kind::hexagonal, Kind::square})
+    EXPECT_NEAR(calibrate_toughness<2>(kind, Spin<2>(0.35), material(0.3), principal),
+                calibrate_toughness<2>(kind, Spin<2>(-0.35), material(0.3), principal), 1e-9);
+}
+
 TEST(ToughnessCalibration, ModulusAndDensityDontMatterThePatchSizeHardly)
 {
   DemMaterial other = material(0.22);

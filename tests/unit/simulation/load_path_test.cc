@@ -66,15 +66,13 @@ TEST(LoadPath, AMeshHoldsTogether)
 /// A body without lateral contraction, of which only the faces bear a tension that are opened.
 struct OpenedPlate
 {
-  explicit OpenedPlate(std::vector<std::string> overrides)
-      : small(small_scene([&] {
-          for (const char *o :
-               {R"(/discrete_zone/packing="square")", "/material/poissons_ratio=0",
+  explicit OpenedPlate(const std::vector<std::string> &overrides)
+      : small(small_scene(
+            std::vector<std::string>{
+                R"(/discrete_zone/packing="square")", "/material/poissons_ratio=0",
                 "/far_field=none",
-                R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"})
-            overrides.push_back(o);
-          return overrides;
-        }()))
+                R"(/material/fracture={"criterion": "face_tension", "strength": 1e-3})"} +
+            overrides))
   {
   }
 
@@ -107,6 +105,16 @@ TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
   const auto left = plate.open(11, 12);
   ASSERT_TRUE(left);
   EXPECT_EQ(*left, 0);
+}
+
+TEST(LoadPath, IsNeverLostWhereTheMeshGoesRoundTheZone)
+{
+  OpenedPlate plate({R"(/specimen/size=[60, 60])", R"(/far_field={"cell_size": 4.1})",
+                     R"(/discrete_zone/region={"lower": [-20, -20], "upper": [20, 20]})"});
+  EXPECT_TRUE(std::isinf(section(plate.small, 1)));
+  EXPECT_FALSE(plate.open(-3, 3));
+  EXPECT_FALSE(plate.small.body.force->broken_bonds().empty());
+  EXPECT_FALSE(plate.open(-6, 6));
 }
 
 TEST(LoadPath, IsLostWithABridgeOfAFewBonds)
