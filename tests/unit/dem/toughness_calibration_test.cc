@@ -38,11 +38,15 @@ TEST(ToughnessCalibration, TurnedLatticeAndTurnedCrackAreTheSame)
       calibrate_toughness<2>(Kind::hexagonal, Spin<2>(0.), material(0.3), principal), 1e-9);
 }
 
+// The centre of a body lies on a bond of its hexagonal lattice: 60 degrees less the angle has the
+// mirror image, the angle with a minus has its lattice at another place.
 TEST(ToughnessCalibration, MirrorImagesAreAsTough)
 {
-  for (const Kind kind : {Kind::hexagonal, Kind::square})
-    EXPECT_NEAR(calibrate_toughness<2>(kind, Spin<2>(0.35), material(0.3), principal),
-                calibrate_toughness<2>(kind, Spin<2>(-0.35), material(0.3), principal), 1e-9);
+  const double angle = 0.35;
+  EXPECT_NEAR(
+      calibrate_toughness<2>(Kind::hexagonal, Spin<2>(angle), material(0.3), principal),
+      calibrate_toughness<2>(Kind::hexagonal, Spin<2>(M_PI / 3 - angle), material(0.3), principal),
+      1e-9);
 }
 
 TEST(ToughnessCalibration, ModulusAndDensityDontMatterThePatchSizeHardly)
