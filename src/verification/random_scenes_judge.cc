@@ -181,6 +181,8 @@ public:
 
   void mirror_image()
   {
+    if (!runs_.has_mirror)
+      return;
     const auto &image = runs_.mirror, &coupled = runs_.coupled;
     const double must = scene_.damping == "local" ? stated : 1e-9;
     if (!runs_.is_mirrored)

@@ -67,15 +67,6 @@ void mirror_packing(const std::string &from, const std::string &to)
   particles::write_packing_file(to, seeds);
 }
 
-/// That of a run in place of the toughness from which it followed: once is enough.
-Json with_strength(Json scene, const SceneRun &run)
-{
-  auto &fracture = scene["material"]["fracture"];
-  fracture.erase("toughness");
-  fracture["strength"] = run.record.figures.at("strength").value;
-  return scene;
-}
-
 Json mirror_of(const RandomScene &scene, const SceneRun &coupled, const std::string &folder)
 {
   Json image = mirrored(scene.json);
@@ -91,7 +82,7 @@ Json mirror_of(const RandomScene &scene, const SceneRun &coupled, const std::str
   zone["packing_file"] = std::filesystem::absolute(to).string();
   for (const char *key : {"seed", "size_ratio"})
     zone.erase(key);
-  return with_strength(image, coupled); // a toughness has its factor from a random packing
+  return image;
 }
 
 Json with_half_step(Json scene)
@@ -121,8 +112,7 @@ SceneRuns run_scene(const RandomScene &scene, const std::string &folder)
   SceneRuns runs;
   try {
     runs.coupled = run(scene.json, folder + "/coupled");
-    runs.discrete =
-        run(with_strength(all_discrete(scene.json), runs.coupled), folder + "/all_discrete");
+    runs.discrete = run(all_discrete(scene.json), folder + "/all_discrete");
   } catch (const core::InputError &error) {
     runs.refused = error.what();
     return runs;
@@ -131,14 +121,16 @@ SceneRuns run_scene(const RandomScene &scene, const std::string &folder)
                  scene.json["far_field"]["cell_size"].get<double>();
   runs.far_step = runs.coupled.record.dt * runs.coupled.record.step_ratio;
   runs.half_step =
-      run(up_to_onset(with_strength(with_half_step(scene.json), runs.coupled), runs.coupled),
-          folder + "/half_step");
-  try {
-    runs.mirror =
-        run(up_to_onset(mirror_of(scene, runs.coupled, folder), runs.coupled), folder + "/mirror");
-  } catch (const core::InputError &) {
-    runs.is_mirrored = false;
-  }
+      run(up_to_onset(with_half_step(scene.json), runs.coupled), folder + "/half_step");
+  // The factor of a toughness cannot be found for the packing of a file.
+  runs.has_mirror = !(scene.toughness && scene.packing == "random");
+  if (runs.has_mirror)
+    try {
+      runs.mirror = run(up_to_onset(mirror_of(scene, runs.coupled, folder), runs.coupled),
+                        folder + "/mirror");
+    } catch (const core::InputError &) {
+      runs.is_mirrored = false;
+    }
   runs.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   return runs;
 }

@@ -30,6 +30,7 @@ struct SceneRuns
   SceneRun coupled, discrete, mirror, half_step;
   double overlap = 0;      // m, width
   double far_step = 0;     // s, of the coupled run
+  bool has_mirror = true;  // there is one to compute
   bool is_mirrored = true; // the mirror's scene could be built
   double seconds = 0;      // of the processor
 };
