@@ -38,7 +38,7 @@ inline constexpr int toughness_method = 3;
 ///
 /// The crack runs 6 d, face after face, with the stress along it that a crack of 2a = 80 d has
 /// under tension. A face that is harder than those before it breaks in their wave: c is the least
-/// of the largest factors in stretches of 1.5 d. In 3D a front runs 4 d along a strip, eq. (D13c).
+/// of the largest factors in stretches of 1.5 d. In 3D a front runs 2 d along a strip, eq. (D13c).
 /// Off the rows the mean of four cracks at different places of the lattice, as the mirror image has
 /// them.
 template <int dim>
