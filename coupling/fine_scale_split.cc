@@ -306,37 +306,65 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
+    const Nodal<dim> swing = swing_of(bodies, step);
+    loss += damped_impulse_energy(bodies, swing, step.dt, whole);
     loss += bodies.far->damp_velocities(parameters_.step_ratio * step.dt);
-    loss += damp_coarse(bodies, step, whole);
+    loss += damp_coarse(bodies, step, swing, whole);
   }
   write_velocities(bodies);
   return loss;
 }
 
-// Just after an impulse V is ahead of its mean by what the near forces take back until the next
-// one: that swing moves nothing and is left as it is.
+// Just after an impulse V is ahead of its mean by what the near forces take back until the next one.
+template <int dim>
+Nodal<dim> FineScaleSplit<dim>::swing_of(const Bodies<dim> &bodies, const StepTime &step) const
+{
+  const int m = parameters_.step_ratio;
+  Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  if (m == 1 || rests_)
+    return swing;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      swing(i, c) = (m - 1) * step.dt / 2 * bodies.far->force[c][overlap_.near_nodes[i]];
+  mass_solver_->solve(swing.data(), dim);
+  return swing;
+}
+
+// The swing moves nothing and is left as it is.
 template <int dim>
 double FineScaleSplit<dim>::damp_coarse(const Bodies<dim> &bodies, const StepTime &step,
-                                        double factor)
+                                        const Nodal<dim> &swing, double factor)
 {
   if (rests_)
     return 0;
   const int m = parameters_.step_ratio;
   Nodal<dim> force = force_; // near forces and the far field's, without its factor m
-  Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-  if (m > 1) {
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < overlap_.n_nodes(); ++i)
-        swing(i, c) = (m - 1) * bodies.far->force[c][overlap_.near_nodes[i]];
-    force -= swing;
-    swing *= step.dt / 2;
-    mass_solver_->solve(swing.data(), dim);
-  }
+  for (int c = 0; c < dim && m > 1; ++c)
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      force(i, c) -= (m - 1) * bodies.far->force[c][overlap_.near_nodes[i]];
   const Nodal<dim> mean = velocity_ - swing;
   const Nodal<dim> momentum = mass_ * mean;
   const double still = 0.5 * mean.cwiseProduct(momentum).sum();
   velocity_ = factor * mean + swing;
   return scaling_loss(still, still + 0.5 * step.dt * mean.cwiseProduct(force).sum(), factor);
+}
+
+// theory.md eq. (E5b)
+template <int dim>
+double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies,
+                                                  const Nodal<dim> &swing, double dt,
+                                                  double factor) const
+{
+  const int m = parameters_.step_ratio;
+  if (m == 1)
+    return 0;
+  const auto &far = *bodies.far;
+  Components<dim> v = far.velocity;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      v[c][overlap_.near_nodes[i]] = velocity_(i, c) - swing(i, c);
+  far.follow_masters(v);
+  return (1 - factor * factor) * (m * m - 1) * dt * dt / 6 * far.quadratic_form(v);
 }
 
 template <int dim>

@@ -89,8 +89,14 @@ private:
   /// Whether a wave has come; then particles and nodes of the overlap move from now on.
   void look(Bodies<dim> &bodies, const StepTime &step);
   double share_of(long rested) const { return kicks_ > 0 ? double(rested) / double(kicks_) : 0; }
+  /// By how much V is ahead of its mean just after an impulse.
+  Nodal<dim> swing_of(const Bodies<dim> &bodies, const StepTime &step) const;
   /// Mass damping of V; returns the energy in J that it takes.
-  double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, double factor);
+  double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, const Nodal<dim> &swing,
+                     double factor);
+  /// What mass damping of all velocities by the factor takes of (E5), in J: eq. (E5b).
+  double damped_impulse_energy(const Bodies<dim> &bodies, const Nodal<dim> &swing, double dt,
+                               double factor) const;
   void write_velocities(Bodies<dim> &bodies);
   void write_far_velocities(fem::FemSolver<dim> &far) const;
   /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far
