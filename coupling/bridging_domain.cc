@@ -355,12 +355,12 @@ double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
 {
   const auto timing = this->timers_.scope(this->coupling_);
   const double still = 0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_)).sum();
+  if (step.dt > 0)
+    compute_near_force(bodies, force_);
   const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
-  auto &zone = *bodies.zone;
-  double loss = scaling_loss(still, moving, factor) +
-                scaling_loss(zone.kinetic_energy(0), zone.kinetic_energy(step.dt), factor);
-  zone.scale_velocities(factor);
-  loss += bodies.far->damp_velocities(step.dt);
+  const double loss = scaling_loss(still, moving, factor) +
+                      bodies.zone->damp_velocities(factor, step.dt) +
+                      bodies.far->damp_velocities(step.dt);
   velocity_ *= factor;
   write_near_velocities(*bodies.far);
   return loss;

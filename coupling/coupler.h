@@ -60,9 +60,9 @@ public:
   virtual void kick(Bodies<dim> &bodies, const StepTime &step) = 0;
   /// Multiplies all velocities that no load prescribes.
   virtual void scale_velocities(Bodies<dim> &bodies, double factor) = 0;
-  /// Mass damping: velocities keep this factor in each step, those of the far field by the rate
-  /// that it was given. After kick; returns the energy in J that it takes (theory.md eqs. (E3),
-  /// (E9)).
+  /// Mass damping of half a step, in which velocities keep this factor, those of the far field by
+  /// the rate that it was given. Before the kick, and with the sign of dt changed after it; returns
+  /// the energy in J that it takes (theory.md eqs. (E3), (E9)).
   virtual double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) = 0;
   /// Of a step before its kick. With the sign of dt changed: after it, of the same positions.
   virtual CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const = 0;
@@ -87,10 +87,10 @@ protected:
 };
 
 /// Energy in J that multiplying velocities by `factor` takes: `still` is 1/2 v M v and `moving`
-/// 1/2 v M v + 1/2 dt v f of these velocities, f the forces that last acted (theory.md eq. (E3)).
+/// 1/2 v M v + 1/2 dt v f of these velocities before kick(dt), dt < 0 after it (theory.md eq. (E3)).
 inline double scaling_loss(double still, double moving, double factor)
 {
-  return (1 - factor * factor) * still - (1 - factor) * (moving - still);
+  return (1 - factor * factor) * still + (1 - factor) * (moving - still);
 }
 
 /// One half alone: the same loop without an overlap.

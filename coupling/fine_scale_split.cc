@@ -220,28 +220,29 @@ double FineScaleSplit<dim>::impulse_energy(const Bodies<dim> &bodies, const Half
 template <int dim>
 double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) const
 {
-  const auto &zone = bodies.zone->state;
+  const auto &zone = *bodies.zone;
+  return fine_.kinetic_energy(zone.state, dt) + zone.kinetic_energy(dt) -
+         member_kinetic(zone.state, dt);
+}
+
+template <int dim>
+double FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone, double dt) const
+{
   double sum = 0;
-  for (int i = 0; i < zone.n_owned; ++i) {
-    const int index = overlap_.member_of_particle[i];
-    if (index < 0)
-      for (int c = 0; c < dim; ++c)
-        sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
-    if (index < 0 || !overlap_.members[index].pad)
-      for (int c = 0; c < n_spins<dim>; ++c)
-        sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
+  for (const auto &member : overlap_.members) {
+    const int i = member.particle;
+    for (int c = 0; c < dim; ++c)
+      sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
+    for (int c = 0; c < n_spins<dim> && member.pad; ++c)
+      sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
   }
-  return fine_.kinetic_energy(zone, dt) + sum / 2;
+  return sum / 2;
 }
 
 template <int dim>
 void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
-  if (rests_) {
-    if (is_far_step(step))
-      far_rests(bodies, step); // in the first step no force has asked
-    look(bodies, step);
-  }
+  look(bodies, step);
   ++kicks_;
   rested_ += rests_;
   far_rested_ += far_rests_;
@@ -301,39 +302,53 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
                                             double factor)
 {
   const auto timing = this->timers_.scope(this->coupling_);
-  double loss = scaling_loss(fine_kinetic(bodies, 0), fine_kinetic(bodies, step.dt), factor);
-  bodies.zone->scale_velocities(factor);
+  auto &zone = *bodies.zone;
+  double loss = scaling_loss(fine_.kinetic_energy(zone.state, 0),
+                             fine_.kinetic_energy(zone.state, step.dt), factor) -
+                scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt),
+                             factor);
+  loss += zone.damp_velocities(factor, step.dt);
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
-    const Nodal<dim> swing = swing_of(bodies, step);
-    loss += damped_impulse_energy(bodies, swing, step.dt, whole);
+    if (step.dt > 0) {
+      look(bodies, step);
+      loss += damp_coarse_before_kick(bodies, step.dt, whole);
+    } else
+      loss += damped_impulse_energy(bodies, -step.dt, whole) +
+              damp_coarse_after_kick(bodies, -step.dt, whole);
     loss += bodies.far->damp_velocities(parameters_.step_ratio * step.dt);
-    loss += damp_coarse(bodies, step, swing, whole);
   }
   write_velocities(bodies);
   return loss;
 }
 
-// Just after an impulse V is ahead of its mean by what the near forces take back until the next one.
+// Between two impulses V swings about its mean: just before one it is behind by what the near forces
+// have taken back, just after it ahead by as much. The swing moves nothing and is left as it is.
 template <int dim>
-Nodal<dim> FineScaleSplit<dim>::swing_of(const Bodies<dim> &bodies, const StepTime &step) const
+double FineScaleSplit<dim>::damp_coarse_before_kick(const Bodies<dim> &bodies, double dt,
+                                                    double factor)
 {
   const int m = parameters_.step_ratio;
-  Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-  if (m == 1 || rests_)
-    return swing;
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      swing(i, c) = (m - 1) * step.dt / 2 * bodies.far->force[c][overlap_.near_nodes[i]];
-  mass_solver_->solve(swing.data(), dim);
-  return swing;
+  swing_.setZero(overlap_.n_nodes(), dim);
+  undamped_ = swing_;
+  if (rests_)
+    return 0;
+  if (m > 1) {
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < overlap_.n_nodes(); ++i)
+        swing_(i, c) = (m - 1) * dt / 2 * bodies.far->force[c][overlap_.near_nodes[i]];
+    mass_solver_->solve(swing_.data(), dim);
+  }
+  undamped_ = velocity_ + swing_;
+  velocity_ = factor * undamped_ - swing_;
+  // The rest of it waits for the forces of the kick.
+  return (1 - factor * factor) / 2 * undamped_.cwiseProduct(Nodal<dim>(mass_ * undamped_)).sum();
 }
 
-// The swing moves nothing and is left as it is.
 template <int dim>
-double FineScaleSplit<dim>::damp_coarse(const Bodies<dim> &bodies, const StepTime &step,
-                                        const Nodal<dim> &swing, double factor)
+double FineScaleSplit<dim>::damp_coarse_after_kick(const Bodies<dim> &bodies, double dt,
+                                                   double factor)
 {
   if (rests_)
     return 0;
@@ -342,17 +357,16 @@ double FineScaleSplit<dim>::damp_coarse(const Bodies<dim> &bodies, const StepTim
   for (int c = 0; c < dim && m > 1; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
       force(i, c) -= (m - 1) * bodies.far->force[c][overlap_.near_nodes[i]];
-  const Nodal<dim> mean = velocity_ - swing;
-  const Nodal<dim> momentum = mass_ * mean;
-  const double still = 0.5 * mean.cwiseProduct(momentum).sum();
-  velocity_ = factor * mean + swing;
-  return scaling_loss(still, still + 0.5 * step.dt * mean.cwiseProduct(force).sum(), factor);
+  const Nodal<dim> mean = velocity_ - swing_;
+  velocity_ = factor * mean + swing_;
+  const double still = mean.cwiseProduct(Nodal<dim>(mass_ * mean)).sum();
+  return (1 - factor) / 2 *
+         ((1 + factor) * still + dt * (undamped_ - mean).cwiseProduct(force).sum());
 }
 
 // theory.md eq. (E5b)
 template <int dim>
-double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies,
-                                                  const Nodal<dim> &swing, double dt,
+double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies, double dt,
                                                   double factor) const
 {
   const int m = parameters_.step_ratio;
@@ -362,9 +376,9 @@ double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies,
   Components<dim> v = far.velocity;
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < overlap_.n_nodes(); ++i)
-      v[c][overlap_.near_nodes[i]] = velocity_(i, c) - swing(i, c);
+      v[c][overlap_.near_nodes[i]] = velocity_(i, c) - swing_(i, c);
   far.follow_masters(v);
-  return (1 - factor * factor) * (m * m - 1) * dt * dt / 6 * far.quadratic_form(v);
+  return (1 - std::pow(factor, 4)) * (m * m - 1) * dt * dt / 6 * far.quadratic_form(v);
 }
 
 template <int dim>

@@ -89,14 +89,12 @@ private:
   /// Whether a wave has come; then particles and nodes of the overlap move from now on.
   void look(Bodies<dim> &bodies, const StepTime &step);
   double share_of(long rested) const { return kicks_ > 0 ? double(rested) / double(kicks_) : 0; }
-  /// By how much V is ahead of its mean just after an impulse.
-  Nodal<dim> swing_of(const Bodies<dim> &bodies, const StepTime &step) const;
-  /// Mass damping of V; returns the energy in J that it takes.
-  double damp_coarse(const Bodies<dim> &bodies, const StepTime &step, const Nodal<dim> &swing,
-                     double factor);
-  /// What mass damping of all velocities by the factor takes of (E5), in J: eq. (E5b).
-  double damped_impulse_energy(const Bodies<dim> &bodies, const Nodal<dim> &swing, double dt,
-                               double factor) const;
+  /// Mass damping of V by the factor; the energy in J that it takes is known after the kick.
+  double damp_coarse_before_kick(const Bodies<dim> &bodies, double dt, double factor);
+  double damp_coarse_after_kick(const Bodies<dim> &bodies, double dt, double factor);
+  /// What mass damping of all velocities by the factor, before the kick and after it, takes of (E5),
+  /// in J: eq. (E5b). After the kick.
+  double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
   void write_velocities(Bodies<dim> &bodies);
   void write_far_velocities(fem::FemSolver<dim> &far) const;
   /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far
@@ -116,6 +114,8 @@ private:
   double impulse_energy(const Bodies<dim> &bodies, const Halfway &near, double dt) const;
   /// 1/2 v M v + 1/2 dt v f of w with all spins and with the velocities outside the overlap.
   double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
+  /// The same of the overlap's particles as they move, and of the spins of pads.
+  double member_kinetic(const particles::Particles<dim> &zone, double dt) const;
 
   FineScaleSplitParameters parameters_;
   Overlap<dim> overlap_;
@@ -134,6 +134,7 @@ private:
   Nodal<dim> force_;                   // on the near nodes at the last kick, N
   Nodal<dim> change_;                  // of V
   Nodal<dim> middle_, lost_;           // V half-way through it, and what the filter takes there
+  Nodal<dim> undamped_, swing_;        // mean of V before mass damping; what V differs by from it
   double gap_filter_energy_ = 0;
 
   bool rests_ = false, far_rests_ = false;

@@ -63,11 +63,8 @@ template <int dim>
 double NullCoupler<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor)
 {
   double loss = 0;
-  if (bodies.zone) {
-    loss +=
-        scaling_loss(bodies.zone->kinetic_energy(0), bodies.zone->kinetic_energy(step.dt), factor);
-    bodies.zone->scale_velocities(factor);
-  }
+  if (bodies.zone)
+    loss += bodies.zone->damp_velocities(factor, step.dt);
   if (bodies.far)
     loss += bodies.far->damp_velocities(step.dt);
   return loss;

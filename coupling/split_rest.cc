@@ -33,6 +33,10 @@ bool FineScaleSplit<dim>::far_rests(const Bodies<dim> &bodies, const StepTime &s
 template <int dim>
 void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
 {
+  if (!rests_)
+    return;
+  if (is_far_step(step))
+    far_rests(bodies, step); // in the first step no force has asked
   const auto *const rest = bodies.zone->rest();
   bool wakes = std::any_of(overlap_.members.begin(), overlap_.members.end(),
                            [&](const auto &m) { return rest->is_awake(m.particle); });

@@ -246,15 +246,15 @@ void FemSolver<dim>::set_mass_damping(double rate)
 template <int dim>
 double FemSolver<dim>::damp_velocities(double dt)
 {
-  const double factor = std::exp(-damping_rate_ * dt);
-  double loss = held_drag(dt);
+  const double factor = std::exp(-damping_rate_ * std::abs(dt) / 2);
+  double loss = dt < 0 ? held_drag(-dt) : 0;
   for (int c = 0; c < dim; ++c)
     for (const auto &[begin, end] : own_ranges_)
       for (int i = begin; i < end; ++i)
         if (!held_[c][i]) {
           double &v = velocity[c][i];
           const double momentum = mass_[i] * v;
-          loss += (1 - factor) / 2 * v * ((1 + factor) * momentum - dt * force[c][i]);
+          loss += (1 - factor) / 2 * v * ((1 + factor) * momentum + dt * force[c][i]);
           v *= factor;
         }
   return loss;
@@ -265,12 +265,14 @@ double FemSolver<dim>::held_drag(double dt) const
 {
   if (support_step_ == 0)
     return 0;
-  const double growth = std::exp(damping_rate_ * support_step_);
+  const double growth = std::exp(damping_rate_ * support_step_ / 2);
   double loss = 0;
   for (const LoadedComponent &h : held_components_)
     if (!released_node_[h.node]) {
-      const double v = velocity[h.component][h.node], momentum = mass_[h.node] * v;
-      loss += (growth - 1) / 2 * v * ((1 + growth) * momentum - dt * force[h.component][h.node]);
+      const double mass = mass_[h.node], after = velocity[h.component][h.node];
+      const double kick = dt * force[h.component][h.node] / mass;
+      const double before = growth * (growth * after - kick);
+      loss += mass / 2 * (before + kick - after) * (before + after);
     }
   return loss;
 }
@@ -326,8 +328,9 @@ double FemSolver<dim>::support_force(const LoadedComponent &h, double time) cons
   if (step_ == 0 || released_node_[h.node])
     return -others;
   const double next = (prescribed(h, time + step_) - displacement[h.component][h.node]) / step_;
-  const double undamped = next * std::exp(damping_rate_ * step_);
-  return mass_[h.node] * (undamped - velocity[h.component][h.node]) / step_ - others;
+  const double growth = std::exp(damping_rate_ * step_ / 2);
+  const double kick = growth * next - velocity[h.component][h.node] / growth;
+  return mass_[h.node] * kick / step_ - others;
 }
 
 template <int dim>

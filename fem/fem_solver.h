@@ -74,8 +74,9 @@ public:
   /// The rate in 1/s of the mass damping that damp_velocities() applies. Supports then carry the
   /// drag of the components that they hold.
   void set_mass_damping(double rate);
-  /// Mass damping over dt, after kick(dt). Returns the energy in J that it takes (theory.md eq.
-  /// (E3)), that of held components included.
+  /// Mass damping of half the step dt, before kick(dt); after it, with the sign of dt changed, the
+  /// other half. Returns the energy in J that it takes (theory.md eq. (E3)), that of held
+  /// components with the second half.
   double damp_velocities(double dt);
 
   /// Hanging nodes take displacement and velocity of their masters.

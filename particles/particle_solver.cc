@@ -4,6 +4,7 @@
 #include "particles/turn_orientations.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace ligament::particles
 {
@@ -113,6 +114,45 @@ void ParticleSolver<dim>::scale_velocities(double factor)
   for (auto &array : state.spin)
     for (double &w : array)
       w *= factor;
+}
+
+namespace
+{
+/// v times factor; adds v.f of the former v to power, and returns v.M v. Sums run in `n_sums`
+/// strands: the compiler may not reorder those of one.
+double damp(std::vector<double> &velocity, const std::vector<double> &force,
+            const std::vector<double> &mass, int n, double factor, double &power)
+{
+  constexpr int n_sums = 8;
+  double twice_energy[n_sums] = {}, work[n_sums] = {};
+  const auto damp_one = [&](int i, int k) {
+    const double v = velocity[i];
+    twice_energy[k] += (std::isinf(mass[i]) ? 0 : mass[i]) * v * v; // infinite: held
+    work[k] += v * force[i];
+    velocity[i] = factor * v;
+  };
+  int i = 0;
+  for (; i + n_sums <= n; i += n_sums)
+    for (int k = 0; k < n_sums; ++k)
+      damp_one(i + k, k);
+  for (; i < n; ++i)
+    damp_one(i, 0);
+  power = std::accumulate(work, work + n_sums, power);
+  return std::accumulate(twice_energy, twice_energy + n_sums, 0.);
+}
+} // namespace
+
+template <int dim>
+double ParticleSolver<dim>::damp_velocities(double factor, double dt)
+{
+  double twice_energy = 0, power = 0;
+  for (int c = 0; c < dim; ++c)
+    twice_energy +=
+        damp(state.velocity[c], state.force[c], state.mass, state.n_owned, factor, power);
+  for (int c = 0; c < n_spins<dim>; ++c)
+    twice_energy += state.gyration * damp(state.spin[c], state.torque[c], state.mass,
+                                          state.n_owned, factor, power);
+  return (1 - factor) / 2 * ((1 + factor) * twice_energy + dt * power);
 }
 
 template class ParticleSolver<2>;

@@ -33,6 +33,9 @@ public:
 
   /// Velocities and spins of all particles times factor.
   void scale_velocities(double factor);
+  /// The same; returns the energy in J that it takes from kinetic_energy(dt). Before kick(dt), with
+  /// the sign of dt changed after it (theory.md eq. (E3)).
+  double damp_velocities(double factor, double dt);
 
   /// From now on blocks at rest are passed over. To be called with the forces of the present state;
   /// afterwards particles that are not awake must not be moved from outside.

@@ -111,6 +111,14 @@ double BodyDamping<dim>::local_power(const CoupledBody<dim> &body) const
 }
 
 template <int dim>
+double BodyDamping<dim>::damp_half_a_step(CoupledBody<dim> &body, const coupling::StepTime &step)
+{
+  auto bodies = body.bodies();
+  return body.coupler->damp_velocities(bodies, step,
+                                       std::exp(-parameters_.mass * std::abs(step.dt) / 2));
+}
+
+template <int dim>
 void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepTime &step)
 {
   const bool far_acts = step.step % body.coupler->step_ratio() == 0;
@@ -127,6 +135,8 @@ void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepT
       body.coupler->scale_velocities(bodies, 0);
     }
   }
+  if (parameters_.mass > 0)
+    energy_ += damp_half_a_step(body, step);
   if (parameters_.local > 0 && !restarts_) {
     add_local_forces(body, step.dt, far_acts);
     energy_ -= 0.5 * step.dt * local_power(body);
@@ -136,11 +146,13 @@ void BodyDamping<dim>::before_kick(CoupledBody<dim> &body, const coupling::StepT
 template <int dim>
 void BodyDamping<dim>::after_kick(CoupledBody<dim> &body, const coupling::StepTime &step)
 {
+  // Mass damping books with the local forces as parts of the others: it goes first, so that the
+  // power left to book is that of the damped velocities.
+  if (parameters_.mass > 0)
+    energy_ += damp_half_a_step(body, {step.step, step.time, -step.dt});
   if (parameters_.local > 0 && !restarts_)
     energy_ -= 0.5 * step.dt * local_power(body);
   auto bodies = body.bodies();
-  if (parameters_.mass > 0)
-    energy_ += body.coupler->damp_velocities(bodies, step, std::exp(-parameters_.mass * step.dt));
   // Rest at the time of the positions means half a kick half a step later. Rest half a step later
   // would let stiff modes grow: by 1/sqrt(1 - (omega dt/2)^2) with each restart.
   if (restarts_) {

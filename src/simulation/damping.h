@@ -24,6 +24,9 @@ public:
 private:
   void add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts);
   double local_power(const CoupledBody<dim> &body) const;
+  /// Mass damping of half the step; before the kick, with the sign of dt changed after it. Returns
+  /// the energy in J that it takes.
+  double damp_half_a_step(CoupledBody<dim> &body, const coupling::StepTime &step);
 
   Damping parameters_;
   double energy_ = 0;

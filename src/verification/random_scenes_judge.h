@@ -20,6 +20,13 @@ struct SceneFigure
   bool holds() const { return value <= must; } // a value that is not a number doesn't
 };
 
+/// What two models of a body may differ by before somebody looks closer.
+constexpr double stiffness_bound = 3e-3, peak_bound = 1e-2;
+
+/// Whether coupled and all discrete run differ by more, in scenes for which a bound stands.
+bool stiffness_is_doubtful(const RandomScene &scene, const SceneRuns &runs);
+bool peak_is_doubtful(const RandomScene &scene, const SceneRuns &runs);
+
 /// All that applies to the scene. Of a scene that was refused: none.
 std::vector<SceneFigure> judge(const RandomScene &scene, const SceneRuns &runs);
 

@@ -133,7 +133,9 @@ SceneResult compute_scene(int seed, const std::string &folder)
   result.seed = seed;
   result.kind = kind_of(scene);
   try {
-    const SceneRuns runs = run_scene(scene, folder);
+    SceneRuns runs = run_scene(scene, folder);
+    look_closer(scene, folder, stiffness_is_doubtful(scene, runs), peak_is_doubtful(scene, runs),
+                runs);
     result.refused = first_line(runs.refused);
     result.seconds = runs.seconds;
     result.figures = judge(scene, runs);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 
@@ -92,6 +93,39 @@ Json with_half_step(Json scene)
   return scene;
 }
 
+/// Without crack and hole, and so strong that nothing breaks.
+Json whole_body(Json scene)
+{
+  for (const char *cuts : {"cracks", "holes"})
+    scene["specimen"].erase(cuts);
+  scene["material"]["fracture"] = {{"criterion", "none"}};
+  scene["time"]["stop_when"] = "end";
+  return scene;
+}
+
+Json mesh_alone(Json scene)
+{
+  scene["discrete_zone"]["extent"] = "none";
+  return scene;
+}
+
+/// Peak loads of the runs with shorter steps.
+std::vector<double> scattered_peaks(const Json &scene, const SceneRun &first,
+                                    const std::string &folder)
+{
+  std::vector<double> peaks{first.record.peak_load.value_or(NAN)};
+  for (const double share : {0.95, 0.9, 0.8, 0.5}) {
+    Json shorter = scene;
+    auto &fraction = shorter["time"]["step_fraction"];
+    fraction = fraction.get<double>() * share;
+    std::filesystem::remove_all(folder);
+    const SceneRun other = run(shorter, folder);
+    if (other.record.peak_load && other.record.status == "done")
+      peaks.push_back(*other.record.peak_load);
+  }
+  return peaks;
+}
+
 Json up_to_onset(Json scene, const SceneRun &coupled)
 {
   auto &duration = scene["time"]["duration"];
@@ -133,6 +167,22 @@ SceneRuns run_scene(const RandomScene &scene, const std::string &folder)
     }
   runs.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   return runs;
+}
+
+void look_closer(const RandomScene &scene, const std::string &folder, bool at_stiffness,
+                 bool at_peak, SceneRuns &runs)
+{
+  auto &closer = runs.closer;
+  if (at_stiffness) {
+    const Json whole = whole_body(scene.json);
+    closer.mesh = run(mesh_alone(whole), folder + "/mesh");
+    closer.particles = run(all_discrete(whole), folder + "/particles");
+  }
+  if (at_peak) {
+    const std::string other = folder + "/other_step";
+    closer.coupled_peaks = scattered_peaks(scene.json, runs.coupled, other);
+    closer.discrete_peaks = scattered_peaks(all_discrete(scene.json), runs.discrete, other);
+  }
 }
 
 void write_scene(const RandomScene &scene, const std::string &folder)

@@ -5,6 +5,7 @@
 #include "tests/support/small_plate.h"
 
 #include <cmath>
+#include <numeric>
 
 using namespace ligament;
 using namespace ligament::program;
@@ -19,6 +20,7 @@ struct Balance
   double left = 0;             // kinetic and potential energy at the end over the start energy
   double damping = 0;          // taken by body damping over the start energy
   double residual_of_work = 0; // its change over the external work, at the end
+  double elapsed = 0;          // s
 };
 
 /// Follows the plate from a state at rest to the first action of the far field after `duration`.
@@ -52,6 +54,7 @@ Balance follow(const Scene &scene, SmallBody &small, double duration)
     step.time = step.step * step.dt;
     body.coupler->compute_forces(bodies, step);
   }
+  balance.elapsed = step.time;
   return balance;
 }
 
@@ -150,6 +153,58 @@ TEST(EnergyLedger, FarStepsBookTheDampingOfAPulledPlate)
     SmallBody small(scene);
     const auto b = follow(scene, small, 2 * one_vibration);
     EXPECT_LT(std::abs(b.residual_of_work), 1e-4);
+  }
+}
+
+/// Mean displacement along y, in m, of the particles; without any, of the nodes.
+double mean_displacement(const CoupledBody<2> &body)
+{
+  const auto &u = body.zone ? body.zone->state.displacement[1] : body.far->displacement[1];
+  return std::accumulate(u.begin(), u.end(), 0.) / double(u.size());
+}
+
+// A constant force F ends in a steady motion in which the drag is F: v = F/(alpha m), but for the
+// square of alpha times the (far) step over 24. A factor on velocities after the kick alone would
+// leave half of alpha times the step: 2.5 % to 12 % here.
+TEST(MassDamping, DragsAsItsRateSays)
+{
+  const std::string push = R"(/loads=[{"boundary": "top", "traction": [null, 1e-8]},
+                                      {"boundary": "bottom", "traction": [null, 1e-8]}])";
+  const double force = 2e-8 * 24, mass = 24 * 120, rate = 0.1; // N, kg, 1/s
+  auto kinds = body_kinds;
+  kinds.push_back({"coupled, step ratio 4", {"/coupling/step_ratio=4"}});
+  for (const auto &kind : kinds) {
+    SCOPED_TRACE(kind.name);
+    const Scene scene =
+        small_scene(kind.overrides + std::vector<std::string>{push, "/damping/mass=0.1"});
+    SmallBody small(scene);
+    follow(scene, small, 2 * one_vibration); // e^-22 of the vibrations are left
+    const double start = mean_displacement(small.body);
+    const double elapsed = follow(scene, small, 20).elapsed;
+    const double speed = (mean_displacement(small.body) - start) / elapsed;
+    EXPECT_NEAR(speed * rate * mass / force, 1, 4e-3);
+  }
+}
+
+// Local damping opposes the present motion: it leaves a body that moves on alone, but drags one that
+// vibrates on its way, and how much depends on the vibration. That is why a coupled body and its
+// twin, whose particles and nodes vibrate differently, bear different loads with it.
+TEST(LocalDamping, DragsWhatVibratesOnItsWay)
+{
+  const Scene scene = small_scene({"/far_field=none", "/damping/local=0.3"});
+  for (const double strain : {0., 1e-6}) {
+    SCOPED_TRACE(strain);
+    SmallBody small(scene);
+    small.deform(Eigen::Vector2d(0, strain).asDiagonal());
+    const double speed = 3e-6; // m/s; the ends vibrate with 1e-6
+    small.body.zone->state.velocity[1].assign(small.body.zone->state.size(), speed);
+    follow(scene, small, one_vibration);
+    const auto &v = small.body.zone->state.velocity[1];
+    const double kept = std::accumulate(v.begin(), v.end(), 0.) / (double(v.size()) * speed);
+    if (strain == 0)
+      EXPECT_NEAR(kept, 1, 1e-9);
+    else
+      EXPECT_LT(kept, 0.9);
   }
 }
 

@@ -117,10 +117,10 @@ TEST(Judgement, CoupledAgainstDiscrete)
 {
   Sound s;
   s.runs.discrete.history = history([](int, double &load) { load *= 1.004; });
-  EXPECT_EQ(s.failing(), Names{"stiffness"});
+  EXPECT_EQ(s.failing(), Names{"stiffness_beyond_mesh"});
   s = Sound();
   s.runs.discrete.history = history([](int, double &load) { load += 0.01; });
-  EXPECT_EQ(s.failing(), Names{"stiffness"});
+  EXPECT_EQ(s.failing(), Names{"stiffness_beyond_mesh"});
   s = Sound();
   s.runs.discrete.broken[0].time = 1.02 * onset;
   EXPECT_EQ(s.failing(), Names{"onset"});
@@ -129,7 +129,45 @@ TEST(Judgement, CoupledAgainstDiscrete)
   EXPECT_EQ(s.failing(), Names{"onset"});
   s = Sound();
   s.runs.discrete.record.peak_load = 1.22;
-  EXPECT_EQ(s.failing(), Names{"peak"});
+  EXPECT_EQ(s.failing(), Names{"peak_beyond_scatter"});
+  s.scene.damping = "local";
+  EXPECT_EQ(s.failing(), Names());
+}
+
+// A coupled body may be as stiff as its mesh alone, not more, nor off to the other side.
+TEST(Judgement, ACloserLookAtTheStiffness)
+{
+  const auto times = [](double factor) {
+    return history([=](int, double &load) { load *= factor; });
+  };
+  Sound s;
+  const SceneRun sound = s.runs.coupled;
+  s.runs.coupled.history = times(1.01);
+  EXPECT_TRUE(stiffness_is_doubtful(s.scene, s.runs));
+  s.runs.closer.mesh = s.runs.closer.particles = sound;
+  EXPECT_EQ(s.failing(), Names{"stiffness_beyond_mesh"});
+  s.runs.closer.mesh->history = times(1.008);
+  EXPECT_EQ(s.failing(), Names());
+  s.runs.closer.mesh->history = times(1.02);
+  EXPECT_EQ(s.failing(), Names());
+  s.runs.closer.mesh->history = times(0.98);
+  EXPECT_EQ(s.failing(), Names{"stiffness_beyond_mesh"});
+  s.runs.coupled.history = times(1.002);
+  EXPECT_FALSE(stiffness_is_doubtful(s.scene, s.runs));
+}
+
+TEST(Judgement, ACloserLookAtThePeak)
+{
+  Sound s;
+  s.runs.discrete.record.peak_load = 1.3;
+  EXPECT_TRUE(peak_is_doubtful(s.scene, s.runs));
+  s.runs.closer.coupled_peaks = {1.2, 1.22, 1.24};
+  s.runs.closer.discrete_peaks = {1.3, 1.26, 1.35};
+  EXPECT_EQ(s.failing(), Names{"peak_beyond_scatter"}); // 1.26 / 1.24 - 1
+  s.runs.closer.discrete_peaks.push_back(1.25);
+  EXPECT_EQ(s.failing(), Names());
+  s.runs.discrete.record.peak_load = 1.21;
+  EXPECT_FALSE(peak_is_doubtful(s.scene, s.runs));
 }
 
 TEST(Judgement, FarFieldsDontBreak)

@@ -39,9 +39,11 @@ double drift_of_the_invariant(FemSolver<dim> &solver, int n_steps, bool is_dampe
       error = std::max(error, std::abs(energy - first));
       largest = std::max({largest, std::abs(kinetic), std::abs(potential)});
     }
-    solver.kick(dt, time);
     if (is_damped)
       damped += solver.damp_velocities(dt);
+    solver.kick(dt, time);
+    if (is_damped)
+      damped += solver.damp_velocities(-dt);
     solver.drift(dt);
   }
   return error / largest;
