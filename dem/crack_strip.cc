@@ -1,6 +1,7 @@
 #include "dem/crack_strip.h"
 
 #include "core/check.h"
+#include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "particles/particle_solver.h"
@@ -20,27 +21,8 @@ constexpr double n_crossings = 100;
 constexpr double start = 0.5;
 constexpr double whole_length = 10; // d
 
-/// Grips at y that draw apart at this opening rate in m/s and leave x free; smooth walls at z.
-template <int dim>
-std::vector<core::BoundaryLoad<dim>> grips(double opening_rate)
-{
-  std::vector<core::BoundaryLoad<dim>> loads(2);
-  for (int k = 0; k < 2; ++k) {
-    loads[k].boundary = 2 + k;
-    loads[k].value[1] = (k == 0 ? -0.5 : 0.5) * opening_rate;
-  }
-  if constexpr (dim == 3)
-    for (const int boundary : {4, 5}) {
-      core::BoundaryLoad<3> wall;
-      wall.boundary = boundary;
-      wall.kind = core::BoundaryLoad<3>::Kind::displacement;
-      wall.value[2] = 0;
-      loads.push_back(wall);
-    }
-  return loads;
-}
-
-/// A body between grips that moves on with its slowest wave across critically damped.
+/// A body between grips, in 3D between smooth walls, too, that moves on with its slowest wave
+/// across critically damped.
 template <int dim>
 class DrawnStrip
 {
@@ -54,8 +36,10 @@ public:
     particles::fill_particles(packing, density, state);
     for (int i = 0; i < state.size(); ++i)
       state.displacement[1][i] = opening_rate * start_time / height * state.reference[1][i];
-    auto owned = std::make_unique<ManyBodyForce<dim>>(std::move(packing), material,
-                                                      grips<dim>(opening_rate), law);
+    auto loads = grips<dim>(opening_rate);
+    add_smooth_walls(loads);
+    auto owned =
+        std::make_unique<ManyBodyForce<dim>>(std::move(packing), material, std::move(loads), law);
     force_ = owned.get();
     dt_ = 0.9 * force_->stable_step(state);
     const double shear_speed = std::sqrt(material.shear_modulus() / density);

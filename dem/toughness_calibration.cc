@@ -1,6 +1,7 @@
 #include "dem/toughness_calibration.h"
 
 #include "dem/crack_strip.h"
+#include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "particles/linear_equilibrium.h"
@@ -150,14 +151,7 @@ private:
   ManyBodyForce<dim> make_force() const
   {
     std::vector<core::BoundaryLoad<dim>> walls;
-    if constexpr (dim == 3)
-      for (const int boundary : {4, 5}) {
-        core::BoundaryLoad<3> wall;
-        wall.boundary = boundary;
-        wall.kind = core::BoundaryLoad<3>::Kind::displacement;
-        wall.value[2] = 0;
-        walls.push_back(wall);
-      }
+    add_smooth_walls(walls);
     return {packing_, material_, walls, unit_law<dim>(criterion_)};
   }
 

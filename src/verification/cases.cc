@@ -36,6 +36,7 @@ std::vector<Case> all_cases()
   add(closed_crack_cases());
   add(toughness_cases());
   add(toughness_3d_cases());
+  add(toughness_mixed_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -65,6 +65,7 @@ std::vector<Case> contrast_cases();
 std::vector<Case> compression_cases();
 std::vector<Case> toughness_cases();
 std::vector<Case> toughness_3d_cases();
+std::vector<Case> toughness_mixed_cases();
 std::vector<Case> random_scene_cases();
 
 /// All cases in the order in which they are printed.

@@ -1,4 +1,5 @@
 // Toughness of plates that break: K at the peak load over the K_Ic of the scene, on any packing.
+#include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
@@ -89,15 +90,10 @@ double half_length(const particles::Packing<2> &packing)
 double peak_load(particles::Packing<2> packing, const dem::DemMaterial &glass,
                  const dem::FractureLaw &law)
 {
-  std::vector<core::BoundaryLoad<2>> ends(2);
-  for (int k = 0; k < 2; ++k) {
-    ends[k].boundary = 2 + k;
-    ends[k].value[1] = k == 0 ? -3.3e-3 : 3.3e-3;
-    ends[k].ramp.duration = 0.4e-3;
-  }
   particles::Particles<2> state;
   particles::fill_particles(packing, density, state);
-  auto owned = std::make_unique<dem::ManyBodyForce<2>>(std::move(packing), glass, ends, law);
+  auto owned = std::make_unique<dem::ManyBodyForce<2>>(std::move(packing), glass,
+                                                       dem::grips<2>(6.6e-3, 0.4e-3), law);
   const auto &force = *owned;
   const double dt = 0.9 * force.stable_step(state);
   particles::ParticleSolver<2> plate(std::move(state), std::move(owned));

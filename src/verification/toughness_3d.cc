@@ -1,4 +1,5 @@
 // Toughness in 3D: bars with an edge crack of six spacings against their plane-strain twins.
+#include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
@@ -41,27 +42,6 @@ void lay_out(const Bar &bar, particles::SpecimenParameters<dim> &p)
   }
 }
 
-template <int dim>
-std::vector<core::BoundaryLoad<dim>> loads(const Bar &bar, double rate, double ramp)
-{
-  std::vector<core::BoundaryLoad<dim>> loads(2);
-  for (int k = 0; k < 2; ++k) {
-    loads[k].boundary = 2 + k;
-    loads[k].value[1] = (k == 0 ? -0.5 : 0.5) * rate;
-    loads[k].ramp.duration = ramp;
-  }
-  if constexpr (dim == 3)
-    if (bar.walls)
-      for (const int boundary : {4, 5}) {
-        core::BoundaryLoad<3> wall;
-        wall.boundary = boundary;
-        wall.kind = core::BoundaryLoad<3>::Kind::displacement;
-        wall.value[2] = 0;
-        loads.push_back(wall);
-      }
-  return loads;
-}
-
 /// sigma sqrt(pi a sec(pi a/2W)) at the largest load, over K_Ic: no stress intensity factor of this
 /// bar, but it grows with a as that does. a is what the cut breaks, seen along y.
 template <int dim>
@@ -80,8 +60,11 @@ double relative_toughness(const Bar &bar, particles::Packing<dim> packing, doubl
                rate = opening / (50 * crossing);
   particles::Particles<dim> state;
   particles::fill_particles(packing, density, state);
+  auto loads = dem::grips<dim>(rate, 5 * crossing);
+  if (bar.walls)
+    dem::add_smooth_walls(loads);
   auto owned = std::make_unique<dem::ManyBodyForce<dim>>(
-      std::move(packing), alumina, loads<dim>(bar, rate, 5 * crossing),
+      std::move(packing), alumina, std::move(loads),
       dem::FractureLaw{criterion,
                        c * toughness / std::sqrt(spacing),
                        {},
