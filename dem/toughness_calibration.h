@@ -31,7 +31,7 @@ struct CrackPatch
 };
 
 /// Raised whenever calibrate_toughness answers otherwise: what was kept before is found anew.
-inline constexpr int toughness_method = 3;
+inline constexpr int toughness_method = 4;
 
 /// c for mode I on a lattice at this orientation (LatticeParameters); strength = c K_Ic / sqrt(d)
 /// then lets a crack run at K_Ic whatever d (theory.md section 1.6).
@@ -46,8 +46,9 @@ double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orienta
                            const DemMaterial &material, FractureLaw::Criterion criterion,
                            const CrackAxes<dim> &crack = {});
 
-/// The same on a random packing: the mean over 8 cracks (3D: 4), each in a sample of its own with
-/// the same relaxation and size ratio. The packing's own seed is not read.
+/// The same on a random packing: the mean over cracks in samples of their own, 8 to 32 of them until
+/// it is known to half a per cent (3D: 4), each with the same
+/// relaxation and size ratio. The packing's own seed is not read.
 template <int dim>
 double calibrate_toughness(const particles::RandomParameters<dim> &packing,
                            const DemMaterial &material, FractureLaw::Criterion criterion);

@@ -176,12 +176,16 @@ double toughness_ratio(const RandomScene::Toughness &t, const RunRecord &record)
   return stress * std::sqrt(M_PI * a / std::cos(M_PI * a / t.width)) / t.toughness;
 }
 
-/// Of the packing, and what a crack of so few spacings leaves open: its tip is known to d/4.
+/// Of the packing, and what cracks and ligaments of so few spacings leave open: the tip is known to
+/// d/4, and the next terms of the field count for 3.5 % where there are 10 d (theory.md section 1.6).
 double toughness_bound(const RandomScene &scene, double spacing)
 {
   const double packing = scene.packing == "random" ? 0.1 : 0.05;
-  return packing + 0.125 * spacing / scene.toughness->half_length;
+  const auto &t = *scene.toughness;
+  return packing + 0.125 * spacing / t.half_length +
+         0.35 * spacing / std::min(t.half_length, t.width / 2 - t.half_length);
 }
+
 
 /// Collects the figures. Without damping the runs swing, and local damping drags what moves on and
 /// makes runs sensitive to rounding: such figures have names of their own.

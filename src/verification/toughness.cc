@@ -137,7 +137,8 @@ double relative_toughness(const CrackedPlate &plate)
   return stress * std::sqrt(M_PI * a / std::cos(M_PI * a / width)) / toughness;
 }
 
-/// Least, largest, mean and standard deviation over some plates.
+/// Least, largest, mean and standard deviation over some plates. Of ten random ones that scatter as
+/// they may one lies 2.5 standard deviations off the mean.
 std::vector<Result> spread(const std::string &name, const std::vector<CrackedPlate> &plates)
 {
   std::vector<double> k;
@@ -148,8 +149,11 @@ std::vector<Result> spread(const std::string &name, const std::vector<CrackedPla
   for (const double one : k)
     sum += one, squares += one * one;
   const double n = double(k.size()), mean = sum / n;
-  return {{name + "/least", *least, 0.95, 0.98, Result::Bound::at_least},
-          {name + "/largest", *largest, 1.05, 1.02},
+  const bool random = std::all_of(plates.begin(), plates.end(),
+                                  [](const auto &plate) { return plate.packing == "random"; });
+  const double must = random ? 0.1 : 0.05, aim = random ? 0.05 : 0.02;
+  return {{name + "/least", *least, 1 - must, 1 - aim, Result::Bound::at_least},
+          {name + "/largest", *largest, 1 + must, 1 + aim},
           {name + "/off_the_mean", std::abs(mean - 1), 0.03, 0.02},
           {name + "/standard_deviation", std::sqrt(std::max(squares / n - mean * mean, 0.)), 0.04,
            0.02}};

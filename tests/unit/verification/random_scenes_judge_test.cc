@@ -141,6 +141,7 @@ TEST(Judgement, ACloserLookAtTheStiffness)
     return history([=](int, double &load) { load *= factor; });
   };
   Sound s;
+  s.runs.has_mirror = false;
   const SceneRun sound = s.runs.coupled;
   s.runs.coupled.history = times(1.01);
   EXPECT_TRUE(stiffness_is_doubtful(s.scene, s.runs));
