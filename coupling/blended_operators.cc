@@ -304,11 +304,12 @@ fem::CellMatrix<dim> relief_by_modes(const Overlap<dim> &overlap,
         visit(x, fem::mode_strains<dim>(s), w * (1 - overlap.weight(x)) * body.thickness);
     });
   };
-  double volume = 0;
+  double volume = 0, energy = 0; // energy of all modes, their means included
   Eigen::Matrix<double, n_strains<dim>, n_modes> mean = decltype(mean)::Zero();
   for_each_lonely_point([&](const Vector<dim> &, const auto &modes, double w) {
     volume += w;
     mean += w * modes;
+    energy += w * (modes.transpose() * body.stiffness * modes).trace();
   });
   if (volume == 0)
     return fem::CellMatrix<dim>::Zero();
@@ -321,9 +322,9 @@ fem::CellMatrix<dim> relief_by_modes(const Overlap<dim> &overlap,
     coupled += w * g.transpose() * body.stiffness * b;
     own += w * g.transpose() * body.stiffness * g;
   });
-  // In a thin part some modes are constant and do nothing.
+  // In a thin part some modes are constant and do nothing, where a corner has one point alone all.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n_modes, n_modes>> solver(own);
-  const double least = 1e-10 * solver.eigenvalues()[n_modes - 1];
+  const double least = 1e-10 * energy;
   fem::CellMatrix<dim> relief = fem::CellMatrix<dim>::Zero();
   for (int m = 0; m < n_modes; ++m)
     if (solver.eigenvalues()[m] > least) {
