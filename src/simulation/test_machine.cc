@@ -89,18 +89,22 @@ template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
   const int axis = boundary / 2;
-  const double place = boundary % 2 ? body.upper[axis] : body.lower[axis];
   if (!body.far)
-    return extrapolated_displacement(body, axis, place, component);
-  double sum = 0;
-  long n = 0;
+    return extrapolated_displacement(body, axis,
+                                     boundary % 2 ? body.upper[axis] : body.lower[axis], component);
+  double sum = 0, area = 0;
   const auto &mesh = body.far->mesh();
-  for (int i = 0; i < mesh.n_nodes(); ++i)
-    if (std::abs(mesh.nodes[i][axis] - place) < 1e-9 * std::abs(place)) {
-      sum += body.far->displacement[component][i];
-      ++n;
+  for (const auto &face : mesh.boundary_faces)
+    if (face.boundary == boundary) {
+      const Vector<dim> &h = mesh.cell_size[face.cell];
+      const double share = h.prod() / h[axis];
+      area += share;
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        if (((a >> axis) & 1) == boundary % 2)
+          sum += share / (fem::n_cell_nodes<dim> / 2) *
+                 body.far->displacement[component][mesh.cells[face.cell][a]];
     }
-  return n ? sum / n : 0;
+  return area > 0 ? sum / area : 0;
 }
 
 template class TestMachine<2>;

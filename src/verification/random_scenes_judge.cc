@@ -253,8 +253,9 @@ public:
     if (!scene_.toughness || !runs_.coupled.onset() || record.status != "done")
       return;
     const double ratio = toughness_ratio(*scene_.toughness, record);
-    add("toughness", ratio, stated);
-    add("toughness_over_bound", std::abs(ratio - 1) / toughness_bound(scene_, record.spacing), 1);
+    add("toughness" + local(), ratio, stated);
+    add("toughness_over_bound" + local(),
+        std::abs(ratio - 1) / toughness_bound(scene_, record.spacing), local().empty() ? 1 : stated);
   }
 
   void compression()

@@ -76,6 +76,20 @@ TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
   }
 }
 
+// The mean over the side, whatever its cells: that of x^2 is W^2/12 but for the chords of the cells.
+TEST(TestMachine, MeansOverTheAreaOfTheSide)
+{
+  SmallBody small(small_scene({"/discrete_zone=none", pulled_ends}));
+  auto &far = *small.body.far;
+  double largest = 0; // cell, along x
+  for (const auto &h : far.mesh().cell_size)
+    largest = std::max(largest, h[0]);
+  for (int i = 0; i < far.mesh().n_nodes(); ++i)
+    far.displacement[1][i] = std::pow(far.mesh().nodes[i][0], 2);
+  EXPECT_NEAR(mean_displacement(small.body, 3, 1), 24 * 24 / 12., largest * largest / 6 * (1 + 1e-12));
+  EXPECT_GE(mean_displacement(small.body, 3, 1), 24 * 24 / 12.);
+}
+
 // Particles nearer than d/4 to a side are left out: the outermost row may lie more than d inside.
 TEST(TestMachine, FindsTheSideBeyondARowThatWasLeftOut)
 {
