@@ -71,6 +71,7 @@ template <int dim>
 void ManyBodyForce<dim>::lay_out_slices()
 {
   slices_ = BondSlices<dim>(bonds_, materials_.base().shear_modulus(), bonds_.n_directions() == 0);
+  screen_.clear();
   if (!volumes_.empty())
     slices_.set_volumes(bonds_, volumes_, energy_weights_);
   records_ = {};
@@ -243,9 +244,12 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
+  const bool by_particle = may_break && work.way.by_particle;
   const long n_looked = kernel_.forces(
       a, bonds_.segments(), may_break ? breaking_screen(false) : BreakScreen(), screen, rows_,
-      work.exceeded_rows, awake_ranges(work), may_break && work.way.by_particle);
+      work.exceeded_rows, awake_ranges(work), by_particle);
+  work.own_terms = !awake_ranges(work) && screen.traction == 0 &&
+                   (by_particle || bonds_.n_directions() == 0);
   if (may_break)
     work.way.choose(n_looked, p.n_owned);
   slices_.forces(a, may_break ? breaking_screen(true) : BreakScreen(), screen, records_,
@@ -286,6 +290,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   surface_.book_work(p, work_.pressure);
   if (broken_at_ == time)
     return;
+  clear_by_stress(p);
   const auto exceeding = exceeding_bonds(p);
   if (exceeding.empty())
     return;
