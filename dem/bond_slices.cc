@@ -181,7 +181,8 @@ void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::Larg
 template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
                              const TractionScreen &screen, core::LargeArray &records,
-                             std::vector<int> &exceeded, const SliceNearness *nearness) const
+                             std::vector<int> &exceeded, const SliceNearness *nearness,
+                             bool faces_too) const
 {
   exceeded.clear();
   if (empty())
@@ -194,7 +195,7 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
   add_slice_forces({table_, arrays, records.data(), squared(breaking.least_traction()),
                     all_particles_, &exceeded, nearness, nullptr, squared(screen.traction), screen,
                     breaking.strength / (2 * shear_modulus_), breaking.tangent,
-                    breaking.per_cosine()});
+                    breaking.per_cosine(), 0, -1, faces_too});
 }
 
 template <int dim>

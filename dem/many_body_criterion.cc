@@ -124,19 +124,40 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
   return t;
 }
 
+// The screen doesn't know plastic strains.
+template <int dim>
+bool ManyBodyForce<dim>::is_cleared_by_stress() const
+{
+  return fracture_.criterion == FractureLaw::Criterion::maximum_tension &&
+         (!plastic_ || plastic_->plastic().empty());
+}
+
+template <int dim>
+std::vector<int> ManyBodyForce<dim>::noted_particles() const
+{
+  const auto &rows = work_.exceeded_rows;
+  auto few = work_.exceeded_particles;
+  std::sort(few.begin(), few.end());
+  std::vector<int> noted;
+  auto next = few.begin();
+  for (const RowRange &range : rows) {
+    while (next != few.end() && *next < range.begin)
+      noted.push_back(*next++);
+    for (int i = range.begin; i < range.end; ++i)
+      noted.push_back(i);
+    while (next != few.end() && *next < range.end)
+      ++next;
+  }
+  noted.insert(noted.end(), next, few.end());
+  return noted;
+}
+
 template <int dim>
 void ManyBodyForce<dim>::clear_by_stress(const Particles &p)
 {
-  // The screen doesn't know plastic strains.
-  if (fracture_.criterion != FractureLaw::Criterion::maximum_tension ||
-      (plastic_ && !plastic_->plastic().empty()))
+  if (!is_cleared_by_stress())
     return;
-  std::vector<int> noted = work_.exceeded_particles;
-  for (const RowRange &range : work_.exceeded_rows)
-    for (int i = range.begin; i < range.end; ++i)
-      noted.push_back(i);
-  std::sort(noted.begin(), noted.end());
-  noted.erase(std::unique(noted.begin(), noted.end()), noted.end());
+  const std::vector<int> noted = noted_particles();
   if (int(noted.size()) < StressScreen<dim>::least) {
     screen_.pass();
     return;
@@ -390,6 +411,7 @@ template void ManyBodyForce<2>::set_noted_share(double);
 template Utilisation<2> ManyBodyForce<2>::utilisation(const Particles &,
                                                       const std::vector<Watch> &) const;
 template void ManyBodyForce<2>::find_largest_size_factor();
+template bool ManyBodyForce<2>::is_cleared_by_stress() const;
 template void ManyBodyForce<2>::clear_by_stress(const Particles &);
 template BreakScreen ManyBodyForce<2>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
@@ -400,6 +422,7 @@ template void ManyBodyForce<3>::set_noted_share(double);
 template Utilisation<3> ManyBodyForce<3>::utilisation(const Particles &,
                                                       const std::vector<Watch> &) const;
 template void ManyBodyForce<3>::find_largest_size_factor();
+template bool ManyBodyForce<3>::is_cleared_by_stress() const;
 template void ManyBodyForce<3>::clear_by_stress(const Particles &);
 template BreakScreen ManyBodyForce<3>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;

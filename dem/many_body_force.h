@@ -189,7 +189,8 @@ private:
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
     std::vector<RowRange> exceeded_rows; // with bonds that may reach the noted share of the limit
     std::vector<int> exceeded_particles; // with bonds of the table that may
-    bool own_terms = false; // every such bond's through what the stress of one of both says
+    /// Of every such bond a particle whose own stress says so, theory.md eq. (D12d), is noted.
+    bool own_terms = false;
     std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
     double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
@@ -271,6 +272,10 @@ private:
   /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                                 const std::vector<double> &pressure) const;
+  /// Whether clear_by_stress() follows the kernels.
+  bool is_cleared_by_stress() const;
+  /// Ascending.
+  std::vector<int> noted_particles() const;
   /// Leaves out what the stresses clear of the particles that elastic_forces() noted.
   void clear_by_stress(const Particles &particles);
   /// The bonds whose bound reaches the noted share, some of them twice, after elastic_forces().

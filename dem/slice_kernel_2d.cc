@@ -52,6 +52,10 @@ public:
       force = {torque, torque};
     }
     HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE std::uint32_t exceeding(D d) const
+    {
+      return lane_bits(d, hn::Gt(excess, hn::Zero(d)));
+    }
     HWY_INLINE void store(D d, const Own &, double (&to)[n_sums][slice_width], int lane) const
     {
       hn::Store(force.x, d, to[0] + lane);
@@ -187,9 +191,9 @@ void add_slice_energies_2d(const SliceSweep<2> &sweep)
   Slices2d(sweep).energies();
 }
 void take_pressures_2d(const LatticeArrays<2> &arrays, const SliceTable<2> &table,
-                       double *records)
+                       double *records, int begin, int end)
 {
-  take_pressures_of<SliceLaw2d>(arrays, table, records);
+  take_pressures_of<SliceLaw2d>(arrays, table, records, begin, end);
 }
 void find_stresses_2d(const StressSweep<2> &sweep)
 {
@@ -229,9 +233,10 @@ void add_slice_energies(const SliceSweep<2> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_energies_2d)(sweep);
 }
-void take_pressures(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records)
+void take_pressures(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
+                    int begin, int end)
 {
-  HWY_DYNAMIC_DISPATCH(take_pressures_2d)(arrays, table, records);
+  HWY_DYNAMIC_DISPATCH(take_pressures_2d)(arrays, table, records, begin, end);
 }
 void find_stresses(const StressSweep<2> &sweep)
 {

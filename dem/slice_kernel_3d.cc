@@ -60,6 +60,10 @@ public:
       excess = zero;
     }
     HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE std::uint32_t exceeding(D d) const
+    {
+      return lane_bits(d, hn::Gt(excess, hn::Zero(d)));
+    }
     HWY_INLINE void store(D d, const Own &own, double (&to)[n_sums][slice_width], int lane) const
     {
       const V3 body = couple + couple;
@@ -227,9 +231,9 @@ void add_slice_energies_3d(const SliceSweep<3> &sweep)
   Slices3d(sweep).energies();
 }
 void take_pressures_3d(const LatticeArrays<3> &arrays, const SliceTable<3> &table,
-                       double *records)
+                       double *records, int begin, int end)
 {
-  take_pressures_of<SliceLaw3d>(arrays, table, records);
+  take_pressures_of<SliceLaw3d>(arrays, table, records, begin, end);
 }
 void find_stresses_3d(const StressSweep<3> &sweep)
 {
@@ -269,9 +273,10 @@ void add_slice_energies(const SliceSweep<3> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_energies_3d)(sweep);
 }
-void take_pressures(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records)
+void take_pressures(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
+                    int begin, int end)
 {
-  HWY_DYNAMIC_DISPATCH(take_pressures_3d)(arrays, table, records);
+  HWY_DYNAMIC_DISPATCH(take_pressures_3d)(arrays, table, records, begin, end);
 }
 void find_stresses(const StressSweep<3> &sweep)
 {

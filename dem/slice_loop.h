@@ -131,8 +131,8 @@ public:
     const SliceLanes d;
     constexpr int n = n_lanes;
     HWY_ALIGN double number[record_size][slice_width] = {};
-    const int n_records = table_.n_records();
-    for (int first = 0; first < n_records; first += slice_width) {
+    const int n_records = sweep_.end_record < 0 ? table_.n_records() : sweep_.end_record;
+    for (int first = sweep_.first_record; first < n_records; first += slice_width) {
       if (sweep_.nearness && sweep_.nearness->records[first / slice_width] < Rest::turned)
         continue;
       const int size = std::min(slice_width, n_records - first);
@@ -210,7 +210,7 @@ public:
         if (HWY_UNLIKELY(sum.exceeds(d))) {
           reached = true;
           if (sweep_.limit2 < sweep_.never)
-            breaking |= could_break(s, lane) << lane;
+            breaking |= (sweep_.faces_too ? could_break(s, lane) : sum.exceeding(d)) << lane;
         }
       }
       finish_forces(s, sums);

@@ -200,9 +200,9 @@ private:
 
 template <typename Law, int dim>
 HWY_INLINE void take_pressures_of(const LatticeArrays<dim> &arrays, const SliceTable<dim> &table,
-                                  double *records)
+                                  double *records, int begin, int end)
 {
-  for (int r = 0; r < table.n_records(); ++r)
+  for (int r = begin; r < end; ++r)
     records[long(r) * record_size + Law::pressure_place] = arrays.pressure[table.particle[r]];
 }
 } // namespace ligament::dem::HWY_NAMESPACE

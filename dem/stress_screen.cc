@@ -13,8 +13,9 @@ namespace
 constexpr int sorted_group = 64 * slice_width;
 /// An array of so many numbers is worth large pages.
 constexpr int several_pages = 4096;
-/// Candidates in one table: more of them are looked at table by table, and none is kept.
-constexpr int most_at_once = 1 << 17;
+/// Candidates in one table, or a quarter of all particles: more of them are looked at table by
+/// table, and none is kept.
+constexpr int most_at_once = 1 << 15;
 } // namespace
 
 template <int dim>
@@ -23,21 +24,26 @@ std::vector<int> StressScreen<dim>::keep(const std::vector<int> &candidates, boo
 {
   idle_ = 0;
   std::vector<int> kept;
-  if (candidates.size() <= most_at_once) {
-    if (!knows(candidates)) {
-      // Those of the last time are likely to come again.
+  const int n = int(candidates.size());
+  const int most = std::max(most_at_once, body.bonds.n_particles() / 4);
+  if (n <= most) {
+    constexpr int slack = 1024;
+    const bool mostly_others = n_candidates_ > 4 * n + slack;
+    if (mostly_others || !find_lanes(candidates)) {
       std::vector<int> all = candidates;
-      for (int r = 0; r < n_candidates_ && n_candidates_ < 2 * int(candidates.size()); ++r)
-        all.push_back(table_.particle[r]);
+      if (!mostly_others && n_candidates_ < 2 * n) // those of before are likely to come again
+        all.insert(all.end(), table_.particle.begin(), table_.particle.begin() + n_candidates_);
       lay_out(std::move(all), body);
+      find_lanes(candidates);
     }
     add_kept(candidates, own_terms, body, kept);
     return kept;
   }
-  for (std::size_t first = 0; first < candidates.size(); first += most_at_once) {
-    const std::size_t end = std::min(candidates.size(), first + most_at_once);
-    const std::vector<int> some(candidates.begin() + first, candidates.begin() + end);
+  for (int first = 0; first < n; first += most) {
+    const std::vector<int> some(candidates.begin() + first,
+                                candidates.begin() + std::min(n, first + most));
     lay_out(some, body);
+    find_lanes(some);
     add_kept(some, own_terms, body, kept);
   }
   clear();
@@ -45,18 +51,23 @@ std::vector<int> StressScreen<dim>::keep(const std::vector<int> &candidates, boo
 }
 
 template <int dim>
-bool StressScreen<dim>::knows(const std::vector<int> &candidates) const
+bool StressScreen<dim>::find_lanes(const std::vector<int> &candidates)
 {
-  constexpr int slack = 1024;
-  if (n_candidates_ > 4 * int(candidates.size()) + slack)
-    return false; // the table is mostly of others
-  auto known = places_.begin();
+  if (n_candidates_ > 0 && candidates == asked_)
+    return true;
+  asked_.clear();
+  std::vector<int> lanes;
+  const auto begin = table_.particle.begin(), end = begin + n_candidates_;
+  auto known = begin; // ascending, as the candidates
   for (const int i : candidates) {
-    while (known != places_.end() && known->particle < i)
+    while (known != end && *known < i)
       ++known;
-    if (known == places_.end() || known->particle != i || known->record >= n_candidates_)
+    if (known == end || *known != i)
       return false;
+    lanes.push_back(lane_of_[known - begin]);
   }
+  asked_ = candidates;
+  lanes_of_asked_ = std::move(lanes);
   return true;
 }
 
@@ -90,7 +101,7 @@ void StressScreen<dim>::lay_out(std::vector<int> candidates, const ScreenedBody<
     }
   };
   add_neighbours(0, n_candidates_);
-  const int n_with_bonds = table_.n_records();
+  const int n_with_bonds = n_with_bonds_ = table_.n_records();
   add_neighbours(n_candidates_, n_with_bonds);
   for (int r = 0; r < table_.n_records(); ++r)
     places_.push_back({particle[r], r});
@@ -223,54 +234,59 @@ bool StressScreen<dim>::find_moments(const ScreenedBody<dim> &body)
 }
 
 template <int dim>
+void StressScreen<dim>::load(const ScreenedBody<dim> &body, int begin, int end)
+{
+  SliceSweep<dim> sweep{table_, body.arrays, records_.data(), 0, false, nullptr};
+  sweep.first_record = begin;
+  sweep.end_record = end;
+  load_records(sweep);
+  take_pressures(body.arrays, table_, records_.data(), begin, end);
+}
+
+template <int dim>
 void StressScreen<dim>::add_kept(const std::vector<int> &candidates, bool own_terms,
                                  const ScreenedBody<dim> &body, std::vector<int> &kept)
 {
-  load_records({table_, body.arrays, records_.data(), 0, false, nullptr});
-  take_pressures(body.arrays, table_, records_.data());
+  load(body, 0, n_with_bonds_);
   std::vector<std::uint8_t> slices(table_.n_slices(), 0), lanes = slices;
-  std::vector<int> lane_of;
-  auto known = places_.begin();
-  for (const int i : candidates) {
-    while (known->particle < i)
-      ++known;
-    const int lane = lane_of_[known->record];
-    lane_of.push_back(lane);
-    slices[lane / slice_width] = 1;
+  for (const int lane : lanes_of_asked_)
     lanes[lane / slice_width] |= std::uint8_t(1 << lane % slice_width);
-  }
+  const auto want_where_lanes_are_left = [&] {
+    for (std::size_t s = 0; s < slices.size(); ++s)
+      slices[s] = lanes[s] != 0;
+  };
   StressSweep<dim> sweep{table_, records_.data(), find_moments(body) ? moments_.data() : nullptr,
                          stress_.data(), slices.data(), lanes.data(), faces_.data(),
                          body.tangent, body.cone};
-  if (own_terms)
+  std::vector<std::uint8_t> done(slices.size(), 0);
+  if (own_terms) {
+    want_where_lanes_are_left();
     find_stresses(sweep);
-  const auto done = own_terms ? slices : std::vector<std::uint8_t>(slices.size(), 0);
-  std::fill(slices.begin(), slices.end(), 0);
-  bool some = false;
+    done = slices;
+    if (std::all_of(lanes.begin(), lanes.end(), [](std::uint8_t bits) { return bits == 0; }))
+      return;
+  }
+  load(body, n_with_bonds_ / slice_width * slice_width, table_.n_records());
+  want_where_lanes_are_left();
   for (int s = 0; s < n_first_slices_; ++s)
-    if (lanes[s] != 0) {
-      some = true;
-      slices[s] = 1;
-      for (int slot = table_.first_slot[s]; slot < table_.first_slot[s + 1]; ++slot)
-        for (int l = 0; l < slice_width; ++l)
-          if (lanes[s] >> l & 1) {
-            const int neighbour = table_.neighbour[long(slot) * slice_width + l] / record_size;
-            slices[lane_of_[neighbour] / slice_width] = 1;
-          }
-    }
-  if (!some)
-    return;
+    for (int slot = table_.first_slot[s]; lanes[s] != 0 && slot < table_.first_slot[s + 1]; ++slot)
+      for (int l = 0; l < slice_width; ++l)
+        if (lanes[s] >> l & 1) {
+          const int neighbour = table_.neighbour[long(slot) * slice_width + l] / record_size;
+          slices[lane_of_[neighbour] / slice_width] = 1;
+        }
   for (std::size_t s = 0; s < slices.size(); ++s)
     slices[s] = slices[s] && !done[s];
   sweep.lanes = nullptr;
   find_stresses(sweep);
-  for (std::size_t s = 0; s < slices.size(); ++s)
-    slices[s] = lanes[s] != 0;
+  want_where_lanes_are_left();
   sweep.lanes = lanes.data();
   find_tensions(sweep);
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (lanes[lane_of[k] / slice_width] >> (lane_of[k] % slice_width) & 1)
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const int lane = lanes_of_asked_[k];
+    if (lanes[lane / slice_width] >> (lane % slice_width) & 1)
       kept.push_back(candidates[k]);
+  }
 }
 
 template class StressScreen<2>;

@@ -41,9 +41,11 @@ struct StressSweep
   static constexpr int face_size = 2 * dim + 2; // force, normal, unit, limit
 };
 
-/// Copies the pressures of the table's particles into their records.
-void take_pressures(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records);
-void take_pressures(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records);
+/// Copies the pressures of the particles of records [begin, end) into these.
+void take_pressures(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
+                    int begin, int end);
+void take_pressures(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
+                    int begin, int end);
 /// Stresses of the particles of the wanted slices; where `lanes` are given, clears those whose own
 /// term of eq. (D12d) stays below the limit on all faces.
 void find_stresses(const StressSweep<2> &sweep);
@@ -90,19 +92,23 @@ private:
     friend bool operator<(const Place &a, const Place &b) { return a.particle < b.particle; }
   };
 
-  bool knows(const std::vector<int> &candidates) const;
+  /// Finds the lanes of the candidates; false when one has none.
+  bool find_lanes(const std::vector<int> &candidates);
   void lay_out(std::vector<int> candidates, const ScreenedBody<dim> &body);
   void add_slices(int begin, int end, const std::vector<int> &n_bonds);
   void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour, double limit);
   const Place *find(int particle) const;
   bool find_moments(const ScreenedBody<dim> &body);
+  void load(const ScreenedBody<dim> &body, int begin, int end);
+  /// After find_lanes().
   void add_kept(const std::vector<int> &candidates, bool own_terms, const ScreenedBody<dim> &body,
                 std::vector<int> &kept);
 
   SliceTable<dim> table_; // slices of the candidates, then of their neighbours
   std::vector<Place> places_; // of all records, ascending
   std::vector<int> lane_of_;  // of each record with bonds, -1 of others
-  int n_candidates_ = 0, n_first_slices_ = 0, longest_ = 0, idle_ = 0;
+  std::vector<int> asked_, lanes_of_asked_; // the candidates of the last time
+  int n_candidates_ = 0, n_with_bonds_ = 0, n_first_slices_ = 0, longest_ = 0, idle_ = 0;
   core::LargeArray records_, stress_, faces_;
   std::vector<double> moments_; // as the sweep wants them
   std::vector<int> with_moments_; // records
