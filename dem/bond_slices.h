@@ -115,8 +115,8 @@ public:
 
   /// Adds the forces at arrays.pressure. Replaces `exceeded` by particles among which are those of
   /// all bonds that could break; its strength is that of a bond of the base material. The screen's
-  /// marks are set for both particles of a bond. Without `faces_too` it looks at nothing but the size
-  /// of the tractions.
+  /// marks are set for both particles of a bond. Without `faces_too` it looks at nothing but the
+  /// size of the tractions.
   void forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
               const TractionScreen &screen, core::LargeArray &records, std::vector<int> &exceeded,
               const SliceNearness *nearness = nullptr, bool faces_too = true) const;

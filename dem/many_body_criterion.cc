@@ -191,11 +191,10 @@ void ManyBodyForce<dim>::clear_by_stress(const Particles &p)
   }
   rows = std::move(rows_left);
   auto &particles = work_.exceeded_particles;
-  particles.erase(std::remove_if(particles.begin(), particles.end(),
-                                 [&](int i) {
-                                   return !std::binary_search(kept.begin(), kept.end(), i);
-                                 }),
-                  particles.end());
+  particles.erase(
+      std::remove_if(particles.begin(), particles.end(),
+                     [&](int i) { return !std::binary_search(kept.begin(), kept.end(), i); }),
+      particles.end());
 }
 
 template <int dim>

@@ -160,6 +160,8 @@ public:
   const FractureLaw &fracture() const { return fracture_; }
   /// How the next compute() looks for breaking bonds of the lattice; its result is the same.
   bool looks_by_particle() const { return work_.way.by_particle; }
+  /// Whether the last compute() asked the stresses of many particles for bonds that break.
+  bool looks_by_stress() const { return screen_.was_asked(); }
   const Materials &materials() const { return materials_; }
 
 private:
@@ -191,8 +193,8 @@ private:
     std::vector<int> exceeded_particles; // with bonds of the table that may
     /// Of every such bond a particle whose own stress says so, theory.md eq. (D12d), is noted.
     bool own_terms = false;
-    std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
-    double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
+    std::vector<std::uint8_t> marks; // blocks with a traction from which particles could yield
+    double plastic_energy = 0;       // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
     WayToLook way;
     SliceNearness nearness;

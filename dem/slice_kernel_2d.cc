@@ -190,8 +190,8 @@ void add_slice_energies_2d(const SliceSweep<2> &sweep)
 {
   Slices2d(sweep).energies();
 }
-void take_pressures_2d(const LatticeArrays<2> &arrays, const SliceTable<2> &table,
-                       double *records, int begin, int end)
+void take_pressures_2d(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
+                       int begin, int end)
 {
   take_pressures_of<SliceLaw2d>(arrays, table, records, begin, end);
 }

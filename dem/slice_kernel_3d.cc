@@ -230,8 +230,8 @@ void add_slice_energies_3d(const SliceSweep<3> &sweep)
 {
   Slices3d(sweep).energies();
 }
-void take_pressures_3d(const LatticeArrays<3> &arrays, const SliceTable<3> &table,
-                       double *records, int begin, int end)
+void take_pressures_3d(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
+                       int begin, int end)
 {
   take_pressures_of<SliceLaw3d>(arrays, table, records, begin, end);
 }

@@ -268,40 +268,50 @@ private:
       visit(Law::face(d, own, b, record(b.neighbour())));
   }
 
-  /// Bits of the lanes whose particles have a bond that could break.
+  /// Bits of the lanes whose particles have a bond that could break: by eq. (D12c), and where the
+  /// stress of a particle is known, by its own term of (D12d).
   HWY_NOINLINE std::uint32_t could_break(int s, int lane) const
   {
     const SliceLanes d;
-    const auto strain = hn::Set(d, sweep_.strain);
+    using V = hn::Vec<SliceLanes>;
+    constexpr int most_faces = 40, face_size = 2 * dim + 1;
+    HWY_ALIGN double kept[most_faces * face_size * n_lanes];
+    const bool knows_stress = !table_.per_volume.empty() && !sweep_.nearness &&
+                              table_.first_slot[s + 1] - table_.first_slot[s] <= most_faces;
+    const V strain = hn::Set(d, sweep_.strain);
     const auto reached = [&](const typename Law::Face &face) HWY_ATTR {
       return reaches(d, face.force, face.normal, hn::Mul(strain, face.unit), sweep_.tangent);
     };
     auto found = hn::Lt(strain, hn::Zero(d));
-    for_each_face(s, lane,
-                  [&](const auto &face) HWY_ATTR { found = hn::Or(found, reached(face)); });
-    if (table_.per_volume.empty() || sweep_.nearness || hn::AllFalse(d, found))
-      return lane_bits(d, found);
-
-    // Eq. (D12d), face by face.
-    const auto per_volume = hn::LoadU(d, table_.per_volume.data() + s * slice_width + lane);
     typename Law::Stress stress(d);
     auto moment = Law::no_moment(d);
-    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
+    double *end = kept;
+    for_each_face(s, lane, [&](auto face) HWY_ATTR {
+      found = hn::Or(found, reached(face));
+      if (!knows_stress)
+        return;
       stress.add(face.lever, face.force);
       moment = add_cross(face.lever, face.force, moment);
+      Law::for_each_number(face, [&](const V &number) HWY_ATTR {
+        hn::Store(number, d, end);
+        end += n_lanes;
+      });
     });
+    if (!knows_stress || hn::AllFalse(d, found))
+      return lane_bits(d, found);
+    const V per_volume = hn::LoadU(d, table_.per_volume.data() + s * slice_width + lane);
     stress.finish(moment, per_volume);
-    const auto room = hn::Sub(strain, stress.largest_principal());
+    const V principal = stress.largest_principal();
     auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
-    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
-      const auto zero = hn::Zero(d);
-      const auto length = hn::Sqrt(add_dot(face.normal, face.normal, zero));
-      const auto residual = length * face.force - face.unit * stress.times(face.normal);
-      const auto deviation =
-          hn::Mul(hn::Set(d, sweep_.per_cosine), hn::Sqrt(add_dot(residual, residual, zero)));
-      const auto bound_reached = hn::Ge(deviation, hn::Mul(room, hn::Mul(length, face.unit)));
-      not_cleared = hn::Or(not_cleared, hn::And(bound_reached, reached(face)));
-    });
+    for (const double *at = kept; at != end;) {
+      typename Law::Face face;
+      Law::for_each_number(face, [&](V &number) HWY_ATTR {
+        number = hn::Load(d, at);
+        at += n_lanes;
+      });
+      const auto bound = bound_reaches(d, face, stress, principal, strain, sweep_.tangent);
+      not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
+    }
     return lane_bits(d, hn::And(found, not_cleared));
   }
 

@@ -211,7 +211,8 @@ struct StressSum3d
     const V squares = square();
     const V difference2 =
         hn::NegMulAdd(others, others, hn::Mul(two, hn::NegMulAdd(lambda, lambda, squares)));
-    const V second = hn::Mul(hn::Set(d, 0.5), hn::Add(others, hn::Sqrt(hn::Max(difference2, zero))));
+    const V second =
+        hn::Mul(hn::Set(d, 0.5), hn::Add(others, hn::Sqrt(hn::Max(difference2, zero))));
     const V gap = hn::Sub(lambda, second);
     constexpr double round_off = 1e-12;
     const V error = hn::MulAdd(hn::Set(d, round_off), hn::Sqrt(squares),
@@ -220,6 +221,23 @@ struct StressSum3d
     return e;
   }
 };
+
+/// Where eq. (D12d) with this stress, whose largest principal value is given, lets the tension of a
+/// face reach `limit`; everything over 2G. With t = S n + r it takes r.n + tan |r - (r.n) n|, which
+/// is at most |r| / cos. What is no number reaches it.
+template <typename D, typename Face, typename Stress, typename V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> bound_reaches(D d, const Face &face, const Stress &stress, V principal,
+                                     V limit, double tangent)
+{
+  const V zero = hn::Zero(d);
+  const V length2 = add_dot(face.normal, face.normal, zero), length = hn::Sqrt(length2);
+  const auto rest = length * face.force - face.unit * stress.times(face.normal);
+  const V along = add_dot(rest, face.normal, zero);
+  const V across2 = hn::NegMulAdd(along, along, hn::Mul(add_dot(rest, rest, zero), length2));
+  const V excess = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(across2, zero)), along);
+  const V room = hn::Mul(hn::Sub(limit, principal), hn::Mul(length2, face.unit));
+  return hn::Not(hn::Lt(excess, room));
+}
 
 /// Eq. (D12d) of particles whose faces differ from S n by residual2 in the square and turn by at
 /// most `turn` against the normals of the criterion; the inverse of its least cosine comes in.

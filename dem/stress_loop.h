@@ -13,23 +13,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// The part of a face's traction that a stress does not explain, as (D12d) takes it: what it adds to
-/// the largest principal stress at most. Everything over 2G and times |normal|^2 unit.
-template <typename D, typename Face, typename Stress, typename V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> bound_reaches(D d, const Face &face, const Stress &stress, V principal,
-                                     V limit, double tangent)
-{
-  const V zero = hn::Zero(d);
-  const V length2 = add_dot(face.normal, face.normal, zero), length = hn::Sqrt(length2);
-  const auto rest = length * face.force - face.unit * stress.times(face.normal);
-  const V along = add_dot(rest, face.normal, zero);
-  const V across2 = hn::NegMulAdd(along, along, hn::Mul(add_dot(rest, rest, zero), length2));
-  const V excess = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(across2, zero)), along);
-  const V room = hn::Mul(hn::Sub(limit, principal), hn::Mul(length2, face.unit));
-  // So that what is no number counts as reached.
-  return hn::Not(hn::Lt(excess, room));
-}
-
 template <typename Law, int dim>
 class StressSlices
 {
@@ -122,9 +105,9 @@ private:
           at += slice_width;
         });
         const V limit = hn::Load(d, at);
-        found = hn::Or(found,
-                       hn::And(bound_reaches(d, face, stress, principal, limit, sweep_.tangent),
-                               bears(d, face, limit)));
+        found =
+            hn::Or(found, hn::And(bound_reaches(d, face, stress, principal, limit, sweep_.tangent),
+                                  bears(d, face, limit)));
       }
       sweep_.lanes[s] &= std::uint8_t(~(all_lanes << lane) | lane_bits(d, found) << lane);
     }
@@ -161,8 +144,8 @@ private:
       const auto stress = Stress::of(mean);
       const V limit = b.stiffness(d, 1);
       const auto bears_much = bears(d, face, limit);
-      const auto bound = bound_reaches(d, face, stress, stress.largest_principal(), limit,
-                                       sweep_.tangent);
+      const auto bound =
+          bound_reaches(d, face, stress, stress.largest_principal(), limit, sweep_.tangent);
       const auto unknown = hn::Lt(mean(known_place), hn::Set(d, 1.));
       auto reached = hn::And(bears_much, hn::Or(unknown, bound));
       if (HWY_UNLIKELY(!hn::AllFalse(d, reached)))
@@ -181,15 +164,16 @@ private:
     const V length = hn::Sqrt(add_dot(face.normal, face.normal, zero));
     const V cosine = hn::Abs(hn::Div(add_dot(face.normal, e, zero), length));
     const V force = hn::Sqrt(add_dot(face.force, face.force, zero));
-    const V along = hn::CopySign(add_dot(face.force, e, zero),
-                                 hn::Mul(add_dot(face.force, e, zero), add_dot(face.normal, e, zero)));
+    const V along =
+        hn::CopySign(add_dot(face.force, e, zero),
+                     hn::Mul(add_dot(face.force, e, zero), add_dot(face.normal, e, zero)));
     // s = along / cosine, which changes by at most (|t| + |s|) / cosine for each radian.
     const V wanted = hn::Mul(hn::Mul(limit, face.unit), cosine);
-    const V margin = hn::Mul(hn::Mul(hn::Set(d, 4.), doubt),
-                             hn::Add(force, hn::Div(hn::Abs(along), cosine)));
+    const V margin =
+        hn::Mul(hn::Mul(hn::Set(d, 4.), doubt), hn::Add(force, hn::Div(hn::Abs(along), cosine)));
     const auto below = hn::Lt(hn::Add(along, margin), wanted);
-    const auto inclined = hn::Lt(hn::Add(cosine, hn::Add(doubt, hn::Set(d, 1e-9))),
-                                 hn::Set(d, sweep_.cone));
+    const auto inclined =
+        hn::Lt(hn::Add(cosine, hn::Add(doubt, hn::Set(d, 1e-9))), hn::Set(d, sweep_.cone));
     const auto sure = hn::Lt(doubt, hn::Mul(hn::Set(d, 1e-3), one));
     return hn::Not(hn::And(sure, hn::Or(below, inclined)));
   }

@@ -190,6 +190,8 @@ auto StressScreen<dim>::find(int particle) const -> const Place *
 template <int dim>
 void StressScreen<dim>::remove(const Bond<dim> &bond)
 {
+  if (bond.joins_materials)
+    return; // the table has none of them
   const Vector<dim> zero = Vector<dim>::Zero();
   for (const auto &[i, j] : {std::pair(bond.i, bond.j), std::pair(bond.j, bond.i)}) {
     const Place *const own = find(i), *const other = find(j);
@@ -204,7 +206,7 @@ void StressScreen<dim>::remove(const Bond<dim> &bond)
       ++found;
       set_bond(place, {i, i, zero, zero, zero, 0, 1, 0, 0}, true, own->record * record_size, 0);
     }
-    if (found != 1) { // not one bond between the two, or one between materials
+    if (found != 1) { // more than one bond between the two
       clear();
       return;
     }
@@ -255,9 +257,10 @@ void StressScreen<dim>::add_kept(const std::vector<int> &candidates, bool own_te
     for (std::size_t s = 0; s < slices.size(); ++s)
       slices[s] = lanes[s] != 0;
   };
-  StressSweep<dim> sweep{table_, records_.data(), find_moments(body) ? moments_.data() : nullptr,
-                         stress_.data(), slices.data(), lanes.data(), faces_.data(),
-                         body.tangent, body.cone};
+  StressSweep<dim> sweep{
+      table_,         records_.data(), find_moments(body) ? moments_.data() : nullptr,
+      stress_.data(), slices.data(),   lanes.data(),
+      faces_.data(),  body.tangent,    body.cone};
   std::vector<std::uint8_t> done(slices.size(), 0);
   if (own_terms) {
     want_where_lanes_are_left();

@@ -64,10 +64,10 @@ public:
   /// Of fewer particles the bonds are looked at one by one in less time.
   static constexpr int least = 48;
 
-  /// Those of the `candidates` (ascending) that have a bond which could reach its limit by eq. (D12);
-  /// of a bond that does, it is one of the candidates or both. With `own_terms` every bond that
-  /// could break has one of those particles among the candidates whose own term of eq. (D12d) says
-  /// so.
+  /// Those of the `candidates` (ascending) that have a bond which could reach its limit by eq.
+  /// (D12); of a bond that does, it is one of the candidates or both. With `own_terms` every bond
+  /// that could break has one of those particles among the candidates whose own term of eq. (D12d)
+  /// says so.
   std::vector<int> keep(const std::vector<int> &candidates, bool own_terms,
                         const ScreenedBody<dim> &body);
 
@@ -78,6 +78,9 @@ public:
     if (++idle_ > patience)
       clear();
   }
+
+  /// Whether the last step asked.
+  bool was_asked() const { return n_candidates_ > 0 && idle_ == 0; }
 
   /// The bond no longer carries.
   void remove(const Bond<dim> &bond);
@@ -104,13 +107,13 @@ private:
   void add_kept(const std::vector<int> &candidates, bool own_terms, const ScreenedBody<dim> &body,
                 std::vector<int> &kept);
 
-  SliceTable<dim> table_; // slices of the candidates, then of their neighbours
-  std::vector<Place> places_; // of all records, ascending
-  std::vector<int> lane_of_;  // of each record with bonds, -1 of others
+  SliceTable<dim> table_;                   // slices of the candidates, then of their neighbours
+  std::vector<Place> places_;               // of all records, ascending
+  std::vector<int> lane_of_;                // of each record with bonds, -1 of others
   std::vector<int> asked_, lanes_of_asked_; // the candidates of the last time
   int n_candidates_ = 0, n_with_bonds_ = 0, n_first_slices_ = 0, longest_ = 0, idle_ = 0;
   core::LargeArray records_, stress_, faces_;
-  std::vector<double> moments_; // as the sweep wants them
+  std::vector<double> moments_;   // as the sweep wants them
   std::vector<int> with_moments_; // records
 };
 } // namespace ligament::dem
