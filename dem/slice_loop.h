@@ -310,7 +310,8 @@ private:
         at += n_lanes;
       });
       const auto bound = bound_reaches(d, face, stress, principal, strain, sweep_.tangent);
-      not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
+      if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
+        not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
     }
     return lane_bits(d, hn::And(found, not_cleared));
   }

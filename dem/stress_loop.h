@@ -105,9 +105,9 @@ private:
           at += slice_width;
         });
         const V limit = hn::Load(d, at);
-        found =
-            hn::Or(found, hn::And(bound_reaches(d, face, stress, principal, limit, sweep_.tangent),
-                                  bears(d, face, limit)));
+        const auto bound = bound_reaches(d, face, stress, principal, limit, sweep_.tangent);
+        if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
+          found = hn::Or(found, hn::And(bound, bears(d, face, limit)));
       }
       sweep_.lanes[s] &= std::uint8_t(~(all_lanes << lane) | lane_bits(d, found) << lane);
     }
