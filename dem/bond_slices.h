@@ -65,7 +65,9 @@ struct SliceSweep
   TractionScreen screen = {};
   double strain = 0, tangent = 0, per_cosine = 1; // strength / 2G and angle of BreakScreen
   int first_record = 0, end_record = -1; // what is loaded, from a multiple of slice_width; -1: all
-  bool faces_too = true; // false: notes all particles with a traction that reaches the limit
+  bool faces_at_once = false; // faces of all particles are looked at together with their forces
+  long *n_reached = nullptr;  // grows by the slices with a traction that reaches the limit
+  bool faces_too = true;      // false: notes all particles with a traction that reaches the limit
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
@@ -130,6 +132,7 @@ private:
   void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
   SliceTable<dim> table_;
+  mutable bool faces_at_once_ = false; // many slices had such tractions the last time
   double shear_modulus_;
   bool all_particles_;
   std::vector<std::array<long, 2>> places_; // slot x slice_width + lane of both sides of each bond
