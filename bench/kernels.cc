@@ -295,7 +295,9 @@ void measure_all_shapes()
       {"plate thin in x", {16.3, 256.3, 150.3}},
       {"bar along x", {1550.3, 20.3, 20.3}},
       {"bar along y", {20.3, 1550.3, 20.3}},
-      {"bar along z", {20.3, 20.3, 1550.3}}};
+      {"bar along z", {20.3, 20.3, 1550.3}},
+      {"short bar along x, in the cache", {60.3, 20.3, 20.3}},
+      {"short bar along z, in the cache", {20.3, 20.3, 60.3}}};
   measure_shapes<3>("fcc", LatticeKind::fcc, boxes);
   measure_shapes<3>("fcc, turned by (0.3, 0.5, 0.2)", LatticeKind::fcc, boxes, {0.3, 0.5, 0.2});
   measure_shapes<3>("simple cubic", LatticeKind::simple_cubic, boxes);
