@@ -181,7 +181,8 @@ void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::Larg
 template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
                              const TractionScreen &screen, core::LargeArray &records,
-                             std::vector<int> &exceeded, const SliceNearness *nearness) const
+                             std::vector<int> &exceeded, const SliceNearness *nearness,
+                             bool faces_too) const
 {
   exceeded.clear();
   if (empty())
@@ -191,10 +192,26 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
     const double least_strain = traction / (2 * shear_modulus_) * (1 - round_off);
     return traction > 0 ? least_strain * least_strain : SliceSweep<dim>::never;
   };
-  add_slice_forces({table_, arrays, records.data(), squared(breaking.least_traction()),
-                    all_particles_, &exceeded, nearness, nullptr, squared(screen.traction), screen,
-                    breaking.strength / (2 * shear_modulus_), breaking.tangent,
-                    breaking.per_cosine()});
+  SliceSweep<dim> sweep{table_,
+                        arrays,
+                        records.data(),
+                        squared(breaking.least_traction()),
+                        all_particles_,
+                        &exceeded,
+                        nearness,
+                        nullptr,
+                        squared(screen.traction),
+                        screen,
+                        breaking.strength / (2 * shear_modulus_),
+                        breaking.tangent,
+                        breaking.per_cosine()};
+  long n_reached = 0;
+  sweep.n_reached = &n_reached;
+  sweep.faces_too = faces_too;
+  sweep.faces_at_once = faces_at_once_ && faces_too && breaking.strength > 0;
+  add_slice_forces(sweep);
+  if (breaking.strength > 0)
+    faces_at_once_ = 2 * n_reached > table_.n_slices();
 }
 
 template <int dim>

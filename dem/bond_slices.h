@@ -64,6 +64,10 @@ struct SliceSweep
   double screen2 = never;                  // (traction / 2G)^2 at which the screen marks
   TractionScreen screen = {};
   double strain = 0, tangent = 0, per_cosine = 1; // strength / 2G and angle of BreakScreen
+  int first_record = 0, end_record = -1; // what is loaded, from a multiple of slice_width; -1: all
+  bool faces_at_once = false; // faces of all particles are looked at together with their forces
+  long *n_reached = nullptr;  // grows by the slices with a traction that reaches the limit
+  bool faces_too = true;      // false: notes all particles with a traction that reaches the limit
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
@@ -113,10 +117,11 @@ public:
 
   /// Adds the forces at arrays.pressure. Replaces `exceeded` by particles among which are those of
   /// all bonds that could break; its strength is that of a bond of the base material. The screen's
-  /// marks are set for both particles of a bond.
+  /// marks are set for both particles of a bond. Without `faces_too` it looks at nothing but the
+  /// size of the tractions.
   void forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
               const TractionScreen &screen, core::LargeArray &records, std::vector<int> &exceeded,
-              const SliceNearness *nearness = nullptr) const;
+              const SliceNearness *nearness = nullptr, bool faces_too = true) const;
 
   /// Adds to each particle's energy (J) its half of every bond's.
   void add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,
@@ -127,6 +132,7 @@ private:
   void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
   SliceTable<dim> table_;
+  mutable bool faces_at_once_ = false; // many slices had such tractions the last time
   double shear_modulus_;
   bool all_particles_;
   std::vector<std::array<long, 2>> places_; // slot x slice_width + lane of both sides of each bond

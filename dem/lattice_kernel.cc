@@ -116,7 +116,8 @@ long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments,
                                 const BreakScreen &breaking, const TractionScreen &screen,
                                 RowWindow &window, std::vector<RowRange> &exceeded,
-                                const particles::AwakeRanges *ranges, bool by_particle) const
+                                const particles::AwakeRanges *ranges, bool by_particle,
+                                bool faces_too) const
 {
   exceeded.clear();
   if (constants_.n_directions == 0)
@@ -136,6 +137,7 @@ long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   s.screen = screen;
   s.exceeded = &exceeded;
   s.by_particle = by_particle && !ranges && screen.traction == 0;
+  s.faces_too = faces_too;
   long n_looked = 0;
   s.n_looked = &n_looked;
   sweep_rows(s);

@@ -130,6 +130,7 @@ struct RowSweep
   double *energy = nullptr; // in place of forces: of each particle's forward bonds, J
   TractionScreen screen = {};
   bool by_particle = false; // how bonds that could break are looked for, see LatticeKernel::forces
+  bool faces_too = true;    // by particle: faces of what isn't cleared, too
   long *n_looked = nullptr; // grows by the particles that were looked at
 
   /// Particles that the window must hold at least.
@@ -166,11 +167,12 @@ public:
   /// don't overlap. Returns how many particles it looked at more closely for that. `by_particle` it
   /// looks at the stresses of the particles, not at the tractions on each face: slower where
   /// tractions are small, but it clears bodies under homogeneous stress below the strength. Neither
-  /// together with `ranges` nor with a screen.
+  /// together with `ranges` nor with a screen. Without `faces_too` it leaves what it doesn't clear
+  /// by particle to the caller: cells that miss a face are noted where they bear much.
   long forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
               const BreakScreen &breaking, const TractionScreen &screen, RowWindow &window,
               std::vector<RowRange> &exceeded, const particles::AwakeRanges *ranges = nullptr,
-              bool by_particle = false) const;
+              bool by_particle = false, bool faces_too = true) const;
 
   /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
   /// bonds, bending and twist included, volumes not.

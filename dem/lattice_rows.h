@@ -260,18 +260,21 @@ private:
     }
     if (!std::isfinite(sweep_.constants.strength))
       return;
-    const auto could = bonds_.template could_break<by_particle>(d, i, offsets);
-    const std::uint32_t found = lane_bits(d, by_particle ? hn::And(look, could) : could);
-    if (found == 0)
-      return;
-    int first = 0, last = int(hn::Lanes(d)) - 1;
-    while (!(found >> first & 1))
-      ++first;
-    while (!(found >> last & 1))
-      --last;
-    const RowRange lanes{std::max(range.begin, int(i) + first), int(i) + last + 1};
-    if (lanes.begin < lanes.end)
-      sweep_.exceeded->push_back(lanes);
+    auto found = look;
+    if (!by_particle || sweep_.faces_too) {
+      const auto could = bonds_.template could_break<by_particle>(d, i, offsets);
+      found = by_particle ? hn::And(look, could) : could;
+    }
+    std::uint32_t lanes = lane_bits(d, found) >> (range.begin - int(i));
+    for (int begin = range.begin; lanes != 0;) {
+      int end = begin;
+      for (; lanes & 1; lanes >>= 1)
+        ++end;
+      if (end > begin)
+        sweep_.exceeded->push_back({begin, end});
+      for (begin = end; lanes != 0 && !(lanes & 1); lanes >>= 1)
+        ++begin;
+    }
   }
 
   HWY_INLINE void energies(const PieceCursor &piece)

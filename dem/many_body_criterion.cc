@@ -51,6 +51,7 @@ void ManyBodyForce<dim>::set_strength(double strength)
   if (fracture_.criterion == FractureLaw::Criterion::none)
     fracture_.criterion = FractureLaw::Criterion::maximum_tension;
   fracture_.strength = strength;
+  screen_.clear();
   find_largest_size_factor();
 }
 
@@ -59,6 +60,7 @@ void ManyBodyForce<dim>::set_noted_share(double share)
 {
   core::require(share > 0 && share <= 1, "the noted share of the limit lies above 0, at most at 1");
   noted_share_ = share;
+  screen_.clear();
 }
 
 template <int dim>
@@ -120,6 +122,79 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
                                                    (t.traction - normal * t.normal).norm());
   t.utilisation /= strength_of(b);
   return t;
+}
+
+// The screen doesn't know plastic strains.
+template <int dim>
+bool ManyBodyForce<dim>::is_cleared_by_stress() const
+{
+  return fracture_.criterion == FractureLaw::Criterion::maximum_tension &&
+         (!plastic_ || plastic_->plastic().empty());
+}
+
+template <int dim>
+std::vector<int> ManyBodyForce<dim>::noted_particles() const
+{
+  const auto &rows = work_.exceeded_rows;
+  auto few = work_.exceeded_particles;
+  std::sort(few.begin(), few.end());
+  std::vector<int> noted;
+  auto next = few.begin();
+  for (const RowRange &range : rows) {
+    while (next != few.end() && *next < range.begin)
+      noted.push_back(*next++);
+    for (int i = range.begin; i < range.end; ++i)
+      noted.push_back(i);
+    while (next != few.end() && *next < range.end)
+      ++next;
+  }
+  noted.insert(noted.end(), next, few.end());
+  return noted;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::clear_by_stress(const Particles &p)
+{
+  if (!is_cleared_by_stress())
+    return;
+  const std::vector<int> noted = noted_particles();
+  if (int(noted.size()) < StressScreen<dim>::least) {
+    screen_.pass();
+    return;
+  }
+  constexpr double round_off = 1e-7;
+  const auto limit = [&](const Bond<dim> &b) {
+    return noted_share_ * strength_of(b) / (size_factor(b) * 2 * b.shear_i) * (1 - round_off);
+  };
+  const auto per_volume = [&](int i) {
+    return interfaces_.is_member(i)
+               ? 0
+               : 1 / (2 * materials_.of(i).shear_modulus() * energy_weight(i) * p.volume[i]);
+  };
+  const auto for_each_moment = [&](const typename ScreenedBody<dim>::AddMoment &add) {
+    surface_.for_each_moment(p, work_.pressure, add);
+    contacts_.for_each_moment(p, add);
+  };
+  const LatticeArrays<dim> a = arrays(p, work_);
+  const std::vector<int> kept =
+      screen_.keep(noted, work_.own_terms,
+                   {bonds_, a, limit, per_volume, for_each_moment, PrincipalTension<dim>::tangent,
+                    PrincipalTension<dim>::cone});
+  auto &rows = work_.exceeded_rows;
+  std::vector<RowRange> rows_left;
+  auto range = rows.begin();
+  for (const int i : kept) {
+    while (range != rows.end() && range->end <= i)
+      ++range;
+    if (range != rows.end() && range->begin <= i)
+      rows_left.push_back({i, i + 1});
+  }
+  rows = std::move(rows_left);
+  auto &particles = work_.exceeded_particles;
+  particles.erase(
+      std::remove_if(particles.begin(), particles.end(),
+                     [&](int i) { return !std::binary_search(kept.begin(), kept.end(), i); }),
+      particles.end());
 }
 
 template <int dim>
@@ -335,6 +410,8 @@ template void ManyBodyForce<2>::set_noted_share(double);
 template Utilisation<2> ManyBodyForce<2>::utilisation(const Particles &,
                                                       const std::vector<Watch> &) const;
 template void ManyBodyForce<2>::find_largest_size_factor();
+template bool ManyBodyForce<2>::is_cleared_by_stress() const;
+template void ManyBodyForce<2>::clear_by_stress(const Particles &);
 template BreakScreen ManyBodyForce<2>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<2>::exceeding_bonds(const Particles &) const;
 template BondTension<2> ManyBodyForce<2>::weakest_bond(const Particles &,
@@ -344,6 +421,8 @@ template void ManyBodyForce<3>::set_noted_share(double);
 template Utilisation<3> ManyBodyForce<3>::utilisation(const Particles &,
                                                       const std::vector<Watch> &) const;
 template void ManyBodyForce<3>::find_largest_size_factor();
+template bool ManyBodyForce<3>::is_cleared_by_stress() const;
+template void ManyBodyForce<3>::clear_by_stress(const Particles &);
 template BreakScreen ManyBodyForce<3>::breaking_screen(bool) const;
 template std::vector<BondId> ManyBodyForce<3>::exceeding_bonds(const Particles &) const;
 template BondTension<3> ManyBodyForce<3>::weakest_bond(const Particles &,

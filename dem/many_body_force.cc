@@ -71,6 +71,7 @@ template <int dim>
 void ManyBodyForce<dim>::lay_out_slices()
 {
   slices_ = BondSlices<dim>(bonds_, materials_.base().shear_modulus(), bonds_.n_directions() == 0);
+  screen_.clear();
   if (!volumes_.empty())
     slices_.set_volumes(bonds_, volumes_, energy_weights_);
   records_ = {};
@@ -243,13 +244,28 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
-  const long n_looked = kernel_.forces(
-      a, bonds_.segments(), may_break ? breaking_screen(false) : BreakScreen(), screen, rows_,
-      work.exceeded_rows, awake_ranges(work), may_break && work.way.by_particle);
+  const BreakScreen none;
+  const bool may_look_by_particle = may_break && !awake_ranges(work) && screen.traction == 0;
+  const auto lattice_forces = [&](bool by_particle) {
+    return kernel_.forces(a, bonds_.segments(), may_break ? breaking_screen(false) : none, screen,
+                          rows_, work.exceeded_rows, awake_ranges(work), by_particle,
+                          !is_cleared_by_stress());
+  };
+  bool by_particle = may_look_by_particle && work.way.by_particle;
+  const long n_looked = lattice_forces(by_particle);
   if (may_break)
     work.way.choose(n_looked, p.n_owned);
-  slices_.forces(a, may_break ? breaking_screen(true) : BreakScreen(), screen, records_,
-                 work.exceeded_particles, awake_slices(work));
+  if (!by_particle && may_look_by_particle && work.way.by_particle) {
+    // Once more is less than to look at all that was noted.
+    by_particle = true;
+    find_other_pressure(p, surface, work); // the kernel has added its own to them
+    lattice_forces(true);
+  }
+  const bool has_lattice = bonds_.n_directions() > 0;
+  work.own_terms = may_look_by_particle && (by_particle || !has_lattice);
+  slices_.forces(a, may_break ? breaking_screen(true) : none, screen, records_,
+                 work.exceeded_particles, awake_slices(work),
+                 !(work.own_terms && has_lattice && is_cleared_by_stress()));
   interfaces_.add_forces(p, work.pressure);
   surface.add_forces(p, work.pressure);
   if (plastic_)
@@ -286,6 +302,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   surface_.book_work(p, work_.pressure);
   if (broken_at_ == time)
     return;
+  clear_by_stress(p);
   const auto exceeding = exceeding_bonds(p);
   if (exceeding.empty())
     return;

@@ -12,6 +12,7 @@
 #include "dem/lattice_kernel.h"
 #include "dem/plastic_blocks.h"
 #include "dem/plastic_rows.h"
+#include "dem/stress_screen.h"
 #include "dem/surface_loads.h"
 #include "particles/particle_force.h"
 
@@ -159,6 +160,8 @@ public:
   const FractureLaw &fracture() const { return fracture_; }
   /// How the next compute() looks for breaking bonds of the lattice; its result is the same.
   bool looks_by_particle() const { return work_.way.by_particle; }
+  /// Whether the last compute() asked the stresses of many particles for bonds that break.
+  bool looks_by_stress() const { return screen_.was_asked(); }
   const Materials &materials() const { return materials_; }
 
 private:
@@ -188,8 +191,10 @@ private:
     std::vector<double> cosine_minus_1, sine; // 2D, after find_turns()
     std::vector<RowRange> exceeded_rows; // with bonds that may reach the noted share of the limit
     std::vector<int> exceeded_particles; // with bonds of the table that may
-    std::vector<std::uint8_t> marks;     // blocks with a traction from which particles could yield
-    double plastic_energy = 0;           // J, what plastic strains change in the energy of bonds
+    /// Of every such bond a particle whose own stress says so, theory.md eq. (D12d), is noted.
+    bool own_terms = false;
+    std::vector<std::uint8_t> marks; // blocks with a traction from which particles could yield
+    double plastic_energy = 0;       // J, what plastic strains change in the energy of bonds
     const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
     WayToLook way;
     SliceNearness nearness;
@@ -269,6 +274,12 @@ private:
   /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                                 const std::vector<double> &pressure) const;
+  /// Whether clear_by_stress() follows the kernels.
+  bool is_cleared_by_stress() const;
+  /// Ascending.
+  std::vector<int> noted_particles() const;
+  /// Leaves out what the stresses clear of the particles that elastic_forces() noted.
+  void clear_by_stress(const Particles &particles);
   /// The bonds whose bound reaches the noted share, some of them twice, after elastic_forces().
   std::vector<BondTension<dim>> suspected_bonds(const Particles &particles) const;
   /// Each once.
@@ -313,6 +324,7 @@ private:
   BondNetwork<dim> bonds_;
   LatticeKernel<dim> kernel_;
   BondSlices<dim> slices_; // the irregular bonds, but those between materials
+  StressScreen<dim> screen_;
   Interfaces<dim> interfaces_;
   SurfaceLoads<dim> surface_;
   Contacts<dim> contacts_;

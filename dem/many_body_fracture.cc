@@ -42,6 +42,7 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
     for (auto &[i, share] : shares)
       share -= flowed_volume(b, i);
   bonds_.remove(id);
+  screen_.remove(b);
   if (b.joins_materials)
     interfaces_.remove(id.index);
   else if (id.direction < 0)

@@ -17,7 +17,7 @@ struct PrincipalTension
   /// |n.e1| of faces that are asked, theory.md eq. (D12).
   static constexpr double cone = dim == 2 ? 0.577 : 0.4;
   /// tan of that inclination: no tension is above sigma + tangent |tau|.
-  static constexpr double tangent = dim == 2 ? 1.4155 : 2.2913;
+  static constexpr double tangent = dim == 2 ? 1.4156 : 2.2913;
   /// Of two faces closer than this (units of d) one alone breaks in a step.
   static constexpr double apart = 1.6;
 

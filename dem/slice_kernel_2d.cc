@@ -7,6 +7,7 @@
 // After foreach_target.h, as Highway wants it.
 #include "dem/sine.h"
 #include "dem/slice_loop.h"
+#include "dem/stress_loop.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -51,6 +52,10 @@ public:
       force = {torque, torque};
     }
     HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE std::uint32_t exceeding(D d) const
+    {
+      return lane_bits(d, hn::Gt(excess, hn::Zero(d)));
+    }
     HWY_INLINE void store(D d, const Own &, double (&to)[n_sums][slice_width], int lane) const
     {
       hn::Store(force.x, d, to[0] + lane);
@@ -136,6 +141,17 @@ public:
             hn::Mul(shear, hn::Sqrt(add_dot(n, n, hn::Zero(d))))};
   }
 
+  /// visit(number) of what the stress loop keeps of a face.
+  template <typename OfFace, typename Visit>
+  static HWY_INLINE void for_each_number(OfFace &face, Visit &&visit)
+  {
+    for (auto *const v : {&face.force, &face.normal}) {
+      visit(v->x);
+      visit(v->y);
+    }
+    visit(face.unit);
+  }
+
 private:
   struct Motion
   {
@@ -174,6 +190,19 @@ void add_slice_energies_2d(const SliceSweep<2> &sweep)
 {
   Slices2d(sweep).energies();
 }
+void take_pressures_2d(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
+                       int begin, int end)
+{
+  take_pressures_of<SliceLaw2d>(arrays, table, records, begin, end);
+}
+void find_stresses_2d(const StressSweep<2> &sweep)
+{
+  StressSlices<SliceLaw2d, 2>(sweep).stresses();
+}
+void find_tensions_2d(const StressSweep<2> &sweep)
+{
+  StressSlices<SliceLaw2d, 2>(sweep).tensions();
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -184,6 +213,9 @@ HWY_EXPORT(load_records_2d);
 HWY_EXPORT(add_pressures_2d);
 HWY_EXPORT(add_slice_forces_2d);
 HWY_EXPORT(add_slice_energies_2d);
+HWY_EXPORT(take_pressures_2d);
+HWY_EXPORT(find_stresses_2d);
+HWY_EXPORT(find_tensions_2d);
 
 void load_records(const SliceSweep<2> &sweep)
 {
@@ -200,6 +232,19 @@ void add_slice_forces(const SliceSweep<2> &sweep)
 void add_slice_energies(const SliceSweep<2> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_energies_2d)(sweep);
+}
+void take_pressures(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
+                    int begin, int end)
+{
+  HWY_DYNAMIC_DISPATCH(take_pressures_2d)(arrays, table, records, begin, end);
+}
+void find_stresses(const StressSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(find_stresses_2d)(sweep);
+}
+void find_tensions(const StressSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(find_tensions_2d)(sweep);
 }
 } // namespace ligament::dem
 #endif

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
 #include "dem/slice_loop.h"
+#include "dem/stress_loop.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -59,6 +60,10 @@ public:
       excess = zero;
     }
     HWY_INLINE bool exceeds(D d) const { return !hn::AllFalse(d, hn::Gt(excess, hn::Zero(d))); }
+    HWY_INLINE std::uint32_t exceeding(D d) const
+    {
+      return lane_bits(d, hn::Gt(excess, hn::Zero(d)));
+    }
     HWY_INLINE void store(D d, const Own &own, double (&to)[n_sums][slice_width], int lane) const
     {
       const V3 body = couple + couple;
@@ -149,6 +154,18 @@ public:
             (n + n) + (own.change(n) + m.change(n)), m.a_i, hn::Mul(shear, hn::Sqrt(dot(n, n)))};
   }
 
+  /// visit(number) of what the stress loop keeps of a face.
+  template <typename OfFace, typename Visit>
+  static HWY_INLINE void for_each_number(OfFace &face, Visit &&visit)
+  {
+    for (auto *const v : {&face.force, &face.normal}) {
+      visit(v->x);
+      visit(v->y);
+      visit(v->z);
+    }
+    visit(face.unit);
+  }
+
 private:
   static HWY_INLINE V dot(const V3 &a, const V3 &b)
   {
@@ -213,6 +230,19 @@ void add_slice_energies_3d(const SliceSweep<3> &sweep)
 {
   Slices3d(sweep).energies();
 }
+void take_pressures_3d(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
+                       int begin, int end)
+{
+  take_pressures_of<SliceLaw3d>(arrays, table, records, begin, end);
+}
+void find_stresses_3d(const StressSweep<3> &sweep)
+{
+  StressSlices<SliceLaw3d, 3>(sweep).stresses();
+}
+void find_tensions_3d(const StressSweep<3> &sweep)
+{
+  StressSlices<SliceLaw3d, 3>(sweep).tensions();
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -223,6 +253,9 @@ HWY_EXPORT(load_records_3d);
 HWY_EXPORT(add_pressures_3d);
 HWY_EXPORT(add_slice_forces_3d);
 HWY_EXPORT(add_slice_energies_3d);
+HWY_EXPORT(take_pressures_3d);
+HWY_EXPORT(find_stresses_3d);
+HWY_EXPORT(find_tensions_3d);
 
 void load_records(const SliceSweep<3> &sweep)
 {
@@ -239,6 +272,19 @@ void add_slice_forces(const SliceSweep<3> &sweep)
 void add_slice_energies(const SliceSweep<3> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_slice_energies_3d)(sweep);
+}
+void take_pressures(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
+                    int begin, int end)
+{
+  HWY_DYNAMIC_DISPATCH(take_pressures_3d)(arrays, table, records, begin, end);
+}
+void find_stresses(const StressSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(find_stresses_3d)(sweep);
+}
+void find_tensions(const StressSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(find_tensions_3d)(sweep);
 }
 } // namespace ligament::dem
 #endif

@@ -131,8 +131,8 @@ public:
     const SliceLanes d;
     constexpr int n = n_lanes;
     HWY_ALIGN double number[record_size][slice_width] = {};
-    const int n_records = table_.n_records();
-    for (int first = 0; first < n_records; first += slice_width) {
+    const int n_records = sweep_.end_record < 0 ? table_.n_records() : sweep_.end_record;
+    for (int first = sweep_.first_record; first < n_records; first += slice_width) {
       if (sweep_.nearness && sweep_.nearness->records[first / slice_width] < Rest::turned)
         continue;
       const int size = std::min(slice_width, n_records - first);
@@ -192,36 +192,11 @@ public:
 
   HWY_INLINE void forces() const
   {
-    const SliceLanes d;
     take_pressures();
-    HWY_ALIGN double sums[Law::n_sums][slice_width];
-    const auto limit2 = hn::Set(d, std::min(sweep_.limit2, sweep_.screen2));
-    for (int s = 0; s < table_.n_slices(); ++s) {
-      if (is_left_out(s, Rest::awake))
-        continue;
-      bool reached = false;
-      std::uint32_t breaking = 0; // bits of lanes
-      for (int lane = 0; lane < slice_width; lane += n_lanes) {
-        const typename Law::Own own(d, own_record(s, lane));
-        typename Law::Sums sum;
-        for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
-          Law::add_forces(d, own, b, record(b.neighbour()), limit2, sum);
-        sum.store(d, own, sums, lane);
-        if (HWY_UNLIKELY(sum.exceeds(d))) {
-          reached = true;
-          if (sweep_.limit2 < sweep_.never)
-            breaking |= could_break(s, lane) << lane;
-        }
-      }
-      finish_forces(s, sums);
-      if (HWY_UNLIKELY(breaking != 0))
-        for_each_lane(s, [&](int l, int i) {
-          if (breaking >> l & 1)
-            sweep_.exceeded->push_back(i);
-        });
-      if (HWY_UNLIKELY(reached) && sweep_.screen.traction > 0)
-        for_each_lane(s, [&](int, int i) { sweep_.screen.mark(i); });
-    }
+    if (sweep_.faces_at_once)
+      forces<true>();
+    else
+      forces<false>();
   }
 
 private:
@@ -268,41 +243,126 @@ private:
       visit(Law::face(d, own, b, record(b.neighbour())));
   }
 
-  /// Bits of the lanes whose particles have a bond that could break.
-  HWY_NOINLINE std::uint32_t could_break(int s, int lane) const
+  template <bool faces_at_once>
+  HWY_INLINE void forces() const
   {
     const SliceLanes d;
-    const auto strain = hn::Set(d, sweep_.strain);
-    const auto reached = [&](const typename Law::Face &face) HWY_ATTR {
-      return reaches(d, face.force, face.normal, hn::Mul(strain, face.unit), sweep_.tangent);
-    };
-    auto found = hn::Lt(strain, hn::Zero(d));
-    for_each_face(s, lane,
-                  [&](const auto &face) HWY_ATTR { found = hn::Or(found, reached(face)); });
-    if (table_.per_volume.empty() || sweep_.nearness || hn::AllFalse(d, found))
-      return lane_bits(d, found);
+    HWY_ALIGN double sums[Law::n_sums][slice_width];
+    const auto limit2 = hn::Set(d, std::min(sweep_.limit2, sweep_.screen2));
+    for (int s = 0; s < table_.n_slices(); ++s) {
+      if (is_left_out(s, Rest::awake))
+        continue;
+      bool reached = false;
+      std::uint32_t breaking = 0; // bits of lanes
+      for (int lane = 0; lane < slice_width; lane += n_lanes) {
+        const typename Law::Own own(d, own_record(s, lane));
+        typename Law::Sums sum;
+        Look look(*this, s, lane);
+        for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next()) {
+          const auto other = record(b.neighbour());
+          Law::add_forces(d, own, b, other, limit2, sum);
+          if constexpr (faces_at_once)
+            look.add(Law::face(d, own, b, other));
+        }
+        sum.store(d, own, sums, lane);
+        if (HWY_UNLIKELY(sum.exceeds(d))) {
+          reached = true;
+          if (faces_at_once)
+            breaking |= look.found() << lane;
+          else if (sweep_.limit2 < sweep_.never)
+            breaking |= (sweep_.faces_too ? could_break(s, lane) : sum.exceeding(d)) << lane;
+        }
+      }
+      finish_forces(s, sums);
+      *sweep_.n_reached += reached;
+      if (HWY_UNLIKELY(breaking != 0))
+        for_each_lane(s, [&](int l, int i) {
+          if (breaking >> l & 1)
+            sweep_.exceeded->push_back(i);
+        });
+      if (HWY_UNLIKELY(reached) && sweep_.screen.traction > 0)
+        for_each_lane(s, [&](int, int i) { sweep_.screen.mark(i); });
+    }
+  }
 
-    // Eq. (D12d), face by face.
-    const auto per_volume = hn::LoadU(d, table_.per_volume.data() + s * slice_width + lane);
-    typename Law::Stress stress(d);
-    auto moment = Law::no_moment(d);
-    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
-      stress.add(face.lever, face.force);
-      moment = add_cross(face.lever, face.force, moment);
-    });
-    stress.finish(moment, per_volume);
-    const auto room = hn::Sub(strain, stress.largest_principal());
-    auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
-    for_each_face(s, lane, [&](const auto &face) HWY_ATTR {
-      const auto zero = hn::Zero(d);
-      const auto length = hn::Sqrt(add_dot(face.normal, face.normal, zero));
-      const auto residual = length * face.force - face.unit * stress.times(face.normal);
-      const auto deviation =
-          hn::Mul(hn::Set(d, sweep_.per_cosine), hn::Sqrt(add_dot(residual, residual, zero)));
-      const auto bound_reached = hn::Ge(deviation, hn::Mul(room, hn::Mul(length, face.unit)));
-      not_cleared = hn::Or(not_cleared, hn::And(bound_reached, reached(face)));
-    });
-    return lane_bits(d, hn::And(found, not_cleared));
+  /// Which particles of a vector have a bond that could break: by eq. (D12c), and where the stress
+  /// of a particle is known, by its own term of (D12d).
+  class Look
+  {
+    using V = hn::Vec<SliceLanes>;
+
+  public:
+    HWY_INLINE Look(const Slices &slices, int s, int lane)
+        : sweep_(slices.sweep_), table_(slices.table_), first_lane_(s * slice_width + lane),
+          knows_stress_(!table_.per_volume.empty() && !sweep_.nearness &&
+                        table_.first_slot[s + 1] - table_.first_slot[s] <= most_faces),
+          strain_(hn::Set(SliceLanes(), sweep_.strain)),
+          found_(hn::Lt(strain_, hn::Zero(SliceLanes()))), stress_(SliceLanes()),
+          moment_(Law::no_moment(SliceLanes())), end_(kept_)
+    {
+    }
+    HWY_INLINE void add(const typename Law::Face &face)
+    {
+      const SliceLanes d;
+      found_ = hn::Or(found_, reached(face));
+      if (!knows_stress_)
+        return;
+      stress_.add(face.lever, face.force);
+      moment_ = add_cross(face.lever, face.force, moment_);
+      Law::for_each_number(face, [&](const V &number) HWY_ATTR {
+        hn::Store(number, d, end_);
+        end_ += n_lanes;
+      });
+    }
+    /// Bits of the lanes.
+    HWY_INLINE std::uint32_t found()
+    {
+      const SliceLanes d;
+      if (!knows_stress_ || hn::AllFalse(d, found_))
+        return lane_bits(d, found_);
+      const V per_volume = hn::LoadU(d, table_.per_volume.data() + first_lane_);
+      stress_.finish(moment_, per_volume);
+      const V principal = stress_.largest_principal();
+      auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
+      for (const double *at = kept_; at != end_;) {
+        typename Law::Face face;
+        Law::for_each_number(face, [&](V &number) HWY_ATTR {
+          number = hn::Load(d, at);
+          at += n_lanes;
+        });
+        const auto bound = bound_reaches(d, face, stress_, principal, strain_, sweep_.tangent);
+        if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
+          not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
+      }
+      return lane_bits(d, hn::And(found_, not_cleared));
+    }
+
+  private:
+    static constexpr int most_faces = 40, face_size = 2 * dim + 1;
+
+    HWY_INLINE hn::Mask<SliceLanes> reached(const typename Law::Face &face) const
+    {
+      return reaches(SliceLanes(), face.force, face.normal, hn::Mul(strain_, face.unit),
+                     sweep_.tangent);
+    }
+
+    const SliceSweep<dim> &sweep_;
+    const SliceTable<dim> &table_;
+    int first_lane_;
+    bool knows_stress_;
+    V strain_;
+    hn::Mask<SliceLanes> found_;
+    typename Law::Stress stress_;
+    typename Law::Moment moment_;
+    double *end_;
+    HWY_ALIGN double kept_[most_faces * face_size * n_lanes];
+  };
+
+  HWY_NOINLINE std::uint32_t could_break(int s, int lane) const
+  {
+    Look look(*this, s, lane);
+    for_each_face(s, lane, [&](const auto &face) HWY_ATTR { look.add(face); });
+    return look.found();
   }
 
   HWY_INLINE void finish_forces(int s, const double (&sums)[Law::n_sums][slice_width]) const

@@ -23,6 +23,29 @@ struct StressSum2d
   HWY_INLINE explicit StressSum2d(D d) : xx(hn::Zero(d)), yy(xx), xy(xx)
   {
   }
+  /// Of components in Voigt order.
+  template <typename Component>
+  static HWY_INLINE StressSum2d of(Component &&component)
+  {
+    StressSum2d s{hn::DFromV<V>()};
+    s.xx = component(0);
+    s.yy = component(1);
+    s.xy = component(2);
+    return s;
+  }
+  template <typename Visit>
+  HWY_INLINE void for_each(Visit &&visit) const
+  {
+    visit(xx);
+    visit(yy);
+    visit(xy);
+  }
+  HWY_INLINE void add(const V *component)
+  {
+    xx = hn::Add(xx, component[0]);
+    yy = hn::Add(yy, component[1]);
+    xy = hn::Add(xy, component[2]);
+  }
   HWY_INLINE void add(const Pair<V> &a, const Pair<V> &f)
   {
     xx = hn::MulAdd(a.x, f.x, xx);
@@ -52,6 +75,20 @@ struct StressSum2d
     return hn::MulAdd(half, hn::Add(xx, yy),
                       hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy))));
   }
+  /// Unit vector along the largest principal stress, and by how many rad it may be wrong.
+  HWY_INLINE Pair<V> principal_direction(V &doubt) const
+  {
+    const hn::DFromV<V> d;
+    const V zero = hn::Zero(d), half = hn::Set(d, 0.5);
+    const V difference = hn::Mul(half, hn::Sub(xx, yy));
+    const V radius = hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy)));
+    const V sum = hn::Add(radius, hn::Abs(difference));
+    const auto along_x = hn::Ge(difference, zero);
+    const Pair<V> e{hn::IfThenElse(along_x, sum, xy), hn::IfThenElse(along_x, xy, sum)};
+    constexpr double round_off = 1e-13;
+    doubt = hn::Div(hn::Mul(hn::Set(d, round_off), hn::Sqrt(square())), radius);
+    return hn::Div(hn::Set(d, 1.), hn::Sqrt(add_dot(e, e, zero))) * e;
+  }
 };
 
 template <typename V>
@@ -62,6 +99,38 @@ struct StressSum3d
   template <typename D>
   HWY_INLINE explicit StressSum3d(D d) : xx(hn::Zero(d)), yy(xx), zz(xx), yz(xx), xz(xx), xy(xx)
   {
+  }
+  /// Of components in Voigt order.
+  template <typename Component>
+  static HWY_INLINE StressSum3d of(Component &&component)
+  {
+    StressSum3d s{hn::DFromV<V>()};
+    s.xx = component(0);
+    s.yy = component(1);
+    s.zz = component(2);
+    s.yz = component(3);
+    s.xz = component(4);
+    s.xy = component(5);
+    return s;
+  }
+  template <typename Visit>
+  HWY_INLINE void for_each(Visit &&visit) const
+  {
+    visit(xx);
+    visit(yy);
+    visit(zz);
+    visit(yz);
+    visit(xz);
+    visit(xy);
+  }
+  HWY_INLINE void add(const V *component)
+  {
+    xx = hn::Add(xx, component[0]);
+    yy = hn::Add(yy, component[1]);
+    zz = hn::Add(zz, component[2]);
+    yz = hn::Add(yz, component[3]);
+    xz = hn::Add(xz, component[4]);
+    xy = hn::Add(xy, component[5]);
   }
   HWY_INLINE void add(const Triple<V> &a, const Triple<V> &f)
   {
@@ -95,6 +164,7 @@ struct StressSum3d
   }
   /// Or a little more: the characteristic polynomial is convex above its largest root, which
   /// Newton's steps therefore never pass.
+  template <int steps = 3>
   HWY_INLINE V largest_principal() const
   {
     const hn::DFromV<V> d;
@@ -106,14 +176,68 @@ struct StressSum3d
     const V products = hn::MulAdd(a, hn::Mul(b, c), hn::Mul(hn::Add(yz, yz), hn::Mul(xz, xy)));
     const V j3 = hn::NegMulAdd(a, yz2, hn::NegMulAdd(b, xz2, hn::NegMulAdd(c, xy2, products)));
     V x = hn::Sqrt(hn::Mul(hn::Set(d, 4 / 3.), j2));
-    for (int step = 0; step < 3; ++step) {
+    for (int step = 0; step < steps; ++step) {
       const V x2 = hn::Mul(x, x);
       const V slope = hn::Max(hn::MulSub(hn::Set(d, 3.), x2, j2), hn::Set(d, 1e-300));
       x = hn::Div(hn::MulAdd(hn::Add(x, x), x2, j3), slope);
     }
     return hn::Add(mean, x);
   }
+  /// Unit vector along the largest principal stress, and by how many rad it may be wrong: not a
+  /// number, or not positive, where nothing is known of it.
+  HWY_INLINE Triple<V> principal_direction(V &doubt) const
+  {
+    const hn::DFromV<V> d;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.), two = hn::Set(d, 2.);
+    const V largest = largest_principal<6>();
+    // Rows of S - lambda 1: the longest of their products lies along what they turn to nothing.
+    const Triple<V> x{hn::Sub(xx, largest), xy, xz}, y{xy, hn::Sub(yy, largest), yz},
+        z{xz, yz, hn::Sub(zz, largest)}, none{zero, zero, zero};
+    Triple<V> e = add_cross(x, y, none);
+    V longest = add_dot(e, e, zero);
+    for (const Triple<V> &other : {add_cross(y, z, none), add_cross(z, x, none)}) {
+      const V length2 = add_dot(other, other, zero);
+      const auto longer = hn::Gt(length2, longest);
+      e = {hn::IfThenElse(longer, other.x, e.x), hn::IfThenElse(longer, other.y, e.y),
+           hn::IfThenElse(longer, other.z, e.z)};
+      longest = hn::Max(longest, length2);
+    }
+    e = hn::Div(one, hn::Sqrt(longest)) * e;
+    // The angle is at most |S e - lambda e| over the gap to the next principal stress.
+    const Triple<V> own = times(e);
+    const V lambda = add_dot(own, e, zero);
+    const Triple<V> wrong = neg_mul_add(lambda, e, own);
+    const V others = hn::Sub(hn::Add(xx, hn::Add(yy, zz)), lambda);
+    const V squares = square();
+    const V difference2 =
+        hn::NegMulAdd(others, others, hn::Mul(two, hn::NegMulAdd(lambda, lambda, squares)));
+    const V second =
+        hn::Mul(hn::Set(d, 0.5), hn::Add(others, hn::Sqrt(hn::Max(difference2, zero))));
+    const V gap = hn::Sub(lambda, second);
+    constexpr double round_off = 1e-12;
+    const V error = hn::MulAdd(hn::Set(d, round_off), hn::Sqrt(squares),
+                               hn::Mul(two, hn::Sqrt(add_dot(wrong, wrong, zero))));
+    doubt = hn::IfThenElse(hn::Gt(gap, zero), hn::Div(error, gap), one);
+    return e;
+  }
 };
+
+/// Where eq. (D12d) with this stress, whose largest principal value is given, lets the tension of a
+/// face reach `limit`; everything over 2G. With t = S n + r it takes r.n + tan |r - (r.n) n|, which
+/// is at most |r| / cos. What is no number reaches it.
+template <typename D, typename Face, typename Stress, typename V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> bound_reaches(D d, const Face &face, const Stress &stress, V principal,
+                                     V limit, double tangent)
+{
+  const V zero = hn::Zero(d);
+  const V length2 = add_dot(face.normal, face.normal, zero), length = hn::Sqrt(length2);
+  const auto rest = length * face.force - face.unit * stress.times(face.normal);
+  const V along = add_dot(rest, face.normal, zero);
+  const V across2 = hn::NegMulAdd(along, along, hn::Mul(add_dot(rest, rest, zero), length2));
+  const V excess = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(across2, zero)), along);
+  const V room = hn::Mul(hn::Sub(limit, principal), hn::Mul(length2, face.unit));
+  return hn::Not(hn::Lt(excess, room));
+}
 
 /// Eq. (D12d) of particles whose faces differ from S n by residual2 in the square and turn by at
 /// most `turn` against the normals of the criterion; the inverse of its least cosine comes in.
