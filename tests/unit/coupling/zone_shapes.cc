@@ -58,29 +58,5 @@ TEST(ZoneShapes, PatchFitOfTwoZones)
 {
   check_patch(apart, {106, 60});
 }
-
-// In the cell behind a re-entrant corner anything from a few integration points to none lies behind
-// the pads; with one point alone all strain modes are constant there, to round-off (eq. (C21)).
-TEST(ZoneShapes, TheCellAtAReentrantCornerIsTheMirrorsImage)
-{
-  for (int k = 0; k < 8; ++k) {
-    CoupledBodiesParameters<2> p;
-    p.material.poissons_ratio = 0.3;
-    p.kind = particles::LatticeKind::square;
-    p.size = {60, 60};
-    p.cell_size = 2.3 + 0.03 * k;
-    p.transition_cells = 1;
-    const double x = 5 + 0.17 * k, y = 4.5 - 0.11 * k;
-    p.zone.boxes = {{{-20, -19}, {x + 11, y}}, {{-20, -19}, {x, y + 12}}};
-    const double norm = make_coupled_bodies(p).split->near_stiffness().norm();
-    for (auto &box : p.zone.boxes) {
-      const double left = box.lower[0];
-      box.lower[0] = -box.upper[0];
-      box.upper[0] = -left;
-    }
-    const double image = make_coupled_bodies(p).split->near_stiffness().norm();
-    EXPECT_NEAR(image / norm, 1, 1e-11) << k;
-  }
-}
 } // namespace
 } // namespace ligament
