@@ -1,7 +1,7 @@
 // A polynomial in the mass matrix in place of its inverse: the rival of a factorisation.
 #pragma once
 
-#include "coupling/scalar_matrix.h"
+#include "coupling/algebra/scalar_matrix.h"
 
 #include <cmath>
 

@@ -39,14 +39,14 @@ double step_time(particles::ParticleSolver<dim> &zone)
 template <int dim>
 double particle_time(const dem::DemMaterial &material)
 {
-  particles::LatticeParameters<dim> lattice;
-  lattice.kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  packings::LatticeParameters<dim> lattice;
+  lattice.kind = dim == 2 ? packings::LatticeKind::hexagonal : packings::LatticeKind::fcc;
   lattice.spacing = 1;
   lattice.upper.setConstant(dim == 2 ? 85 : 14);
   lattice.lower = -lattice.upper;
-  auto packing = particles::make_lattice_packing<dim>(lattice);
+  auto packing = packings::make_lattice_packing<dim>(lattice);
   particles::Particles<dim> state;
-  particles::fill_particles(packing, material.density, state);
+  packings::fill_particles(packing, material.density, state);
   const int n = state.size();
   particles::ParticleSolver<dim> solver(
       std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(

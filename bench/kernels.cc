@@ -4,9 +4,9 @@
 #include "core/dispatch.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
-#include "particles/lattice_packing.h"
+#include "packings/lattice_packing.h"
+#include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "particles/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
 #include "tests/support/von_mises.h"
 
@@ -93,37 +93,37 @@ double peak_bytes()
 
 /// A box of this size in m around the origin.
 template <int dim>
-particles::Packing<dim> make_block(particles::LatticeKind kind, double spacing,
-                                   const Vector<dim> &size = Vector<dim>::Ones(),
-                                   const Spin<dim> &orientation = Spin<dim>::Zero())
+packings::Packing<dim> make_block(packings::LatticeKind kind, double spacing,
+                                  const Vector<dim> &size = Vector<dim>::Ones(),
+                                  const Spin<dim> &orientation = Spin<dim>::Zero())
 {
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.spacing = spacing;
   lattice.orientation = orientation;
   lattice.lower = -size / 2;
   lattice.upper = size / 2;
-  return particles::make_lattice_packing<dim>(lattice);
+  return packings::make_lattice_packing<dim>(lattice);
 }
 
 /// Relaxed a little: whole relaxation takes long and changes nothing here.
 template <int dim>
-particles::Packing<dim> make_random(double spacing)
+packings::Packing<dim> make_random(double spacing)
 {
-  particles::RandomParameters<dim> random;
+  packings::RandomParameters<dim> random;
   random.spacing = spacing;
   random.relaxation_sweeps = 2;
   random.lower.setConstant(-0.5);
   random.upper.setConstant(0.5);
-  return particles::make_random_packing<dim>(random).packing;
+  return packings::make_random_packing<dim>(random).packing;
 }
 
 /// A smooth motion with spins; far below the strength, so that nothing breaks.
 template <int dim>
-particles::Particles<dim> move(const particles::Packing<dim> &packing)
+particles::Particles<dim> move(const packings::Packing<dim> &packing)
 {
   particles::Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   for (int i = 0; i < p.size(); ++i)
     for (int c = 0; c < dim; ++c) {
       p.displacement[c][i] = 1e-4 * std::sin(3 * p.reference[(c + 1) % dim][i]);
@@ -134,7 +134,7 @@ particles::Particles<dim> move(const particles::Packing<dim> &packing)
 
 /// Million particle-steps per second of the row kernel alone, without irregular bonds.
 template <int dim>
-double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMaterial &material)
+double rate_of_rows(const packings::Packing<dim> &packing, const dem::DemMaterial &material)
 {
   const int n = packing.size();
   auto p = move(packing);
@@ -166,7 +166,7 @@ double rate_of_rows(const particles::Packing<dim> &packing, const dem::DemMateri
 }
 
 template <int dim>
-void measure(const std::string &name, const particles::Packing<dim> &packing, bool all_targets)
+void measure(const std::string &name, const packings::Packing<dim> &packing, bool all_targets)
 {
   const int n = packing.size(), n_directions = int(packing.directions.size());
   const double n_neighbours = 2. * double(packing.faces.size()) / n;
@@ -229,7 +229,7 @@ void measure(const std::string &name, const particles::Packing<dim> &packing, bo
 /// Whole steps of boxes of about as many particles, in turns: what a shape costs. The first box,
 /// all of whose sides are alike, is the reference.
 template <int dim>
-void measure_shapes(const std::string &name, particles::LatticeKind kind,
+void measure_shapes(const std::string &name, packings::LatticeKind kind,
                     const std::vector<std::pair<std::string, Vector<dim>>> &shapes,
                     const Spin<dim> &orientation = Spin<dim>::Zero())
 {
@@ -287,7 +287,7 @@ void measure_shapes(const std::string &name, particles::LatticeKind kind,
 
 void measure_all_shapes()
 {
-  using particles::LatticeKind;
+  using packings::LatticeKind;
   const std::vector<std::pair<std::string, Vector<3>>> boxes = {
       {"cube", {85.3, 85.3, 85.3}},
       {"plate thin in z", {256.3, 150.3, 16.3}},
@@ -311,7 +311,7 @@ void measure_all_shapes()
 
 /// One body of 1e7 particles: memory and the seconds of a step.
 template <int dim>
-void measure_largest(const std::string &name, particles::LatticeKind kind, double spacing)
+void measure_largest(const std::string &name, packings::LatticeKind kind, double spacing)
 {
   auto packing = make_block<dim>(kind, spacing);
   const int n = packing.size();
@@ -343,7 +343,7 @@ void measure_largest(const std::string &name, particles::LatticeKind kind, doubl
 /// Forces of a body with a law of plastic flow: far from it, after it, and with all particles
 /// flowing in every step; and what the search for breaking bonds costs. Medians of calls in turns.
 template <int dim>
-void measure_plastic(const std::string &name, const particles::Packing<dim> &packing)
+void measure_plastic(const std::string &name, const packings::Packing<dim> &packing)
 {
   dem::DemMaterial material;
   material.poissons_ratio = 0.25;
@@ -395,10 +395,10 @@ void measure_plastic(const std::string &name, const particles::Packing<dim> &pac
 
 /// A homogeneous uniaxial tension of 1e-4 E along an oblique axis, at nu = 1/4.
 template <int dim>
-particles::Particles<dim> pull(const particles::Packing<dim> &packing)
+particles::Particles<dim> pull(const packings::Packing<dim> &packing)
 {
   particles::Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   constexpr double angle = 0.6, nu = 0.25;
   const double along = 1e-4 * (dim == 2 ? 1 - nu * nu : 1),
                across = -1e-4 * nu * (dim == 2 ? 1 + nu : 1);
@@ -417,7 +417,7 @@ particles::Particles<dim> pull(const particles::Packing<dim> &packing)
 /// from breaking, and where the whole body bears some share of its strength. Value: what it costs,
 /// median of the pairs; reference: what it may.
 template <int dim>
-void measure_criterion(const std::string &name, const particles::Packing<dim> &packing)
+void measure_criterion(const std::string &name, const packings::Packing<dim> &packing)
 {
   dem::DemMaterial material;
   material.poissons_ratio = 0.25;
@@ -471,7 +471,7 @@ void measure_criterion(const std::string &name, const particles::Packing<dim> &p
 /// a fracture criterion does.
 int main(int argc, char **argv)
 {
-  using particles::LatticeKind;
+  using packings::LatticeKind;
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "2d")
     measure_largest<2>("hexagonal", LatticeKind::hexagonal, 1 / 2943.);

@@ -1,7 +1,7 @@
 // Plots and tables of the wave bench: `wave_bench_plots FOLDER FILE...` reads what
 // `ligament verify waves_bench --full --json` printed, writes SVG files into FOLDER, and prints the
 // tables of docs/verification_wave_bench.md.
-#include "src/output/plot.h"
+#include "src/drawing/plot.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include "coupling/bridging_domain.h"
 
-#include "coupling/blended_operators.h"
-#include "coupling/energy_weights.h"
-#include "coupling/fine_damper.h"
+#include "coupling/operators/blended_operators.h"
+#include "coupling/operators/energy_weights.h"
+#include "coupling/operators/fine_damper.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 // velocities tied by multipliers.
 #pragma once
 
-#include "coupling/block_matrix.h"
+#include "coupling/algebra/block_matrix.h"
 #include "coupling/coupler.h"
-#include "coupling/fluctuation_projector.h"
-#include "coupling/velocity_constraint.h"
+#include "coupling/operators/fluctuation_projector.h"
+#include "coupling/operators/velocity_constraint.h"
 
 namespace ligament::coupling
 {

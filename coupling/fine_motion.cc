@@ -76,21 +76,21 @@ void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
   for (const auto &[nodes, members] : members_of_cell)
     cells.push_back(&members);
 
-  for (std::size_t first = 0; first < cells.size(); first += octet_size) {
+  for (std::size_t first = 0; first < cells.size(); first += lane_array_size) {
     const auto begin = cells.begin() + first,
-               end = cells.begin() + std::min(first + octet_size, cells.size());
+               end = cells.begin() + std::min(first + lane_array_size, cells.size());
     // Fullest first, so that idle lanes come last in every slot.
     std::stable_sort(begin, end, [](auto *a, auto *b) { return a->size() > b->size(); });
-    typename MemberLanes<dim>::Batch batch{};
+    typename MemberBatches<dim>::Batch batch{};
     batch.n_cells = int(end - begin);
-    for (int l = 0; l < octet_size; ++l)
+    for (int l = 0; l < lane_array_size; ++l)
       for (int a = 0; a < nc; ++a)
         batch.node[a][l] = begin[l < batch.n_cells ? l : 0]->front()->nodes[a];
     batch.begin = int(lanes_.slots.size());
     for (std::size_t k = 0; k < (*begin)->size(); ++k) {
       Slot slot{};
       int n_members = 0;
-      for (int l = 0; l < octet_size; ++l) {
+      for (int l = 0; l < lane_array_size; ++l) {
         const bool idle = l >= batch.n_cells || k >= begin[l]->size();
         const Member &m = idle ? *(*begin)->at(k) : *begin[l]->at(k);
         slot.particle[l] = m.particle;
@@ -127,7 +127,7 @@ template <int dim>
 void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
                                  Nodal<dim> &force) const
 {
-  std::vector<Octet> motion(motion_.size());
+  std::vector<LaneArray> motion(motion_.size());
   Nodal<dim> other = Nodal<dim>::Zero(carried_.rows(), dim);
   kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), force.data(),
                              other.data(), other.data()});
@@ -200,7 +200,7 @@ void FineMotion<dim>::write_velocities(const Nodal<dim> &coarse,
 template <int dim>
 void FineMotion<dim>::scale(double factor)
 {
-  for (Octet &w : motion_)
+  for (LaneArray &w : motion_)
     for (double &v : w.value)
       v *= factor;
 }

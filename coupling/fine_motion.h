@@ -2,9 +2,9 @@
 // hand each other in a step.
 #pragma once
 
-#include "coupling/carried_motion.h"
-#include "coupling/member_lanes.h"
-#include "coupling/scalar_matrix.h"
+#include "coupling/algebra/scalar_matrix.h"
+#include "coupling/member_batches.h"
+#include "coupling/operators/coarse_projection.h"
 
 #include <functional>
 
@@ -49,7 +49,7 @@ public:
 
 private:
   static constexpr int nc = fem::n_cell_nodes<dim>;
-  using Slot = typename MemberLanes<dim>::Slot;
+  using Slot = typename MemberBatches<dim>::Slot;
   struct Pad
   {
     int particle;
@@ -62,12 +62,12 @@ private:
                   const std::function<double(double)> &damping);
   void add_pad_torques(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
 
-  MemberLanes<dim> lanes_;
-  CarriedMotion<dim> carrier_;
-  std::vector<Octet> motion_; // w, dim per slot, m/s
-  Nodal<dim> carried_;        // Phi^T M w', then x: what the mesh carries of w'
-  Nodal<dim> lost_;           // Phi^T M damping (w + w')
-  ScalarMatrix<dim> loss_;    // Phi^T M damping (1 - damping/2) Phi
+  MemberBatches<dim> lanes_;
+  CoarseProjection<dim> carrier_;
+  std::vector<LaneArray> motion_; // w, dim per slot, m/s
+  Nodal<dim> carried_;            // Phi^T M w', then x: what the mesh carries of w'
+  Nodal<dim> lost_;               // Phi^T M damping (w + w')
+  ScalarMatrix<dim> loss_;        // Phi^T M damping (1 - damping/2) Phi
   double damper_energy_ = 0;
   std::vector<Pad> pads_;
 };

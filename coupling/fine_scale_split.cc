@@ -1,8 +1,8 @@
 #include "coupling/fine_scale_split.h"
 
 #include "core/check.h"
-#include "coupling/fine_damper.h"
-#include "coupling/gap_filter.h"
+#include "coupling/operators/fine_damper.h"
+#include "coupling/operators/gap_filter.h"
 
 #include <fmt/format.h>
 
@@ -303,10 +303,10 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
 {
   const auto timing = this->timers_.scope(this->coupling_);
   auto &zone = *bodies.zone;
-  double loss = scaling_loss(fine_.kinetic_energy(zone.state, 0),
-                             fine_.kinetic_energy(zone.state, step.dt), factor) -
-                scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt),
-                             factor);
+  double loss =
+      scaling_loss(fine_.kinetic_energy(zone.state, 0), fine_.kinetic_energy(zone.state, step.dt),
+                   factor) -
+      scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt), factor);
   loss += zone.damp_velocities(factor, step.dt);
   fine_.scale(factor);
   if (is_far_step(step)) {
@@ -323,8 +323,9 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   return loss;
 }
 
-// Between two impulses V swings about its mean: just before one it is behind by what the near forces
-// have taken back, just after it ahead by as much. The swing moves nothing and is left as it is.
+// Between two impulses V swings about its mean: just before one it is behind by what the near
+// forces have taken back, just after it ahead by as much. The swing moves nothing and is left as it
+// is.
 template <int dim>
 double FineScaleSplit<dim>::damp_coarse_before_kick(const Bodies<dim> &bodies, double dt,
                                                     double factor)

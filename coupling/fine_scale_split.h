@@ -2,11 +2,11 @@
 // part of its motion, and only the coarse energy and mass are blended.
 #pragma once
 
-#include "coupling/coarse_energy.h"
+#include "coupling/algebra/scalar_matrix.h"
 #include "coupling/coupler.h"
 #include "coupling/fine_motion.h"
-#include "coupling/patch_fit.h"
-#include "coupling/scalar_matrix.h"
+#include "coupling/operators/coarse_energy.h"
+#include "coupling/operators/patch_fit.h"
 
 namespace ligament::coupling
 {
@@ -61,7 +61,7 @@ public:
   void set_regime(Regime regime, Bodies<dim> &bodies);
   Regime regime() const { return regime_; }
   /// Of the near cells, in the present state.
-  typename NearParts<dim>::Motion largest_motion() const
+  typename RigidFrames<dim>::Motion largest_motion() const
   {
     return parts_.largest_motion(displacement_);
   }
@@ -92,8 +92,8 @@ private:
   /// Mass damping of V by the factor; the energy in J that it takes is known after the kick.
   double damp_coarse_before_kick(const Bodies<dim> &bodies, double dt, double factor);
   double damp_coarse_after_kick(const Bodies<dim> &bodies, double dt, double factor);
-  /// What mass damping of all velocities by the factor, before the kick and after it, takes of (E5),
-  /// in J: eq. (E5b). After the kick.
+  /// What mass damping of all velocities by the factor, before the kick and after it, takes of
+  /// (E5), in J: eq. (E5b). After the kick.
   double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
   void write_velocities(Bodies<dim> &bodies);
   void write_far_velocities(fem::FemSolver<dim> &far) const;
@@ -123,7 +123,7 @@ private:
   SplitReport report_;
 
   Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
-  NearParts<dim> parts_;
+  RigidFrames<dim> parts_;
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c

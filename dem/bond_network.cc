@@ -9,7 +9,7 @@ namespace
 /// The lattice direction of a face, or -1. Faces of clipped cells count as well when they
 /// themselves are whole: volumes are kept per particle anyway.
 template <int dim>
-int lattice_direction(const particles::Face<dim> &face, const particles::Packing<dim> &packing)
+int lattice_direction(const packings::Face<dim> &face, const packings::Packing<dim> &packing)
 {
   if (face.direction >= 0)
     return face.direction;
@@ -34,7 +34,7 @@ struct KernelDirection
 };
 using KernelDirections = std::vector<KernelDirection>;
 
-KernelDirections kernel_directions(const std::vector<particles::LatticeDirection<2>> &directions)
+KernelDirections kernel_directions(const std::vector<packings::LatticeDirection<2>> &directions)
 {
   KernelDirections all;
   for (std::size_t k = 0; k < directions.size(); ++k)
@@ -44,7 +44,7 @@ KernelDirections kernel_directions(const std::vector<particles::LatticeDirection
 
 /// Those of a face-centred cubic lattice as a, b, e - a - b, e - b, e - a, e with a, b
 /// perpendicular to each other (Basis<6> of lattice_kernel_3d.cc); others as they are.
-KernelDirections kernel_directions(const std::vector<particles::LatticeDirection<3>> &directions)
+KernelDirections kernel_directions(const std::vector<packings::LatticeDirection<3>> &directions)
 {
   const int n = int(directions.size());
   KernelDirections all;
@@ -73,7 +73,7 @@ KernelDirections kernel_directions(const std::vector<particles::LatticeDirection
 
 /// 1 for particles of other materials than the first one and for their neighbours in it.
 template <int dim>
-std::vector<char> particles_off_lattice(const particles::Packing<dim> &packing,
+std::vector<char> particles_off_lattice(const packings::Packing<dim> &packing,
                                         const Materials &materials)
 {
   std::vector<char> off(packing.size(), 0);
@@ -87,7 +87,7 @@ std::vector<char> particles_off_lattice(const particles::Packing<dim> &packing,
 } // namespace
 
 template <int dim>
-Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const Materials &materials,
+Bond<dim> BondNetwork<dim>::make_bond(const packings::Face<dim> &face, const Materials &materials,
                                       double thickness)
 {
   const double r = face.q_i + face.q_j;
@@ -110,7 +110,7 @@ Bond<dim> BondNetwork<dim>::make_bond(const particles::Face<dim> &face, const Ma
 }
 
 template <int dim>
-BondNetwork<dim>::BondNetwork(const particles::Packing<dim> &packing, const Materials &materials)
+BondNetwork<dim>::BondNetwork(const packings::Packing<dim> &packing, const Materials &materials)
     : lattice_shear_modulus_(materials.base().shear_modulus()), mask_(packing.size(), 0)
 {
   const DemMaterial &material = materials.base();

@@ -4,7 +4,7 @@
 
 #include "dem/bond.h"
 #include "dem/materials.h"
-#include "particles/packing.h"
+#include "packings/packing.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -46,7 +46,7 @@ class BondNetwork
 public:
   /// Bonds of all faces that aren't cracked. Those of other materials than the first one, and all
   /// bonds of particles that have a bond to another material, are in the table.
-  BondNetwork(const particles::Packing<dim> &packing, const Materials &materials);
+  BondNetwork(const packings::Packing<dim> &packing, const Materials &materials);
 
   int n_particles() const { return int(mask_.size()); }
   int n_directions() const { return int(directions_.size()); }
@@ -85,7 +85,7 @@ public:
   /// the lattice for the table: those that keep theirs cost what they did.
   void set_weights(const std::vector<double> &weights);
 
-  static Bond<dim> make_bond(const particles::Face<dim> &face, const Materials &materials,
+  static Bond<dim> make_bond(const packings::Face<dim> &face, const Materials &materials,
                              double thickness);
 
 private:

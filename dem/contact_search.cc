@@ -8,7 +8,7 @@
 namespace ligament::dem
 {
 template <int dim>
-ContactSearch<dim>::ContactSearch(const particles::Packing<dim> &packing, double face_area)
+ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double face_area)
     : flanks_(packing), spacing_(packing.spacing), skin_(packing.spacing / 4),
       face_area_(face_area), largest_(packing.spacing), diameter_(packing.diameter),
       on_surface_(packing.size(), 0)

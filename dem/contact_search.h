@@ -16,7 +16,7 @@ public:
   /// New contacts have the mean diameter of their particles as distance (d on lattices), or the
   /// distance in the reference or at present where that is less, and a face in proportion to
   /// `face_area` (m^2), which belongs to d. They press with nothing when they are found.
-  ContactSearch(const particles::Packing<dim> &packing, double face_area);
+  ContactSearch(const packings::Packing<dim> &packing, double face_area);
 
   /// Particle i lies on a surface from now on; the next search is due at once.
   void add_surface_particle(int i);

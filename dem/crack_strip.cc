@@ -28,12 +28,12 @@ class DrawnStrip
 {
 public:
   /// From a state of uniform strain across it.
-  DrawnStrip(particles::Packing<dim> packing, const DemMaterial &material, double height,
+  DrawnStrip(packings::Packing<dim> packing, const DemMaterial &material, double height,
              double opening_rate, double start_time, const FractureLaw &law = {})
       : time_(start_time)
   {
     particles::Particles<dim> state;
-    particles::fill_particles(packing, density, state);
+    packings::fill_particles(packing, density, state);
     for (int i = 0; i < state.size(); ++i)
       state.displacement[1][i] = opening_rate * start_time / height * state.reference[1][i];
     auto loads = grips<dim>(opening_rate);
@@ -77,7 +77,7 @@ private:
 } // namespace
 
 template <int dim>
-void CrackStrip::lay_out(particles::SpecimenParameters<dim> &p, const Vector<2> &tip) const
+void CrackStrip::lay_out(packings::SpecimenParameters<dim> &p, const Vector<2> &tip) const
 {
   p.spacing = spacing;
   p.lower[0] = -behind, p.upper[0] = ahead;
@@ -95,7 +95,7 @@ void CrackStrip::lay_out(particles::SpecimenParameters<dim> &p, const Vector<2> 
 }
 
 template <int dim>
-void CrackStrip::lay_out_whole(particles::SpecimenParameters<dim> &p) const
+void CrackStrip::lay_out_whole(packings::SpecimenParameters<dim> &p) const
 {
   lay_out(p, Vector<2>::Zero());
   p.cracks.clear();
@@ -103,7 +103,7 @@ void CrackStrip::lay_out_whole(particles::SpecimenParameters<dim> &p) const
 }
 
 template <int dim>
-double CrackStrip::factor(particles::Packing<dim> cracked, particles::Packing<dim> whole,
+double CrackStrip::factor(packings::Packing<dim> cracked, packings::Packing<dim> whole,
                           const DemMaterial &of, FractureLaw::Criterion criterion) const
 {
   DemMaterial material = of;
@@ -138,12 +138,12 @@ double CrackStrip::factor(particles::Packing<dim> cracked, particles::Packing<di
   return strength * std::sqrt(spacing / (plane_modulus * energy_release));
 }
 
-template void CrackStrip::lay_out(particles::SpecimenParameters<2> &, const Vector<2> &) const;
-template void CrackStrip::lay_out_whole(particles::SpecimenParameters<2> &) const;
-template double CrackStrip::factor(particles::Packing<2>, particles::Packing<2>,
-                                   const DemMaterial &, FractureLaw::Criterion) const;
-template void CrackStrip::lay_out(particles::SpecimenParameters<3> &, const Vector<2> &) const;
-template void CrackStrip::lay_out_whole(particles::SpecimenParameters<3> &) const;
-template double CrackStrip::factor(particles::Packing<3>, particles::Packing<3>,
-                                   const DemMaterial &, FractureLaw::Criterion) const;
+template void CrackStrip::lay_out(packings::SpecimenParameters<2> &, const Vector<2> &) const;
+template void CrackStrip::lay_out_whole(packings::SpecimenParameters<2> &) const;
+template double CrackStrip::factor(packings::Packing<2>, packings::Packing<2>, const DemMaterial &,
+                                   FractureLaw::Criterion) const;
+template void CrackStrip::lay_out(packings::SpecimenParameters<3> &, const Vector<2> &) const;
+template void CrackStrip::lay_out_whole(packings::SpecimenParameters<3> &) const;
+template double CrackStrip::factor(packings::Packing<3>, packings::Packing<3>, const DemMaterial &,
+                                   FractureLaw::Criterion) const;
 } // namespace ligament::dem

@@ -4,8 +4,8 @@
 
 #include "dem/fracture_law.h"
 #include "dem/material.h"
-#include "particles/packing.h"
-#include "particles/specimen.h"
+#include "packings/packing.h"
+#include "packings/specimen.h"
 
 namespace ligament::dem
 {
@@ -19,14 +19,14 @@ struct CrackStrip
 
   /// A strip of spacing 1 m with its crack; a shorter one as high without.
   template <int dim>
-  void lay_out(particles::SpecimenParameters<dim> &parameters, const Vector<2> &tip) const;
+  void lay_out(packings::SpecimenParameters<dim> &parameters, const Vector<2> &tip) const;
   template <int dim>
-  void lay_out_whole(particles::SpecimenParameters<dim> &parameters) const;
+  void lay_out_whole(packings::SpecimenParameters<dim> &parameters) const;
 
   /// c = strength sqrt(d)/K_I when the front has run, theory.md eq. (D13c); `cracked` and `whole`
   /// are packings of the two. Throws core::EnvironmentError when nothing runs.
   template <int dim>
-  double factor(particles::Packing<dim> cracked, particles::Packing<dim> whole,
+  double factor(packings::Packing<dim> cracked, packings::Packing<dim> whole,
                 const DemMaterial &material, FractureLaw::Criterion criterion) const;
 };
 } // namespace ligament::dem

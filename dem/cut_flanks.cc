@@ -6,7 +6,7 @@
 namespace ligament::dem
 {
 template <int dim>
-CutFlanks<dim>::CutFlanks(const particles::Packing<dim> &packing)
+CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
     : spacing_(packing.spacing), largest_(packing.spacing), cuts_(packing.cuts.size())
 {
   for (const double diameter : packing.diameter)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dem/contacts.h"
-#include "particles/packing.h"
+#include "packings/packing.h"
 
 #include <map>
 
@@ -14,7 +14,7 @@ class CutFlanks
 public:
   using Particles = particles::Particles<dim>;
 
-  explicit CutFlanks(const particles::Packing<dim> &packing);
+  explicit CutFlanks(const packings::Packing<dim> &packing);
 
   /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it: they never
   /// interlock.

@@ -23,7 +23,7 @@ Eigen::Matrix<double, dim, dim> rotation(const particles::Particles<dim> &p, int
 // free ones, which carry nothing.
 template <int dim>
 EdgeCells<dim>::EdgeCells(particles::CoupledEdge<dim> edge,
-                          const std::vector<particles::BoundaryFace<dim>> &boundary_faces,
+                          const std::vector<packings::BoundaryFace<dim>> &boundary_faces,
                           const Materials &materials, const particles::Particles<dim> &particles,
                           const std::vector<double> &weights)
     : is_pad_(particles.size(), 0), gradient_(std::move(edge.gradient))

@@ -4,7 +4,7 @@
 
 #include "dem/bond.h"
 #include "dem/materials.h"
-#include "particles/packing.h"
+#include "packings/packing.h"
 #include "particles/particle_force.h"
 
 namespace ligament::dem
@@ -19,7 +19,7 @@ public:
 
   /// `weights` of the volumetric energy; empty: all 1.
   EdgeCells(particles::CoupledEdge<dim> edge,
-            const std::vector<particles::BoundaryFace<dim>> &boundary_faces,
+            const std::vector<packings::BoundaryFace<dim>> &boundary_faces,
             const Materials &materials, const particles::Particles<dim> &particles,
             const std::vector<double> &weights);
 

@@ -8,7 +8,7 @@ namespace
 {
 /// Mean face of the whole cells, in m^2; of all cells where none is whole.
 template <int dim>
-double mean_face_area(const particles::Packing<dim> &packing)
+double mean_face_area(const packings::Packing<dim> &packing)
 {
   double sum = 0;
   if (!packing.directions.empty()) {
@@ -23,7 +23,7 @@ double mean_face_area(const particles::Packing<dim> &packing)
 } // namespace
 
 template <int dim>
-ManyBodyForce<dim>::ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
+ManyBodyForce<dim>::ManyBodyForce(packings::Packing<dim> packing, const Materials &materials,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : spacing_(packing.spacing), materials_(materials), fracture_(fracture),

@@ -67,7 +67,7 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// Loads act on the outer faces of their boundary. Faces that a crack cuts touch from the start.
-  ManyBodyForce(particles::Packing<dim> packing, const Materials &materials,
+  ManyBodyForce(packings::Packing<dim> packing, const Materials &materials,
                 std::vector<core::BoundaryLoad<dim>> loads, const FractureLaw &fracture = {});
 
   /// Also breaks the bonds that exceed the strength, once at every new time, and books work and
@@ -317,7 +317,7 @@ private:
   double energy_weight(int i) const { return energy_weights_.empty() ? 1 : energy_weights_[i]; }
 
   double spacing_; // m
-  std::vector<particles::BoundaryFace<dim>> boundary_faces_;
+  std::vector<packings::BoundaryFace<dim>> boundary_faces_;
   Materials materials_;
   FractureLaw fracture_;
   double noted_share_ = 1; // of the limit, see set_noted_share

@@ -5,7 +5,7 @@
 namespace ligament::dem
 {
 template <int dim>
-SurfaceLoads<dim>::SurfaceLoads(const particles::Packing<dim> &packing, const Materials &materials,
+SurfaceLoads<dim>::SurfaceLoads(const packings::Packing<dim> &packing, const Materials &materials,
                                 std::vector<core::BoundaryLoad<dim>> loads)
     : loads_(std::move(loads)), displacement_(loads_.size(), Vector<dim>::Zero()),
       traction_(displacement_), reaction_(displacement_)

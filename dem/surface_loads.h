@@ -4,7 +4,7 @@
 #include "core/load.h"
 #include "dem/materials.h"
 #include "dem/turn.h"
-#include "particles/packing.h"
+#include "packings/packing.h"
 
 #include <algorithm>
 #include <functional>
@@ -43,7 +43,7 @@ template <int dim>
 class SurfaceLoads
 {
 public:
-  SurfaceLoads(const particles::Packing<dim> &packing, const Materials &materials,
+  SurfaceLoads(const packings::Packing<dim> &packing, const Materials &materials,
                std::vector<core::BoundaryLoad<dim>> loads);
 
   /// Displacements and tractions at time t (s).

@@ -52,8 +52,7 @@ struct NearField
 
 /// Midway between the last cut and the first intact of the faces that the plane y = height crosses.
 template <int dim>
-Vector<2> tip_between_faces(const particles::Packing<dim> &packing, double height,
-                            double half_depth)
+Vector<2> tip_between_faces(const packings::Packing<dim> &packing, double height, double half_depth)
 {
   double last = -1e300, first = 1e300;
   Vector<2> last_place = Vector<2>::Zero(), first_place = Vector<2>::Zero();
@@ -74,7 +73,7 @@ Vector<2> tip_between_faces(const particles::Packing<dim> &packing, double heigh
 }
 /// A box around the tip of a crack along x, of half width radius + 4 d.
 template <int dim>
-void lay_out(particles::SpecimenParameters<dim> &p, const CrackPatch &patch)
+void lay_out(packings::SpecimenParameters<dim> &p, const CrackPatch &patch)
 {
   const double half = patch.radius + 4, x = patch.shift[0], y = patch.shift[1];
   p.spacing = spacing;
@@ -102,7 +101,7 @@ template <int dim>
 class RunningCrack
 {
 public:
-  RunningCrack(particles::Packing<dim> packing, const DemMaterial &material,
+  RunningCrack(packings::Packing<dim> packing, const DemMaterial &material,
                FractureLaw::Criterion criterion, const CrackPatch &patch)
       : packing_(std::move(packing)), material_(material), criterion_(criterion),
         t_stress_(patch.t_stress * k_one / std::sqrt(spacing)), depth_(patch.depth),
@@ -139,7 +138,7 @@ private:
     return Vector<2>(packing_.centre[0][i], packing_.centre[1][i]) - tip_;
   }
 
-  void cut(particles::Face<dim> &face)
+  void cut(packings::Face<dim> &face)
   {
     face.cracked = true;
     const double step = face.area * std::abs(face.normal[1]) / (dim == 2 ? 1 : depth_);
@@ -176,7 +175,7 @@ private:
         motion[dofs * i + dofs - 1] = u[2];
       }
     particles::Particles<dim> state;
-    particles::fill_particles(packing_, material_.density, state);
+    packings::fill_particles(packing_, material_.density, state);
     particles::solve_equilibrium(state, force, is_free_, motion);
     for (int i = 0; i < n; ++i) {
       set(state.displacement, i, Vector<dim>(motion.segment<dim>(dofs * i)));
@@ -187,7 +186,7 @@ private:
     return state;
   }
 
-  particles::Packing<dim> packing_;
+  packings::Packing<dim> packing_;
   DemMaterial material_;
   FractureLaw::Criterion criterion_;
   double t_stress_, depth_; // Pa, m
@@ -196,28 +195,28 @@ private:
   double length_ = 0;
 };
 template <int dim>
-RunningCrack<dim> crack_in_lattice(particles::LatticeKind kind, const Spin<dim> &orientation,
+RunningCrack<dim> crack_in_lattice(packings::LatticeKind kind, const Spin<dim> &orientation,
                                    const DemMaterial &material, FractureLaw::Criterion criterion,
                                    const CrackAxes<dim> &crack, const CrackPatch &patch)
 {
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.orientation = in_crack_axes(orientation, crack);
   lay_out<dim>(lattice, patch);
-  return {particles::make_lattice_packing<dim>(lattice), material, criterion, patch};
+  return {packings::make_lattice_packing<dim>(lattice), material, criterion, patch};
 }
 
 template <int dim>
-RunningCrack<dim> crack_in_sample(const particles::RandomParameters<dim> &packing, int seed,
+RunningCrack<dim> crack_in_sample(const packings::RandomParameters<dim> &packing, int seed,
                                   const DemMaterial &material, FractureLaw::Criterion criterion,
                                   const CrackPatch &patch)
 {
-  particles::RandomParameters<dim> sample;
+  packings::RandomParameters<dim> sample;
   sample.seed = seed;
   sample.relaxation_sweeps = packing.relaxation_sweeps;
   sample.size_ratio = packing.size_ratio;
   lay_out<dim>(sample, patch);
-  return {particles::make_random_packing<dim>(sample).packing, material, criterion, patch};
+  return {packings::make_random_packing<dim>(sample).packing, material, criterion, patch};
 }
 
 /// A hard face breaks in the wave of an easier one before it: what holds a crack is the stretch of
@@ -243,7 +242,7 @@ double running_factor(RunningCrack<2> crack)
 
 /// Of the crack that runs in a body of this kind, whose tip lies at (x, y) = shift, in d.
 template <int dim>
-double running_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+double running_factor(packings::LatticeKind kind, const Spin<dim> &orientation,
                       const DemMaterial &material, FractureLaw::Criterion criterion,
                       const CrackAxes<dim> &crack, const Vector<2> &shift)
 {
@@ -252,17 +251,17 @@ double running_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
                                               {shift, 15, 0, tensile_t_stress}));
   else {
     const CrackStrip strip;
-    particles::LatticeParameters<3> cracked, whole;
+    packings::LatticeParameters<3> cracked, whole;
     cracked.kind = whole.kind = kind;
     cracked.orientation = whole.orientation = in_crack_axes(orientation, crack);
     strip.lay_out<3>(cracked, shift);
     strip.lay_out_whole<3>(whole);
-    return strip.factor<3>(particles::make_lattice_packing<3>(cracked),
-                           particles::make_lattice_packing<3>(whole), material, criterion);
+    return strip.factor<3>(packings::make_lattice_packing<3>(cracked),
+                           packings::make_lattice_packing<3>(whole), material, criterion);
   }
 }
 template <int dim>
-double running_factor(const particles::RandomParameters<dim> &packing, int seed,
+double running_factor(const packings::RandomParameters<dim> &packing, int seed,
                       const DemMaterial &material, FractureLaw::Criterion criterion)
 {
   if constexpr (dim == 2)
@@ -271,12 +270,12 @@ double running_factor(const particles::RandomParameters<dim> &packing, int seed,
   else {
     const CrackStrip strip;
     const auto lay_out_sample = [&](auto &&lay_out) {
-      particles::RandomParameters<3> sample;
+      packings::RandomParameters<3> sample;
       sample.seed = seed;
       sample.relaxation_sweeps = packing.relaxation_sweeps;
       sample.size_ratio = packing.size_ratio;
       lay_out(sample);
-      return particles::make_random_packing<3>(sample).packing;
+      return packings::make_random_packing<3>(sample).packing;
     };
     return strip.factor<3>(lay_out_sample([&](auto &p) {
                              strip.lay_out<3>(p, {0, 0});
@@ -288,23 +287,23 @@ double running_factor(const particles::RandomParameters<dim> &packing, int seed,
 
 /// Whether a row (layer) of the lattice lies in the plane of the crack: all tips are alike.
 template <int dim>
-bool is_aligned(particles::LatticeKind kind, const Spin<dim> &orientation,
+bool is_aligned(packings::LatticeKind kind, const Spin<dim> &orientation,
                 const CrackAxes<dim> &crack)
 {
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.spacing = spacing;
   lattice.orientation = in_crack_axes(orientation, crack);
   lattice.lower.setConstant(-3);
   lattice.upper.setConstant(3);
-  const auto directions = particles::make_lattice_packing<dim>(lattice).directions;
+  const auto directions = packings::make_lattice_packing<dim>(lattice).directions;
   return std::any_of(directions.begin(), directions.end(),
                      [](const auto &d) { return std::abs(d.normal[1]) < 1e-9; });
 }
 } // namespace
 
 template <int dim>
-double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+double crack_tip_factor(packings::LatticeKind kind, const Spin<dim> &orientation,
                         const DemMaterial &material, FractureLaw::Criterion criterion,
                         const CrackAxes<dim> &crack, const CrackPatch &patch)
 {
@@ -312,7 +311,7 @@ double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientatio
 }
 
 template <int dim>
-double crack_tip_factor(const particles::RandomParameters<dim> &packing, int seed,
+double crack_tip_factor(const packings::RandomParameters<dim> &packing, int seed,
                         const DemMaterial &material, FractureLaw::Criterion criterion,
                         const CrackPatch &patch)
 {
@@ -320,7 +319,7 @@ double crack_tip_factor(const particles::RandomParameters<dim> &packing, int see
 }
 
 template <int dim>
-double calibrate_toughness(const particles::RandomParameters<dim> &packing,
+double calibrate_toughness(const packings::RandomParameters<dim> &packing,
                            const DemMaterial &material, FractureLaw::Criterion criterion)
 {
   // Samples until the mean is known to half a per cent, which takes more the more the radii differ;
@@ -340,7 +339,7 @@ double calibrate_toughness(const particles::RandomParameters<dim> &packing,
 }
 
 template <int dim>
-double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
+double calibrate_toughness(packings::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, FractureLaw::Criterion criterion,
                            const CrackAxes<dim> &crack)
 {
@@ -353,24 +352,22 @@ double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orienta
   return sum / double(shifts.size());
 }
 
-template double crack_tip_factor<2>(particles::LatticeKind, const Spin<2> &, const DemMaterial &,
+template double crack_tip_factor<2>(packings::LatticeKind, const Spin<2> &, const DemMaterial &,
                                     FractureLaw::Criterion, const CrackAxes<2> &,
                                     const CrackPatch &);
-template double calibrate_toughness<2>(particles::LatticeKind, const Spin<2> &, const DemMaterial &,
+template double calibrate_toughness<2>(packings::LatticeKind, const Spin<2> &, const DemMaterial &,
                                        FractureLaw::Criterion, const CrackAxes<2> &);
-template double crack_tip_factor<2>(const particles::RandomParameters<2> &, int,
-                                    const DemMaterial &, FractureLaw::Criterion,
-                                    const CrackPatch &);
-template double calibrate_toughness<2>(const particles::RandomParameters<2> &, const DemMaterial &,
+template double crack_tip_factor<2>(const packings::RandomParameters<2> &, int, const DemMaterial &,
+                                    FractureLaw::Criterion, const CrackPatch &);
+template double calibrate_toughness<2>(const packings::RandomParameters<2> &, const DemMaterial &,
                                        FractureLaw::Criterion);
-template double crack_tip_factor<3>(particles::LatticeKind, const Spin<3> &, const DemMaterial &,
+template double crack_tip_factor<3>(packings::LatticeKind, const Spin<3> &, const DemMaterial &,
                                     FractureLaw::Criterion, const CrackAxes<3> &,
                                     const CrackPatch &);
-template double calibrate_toughness<3>(particles::LatticeKind, const Spin<3> &, const DemMaterial &,
+template double calibrate_toughness<3>(packings::LatticeKind, const Spin<3> &, const DemMaterial &,
                                        FractureLaw::Criterion, const CrackAxes<3> &);
-template double crack_tip_factor<3>(const particles::RandomParameters<3> &, int,
-                                    const DemMaterial &, FractureLaw::Criterion,
-                                    const CrackPatch &);
-template double calibrate_toughness<3>(const particles::RandomParameters<3> &, const DemMaterial &,
+template double crack_tip_factor<3>(const packings::RandomParameters<3> &, int, const DemMaterial &,
+                                    FractureLaw::Criterion, const CrackPatch &);
+template double calibrate_toughness<3>(const packings::RandomParameters<3> &, const DemMaterial &,
                                        FractureLaw::Criterion);
 } // namespace ligament::dem

@@ -4,8 +4,8 @@
 
 #include "dem/fracture_law.h"
 #include "dem/material.h"
-#include "particles/lattice_packing.h"
-#include "particles/random_packing.h"
+#include "packings/lattice_packing.h"
+#include "packings/random_packing.h"
 
 namespace ligament::dem
 {
@@ -42,25 +42,25 @@ inline constexpr int toughness_method = 4;
 /// Off the rows the mean of four cracks at different places of the lattice, as the mirror image has
 /// them.
 template <int dim>
-double calibrate_toughness(particles::LatticeKind kind, const Spin<dim> &orientation,
+double calibrate_toughness(packings::LatticeKind kind, const Spin<dim> &orientation,
                            const DemMaterial &material, FractureLaw::Criterion criterion,
                            const CrackAxes<dim> &crack = {});
 
-/// The same on a random packing: the mean over cracks in samples of their own, 8 to 32 of them until
-/// it is known to half a per cent (3D: 4), each with the same
-/// relaxation and size ratio. The packing's own seed is not read.
+/// The same on a random packing: the mean over cracks in samples of their own, 8 to 32 of them
+/// until it is known to half a per cent (3D: 4), each with the same relaxation and size ratio. The
+/// packing's own seed is not read.
 template <int dim>
-double calibrate_toughness(const particles::RandomParameters<dim> &packing,
+double calibrate_toughness(const packings::RandomParameters<dim> &packing,
                            const DemMaterial &material, FractureLaw::Criterion criterion);
 
 /// The factor of the first face alone.
 template <int dim>
-double crack_tip_factor(particles::LatticeKind kind, const Spin<dim> &orientation,
+double crack_tip_factor(packings::LatticeKind kind, const Spin<dim> &orientation,
                         const DemMaterial &material, FractureLaw::Criterion criterion,
                         const CrackAxes<dim> &crack, const CrackPatch &patch);
 /// In the sample of this seed.
 template <int dim>
-double crack_tip_factor(const particles::RandomParameters<dim> &packing, int seed,
+double crack_tip_factor(const packings::RandomParameters<dim> &packing, int seed,
                         const DemMaterial &material, FractureLaw::Criterion criterion,
                         const CrackPatch &patch);
 } // namespace ligament::dem

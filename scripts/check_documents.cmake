@@ -41,7 +41,7 @@ foreach(document IN LISTS documents)
 endforeach()
 
 file(READ ${ROOT}/docs/theory.md theory)
-file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/* ${ROOT}/particles/* ${ROOT}/dem/*
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/* ${ROOT}/particles/* ${ROOT}/packings/* ${ROOT}/dem/*
   ${ROOT}/fem/* ${ROOT}/coupling/* ${ROOT}/src/* ${ROOT}/tests/* ${ROOT}/examples/*)
 foreach(source IN LISTS sources)
   if(NOT source MATCHES "\\.(h|cc|inl|md)$")

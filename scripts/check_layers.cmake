@@ -6,21 +6,23 @@
 
 cmake_minimum_required(VERSION 3.22)
 
-set(folders core particles dem md fem coupling src)
+set(folders core particles packings dem md fem coupling src)
 
 # Which folders a folder may include besides itself.
 set(may_include_core)
 set(may_include_particles core)
-set(may_include_dem particles core)
+set(may_include_packings particles core)
+set(may_include_dem packings particles core)
 set(may_include_md particles core)
 set(may_include_fem core)
 set(may_include_coupling particles fem core)
-set(may_include_src particles dem md fem coupling core)
+set(may_include_src particles packings dem md fem coupling core)
 
 # Which third parties; the vocabulary std, Eigen and fmt is everybody's.
 set(vocabulary std Eigen fmt)
 set(may_use_core ${vocabulary} MPI nlohmann-json zlib xxhash POSIX)
 set(may_use_particles ${vocabulary} MPI Highway)
+set(may_use_packings ${vocabulary} MPI)
 set(may_use_dem ${vocabulary} Highway)
 set(may_use_md ${vocabulary} Highway)
 set(may_use_fem ${vocabulary} MPI deal.II p4est Trilinos)
@@ -124,7 +126,7 @@ foreach(folder IN LISTS folders)
 endforeach()
 
 # Tests of the portable folders compile in seconds and run without deal.II, too.
-foreach(folder core particles dem md)
+foreach(folder core particles packings dem md)
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/tests/*/${folder}/*.h ${ROOT}/tests/*/${folder}/*.cc)
   foreach(file IN LISTS files)
     includes_of(${ROOT}/${file} includes)
@@ -142,7 +144,7 @@ foreach(folder core particles dem md)
 endforeach()
 
 # Nor may their libraries get it through the build.
-foreach(folder core particles dem md)
+foreach(folder core particles packings dem md)
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/CMakeLists.txt)
   foreach(file IN LISTS files)
     file(STRINGS ${ROOT}/${file} lines REGEX "deal_ii|dealii|deal\\.II|[Tt]rilinos|ligament_(fem|coupling|src|program)")

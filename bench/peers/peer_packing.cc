@@ -3,9 +3,9 @@
 // The packing fills a box of size 1. Prints particles, bonds and million particle-steps per second.
 #include "bench/roofline.h"
 #include "dem/many_body_force.h"
-#include "particles/lattice_packing.h"
+#include "packings/lattice_packing.h"
+#include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "particles/random_packing.h"
 
 #include <fmt/format.h>
 #include <fmt/os.h>
@@ -18,7 +18,7 @@ namespace
 using namespace ligament;
 
 template <int dim>
-particles::Packing<dim> make_packing(const std::string &kind, double spacing)
+packings::Packing<dim> make_packing(const std::string &kind, double spacing)
 {
   const auto fill = [&](auto parameters) {
     parameters.spacing = spacing;
@@ -27,18 +27,18 @@ particles::Packing<dim> make_packing(const std::string &kind, double spacing)
     return parameters;
   };
   if (kind == "random_2d" || kind == "random_3d")
-    return particles::make_random_packing<dim>(fill(particles::RandomParameters<dim>())).packing;
-  auto lattice = fill(particles::LatticeParameters<dim>());
-  lattice.kind = dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
-  return particles::make_lattice_packing<dim>(lattice);
+    return packings::make_random_packing<dim>(fill(packings::RandomParameters<dim>())).packing;
+  auto lattice = fill(packings::LatticeParameters<dim>());
+  lattice.kind = dim == 2 ? packings::LatticeKind::hexagonal : packings::LatticeKind::fcc;
+  return packings::make_lattice_packing<dim>(lattice);
 }
 
 /// Whole steps with the check for broken bonds, in a smooth motion far below the strength.
 template <int dim>
-double particle_steps(const particles::Packing<dim> &packing)
+double particle_steps(const packings::Packing<dim> &packing)
 {
   particles::Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   for (int i = 0; i < p.size(); ++i)
     for (int c = 0; c < dim; ++c)
       p.displacement[c][i] = 1e-4 * std::sin(3 * p.reference[(c + 1) % dim][i]);

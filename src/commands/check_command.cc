@@ -1,6 +1,6 @@
 #include "src/commands/commands.h"
 
-#include "particles/packing_file.h"
+#include "packings/packing_file.h"
 #include "src/commands/check_volumes.h"
 #include "src/commands/cost_advice.h"
 #include "src/commands/peak_memory.h"
@@ -45,7 +45,7 @@ int check(const CommandLine &line, const ReadResult &input)
     fmt::print("picture: {}\n", file);
     if (body.seeds) {
       const std::string packing = RunFolder{folder}.packing();
-      particles::write_packing_file(packing, *body.seeds);
+      packings::write_packing_file(packing, *body.seeds);
       fmt::print("packing: {}\n", packing);
     }
   }

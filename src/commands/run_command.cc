@@ -5,11 +5,11 @@
 #include "core/interruption.h"
 #include "core/tell.h"
 #include "core/version.h"
+#include "src/analysis/report.h"
+#include "src/analysis/verdict.h"
 #include "src/commands/peak_memory.h"
 #include "src/launcher/program.h"
 #include "src/output/open_run.h"
-#include "src/output/report.h"
-#include "src/output/verdict.h"
 #include "src/simulation/simulation.h"
 
 #include <fmt/chrono.h>

@@ -1,6 +1,6 @@
 #include "src/commands/scene_picture.h"
 
-#include "src/output/field_view.h"
+#include "src/drawing/field_view.h"
 #include "src/output/format.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/body_fields.h"

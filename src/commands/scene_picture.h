@@ -1,7 +1,7 @@
 // A picture of what a scene sets up: both models and where they join, cracks, loads and supports.
 #pragma once
 
-#include "src/output/picture.h"
+#include "src/drawing/picture.h"
 #include "src/scene/scene.h"
 #include "src/simulation/coupled_body.h"
 

@@ -1,6 +1,6 @@
 #include "src/commands/commands.h"
-#include "src/verification/random_scenes.h"
-#include "src/verification/stability.h"
+#include "src/verification/cases/random_scenes.h"
+#include "src/verification/cases/stability.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "src/scene/check_scene.h"
 
 #include "core/parameters/spelling.h"
-#include "src/output/shown_field.h"
+#include "src/drawing/shown_field.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "src/scene/scene_parameters.h"
 
-#include "src/output/shown_field.h"
+#include "src/drawing/shown_field.h"
 
 namespace ligament::program
 {

@@ -5,7 +5,7 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "src/output/fields.h"
 #include "src/output/run_record.h"
 #include "src/scene/scene.h"
@@ -20,7 +20,7 @@ struct CoupledBody
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
-  std::optional<particles::Seeds<dim>> seeds; // of an irregular packing
+  std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
 
   dem::ManyBodyForce<dim> *force = nullptr;       // of the zone
   coupling::FineScaleSplit<dim> *split = nullptr; // the coupler, when it is one

@@ -1,6 +1,6 @@
 #include "src/simulation/load_curve.h"
 
-#include "src/output/curve.h"
+#include "src/analysis/curve.h"
 
 #include <cmath>
 

@@ -4,9 +4,9 @@
 #include "core/keyed_error.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
-#include "particles/absorbing_sides.h"
-#include "particles/lattice_packing.h"
-#include "particles/packing_file.h"
+#include "packings/absorbing_sides.h"
+#include "packings/lattice_packing.h"
+#include "packings/packing_file.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -24,7 +24,7 @@ namespace
 using core::require;
 
 template <int dim>
-void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
+void set_specimen(const Scene &scene, packings::SpecimenParameters<dim> &p)
 {
   p.spacing = scene.zone.spacing;
   p.thickness = scene.specimen.thickness;
@@ -54,20 +54,20 @@ void set_specimen(const Scene &scene, particles::SpecimenParameters<dim> &p)
 }
 
 template <int dim>
-particles::LatticeParameters<dim> lattice_of(const Scene &scene)
+packings::LatticeParameters<dim> lattice_of(const Scene &scene)
 {
-  particles::LatticeParameters<dim> p;
+  packings::LatticeParameters<dim> p;
   set_specimen<dim>(scene, p);
-  p.kind = particles::lattice_kind(scene.zone.packing);
+  p.kind = packings::lattice_kind(scene.zone.packing);
   for (int c = 0; c < n_spins<dim>; ++c)
     p.orientation[c] = scene.zone.orientation[c];
   return p;
 }
 
 template <int dim>
-particles::RandomParameters<dim> random_packing_of(const Scene &scene)
+packings::RandomParameters<dim> random_packing_of(const Scene &scene)
 {
-  particles::RandomParameters<dim> p;
+  packings::RandomParameters<dim> p;
   set_specimen<dim>(scene, p);
   p.seed = scene.zone.seed;
   p.relaxation_sweeps = scene.zone.relaxation_sweeps;
@@ -161,7 +161,7 @@ dem::FractureLaw fracture_of(const Scene &scene, CoupledBody<dim> &body, core::L
 }
 
 template <int dim>
-particles::Seeds<dim> read_seeds(const Scene &scene)
+packings::Seeds<dim> read_seeds(const Scene &scene)
 {
   const auto refuse = [](const std::string &reason) {
     return core::KeyedError("/discrete_zone/packing_file",
@@ -169,7 +169,7 @@ particles::Seeds<dim> read_seeds(const Scene &scene)
                             "correct the file or its path; a run writes such a file, packing.csv");
   };
   try {
-    return particles::read_packing_file<dim>(scene.zone.packing_file);
+    return packings::read_packing_file<dim>(scene.zone.packing_file);
   } catch (const core::InputError &error) {
     throw refuse(error.what());
   } catch (const core::EnvironmentError &error) {
@@ -179,8 +179,8 @@ particles::Seeds<dim> read_seeds(const Scene &scene)
 
 /// Cells reach to the next seed, however far: the file of a zone would fill a whole specimen badly.
 template <int dim>
-void require_cover(const Scene &scene, const particles::RandomParameters<dim> &p,
-                   const particles::Seeds<dim> &seeds)
+void require_cover(const Scene &scene, const packings::RandomParameters<dim> &p,
+                   const packings::Seeds<dim> &seeds)
 {
   Vector<dim> lower = seeds.centre[0], upper = lower;
   for (int i = 1; i < seeds.size(); ++i) {
@@ -204,16 +204,16 @@ void require_cover(const Scene &scene, const particles::RandomParameters<dim> &p
 
 /// Seeds of an irregular packing, from their file or from random numbers.
 template <int dim>
-particles::RandomPacking<dim> irregular_packing(const Scene &scene)
+packings::RandomPacking<dim> irregular_packing(const Scene &scene)
 {
   const auto parameters = random_packing_of<dim>(scene);
   if (scene.zone.packing == "random")
-    return particles::make_random_packing<dim>(parameters);
+    return packings::make_random_packing<dim>(parameters);
   auto seeds = read_seeds<dim>(scene);
   const std::vector<int> material = std::move(seeds.material);
   seeds.material.clear();
   require_cover(scene, parameters, seeds);
-  auto packing = particles::pack_seeds<dim>(parameters, std::move(seeds));
+  auto packing = packings::pack_seeds<dim>(parameters, std::move(seeds));
   for (const auto row : packing.packing.global_id) // the name of a seed is the number of its row
     if (!material.empty())
       packing.packing.material.push_back(material[row]);
@@ -265,7 +265,7 @@ void assign_materials(const Scene &scene, int n, const Place &place, std::vector
 
 /// Particles of other materials; none of them, nor a neighbour, may lie in an overlap.
 template <int dim>
-void set_materials(const Scene &scene, CoupledBody<dim> &body, particles::Packing<dim> &packing,
+void set_materials(const Scene &scene, CoupledBody<dim> &body, packings::Packing<dim> &packing,
                    core::Log &log)
 {
   if (scene.inclusions.empty()) {
@@ -300,7 +300,8 @@ void set_materials(const Scene &scene, CoupledBody<dim> &body, particles::Packin
     ++number[k];
     if (k > 0 && coupled && zone.distance(centre(i)) < keep_off)
       throw core::InputError(fmt::format(
-          "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m: the "
+          "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m: "
+          "the "
           "overlap is of /material alone; widen the discrete zone or move the inclusion",
           k - 1, centre(i)[0], centre(i)[1]));
   }
@@ -313,10 +314,10 @@ void set_materials(const Scene &scene, CoupledBody<dim> &body, particles::Packin
 }
 
 template <int dim>
-particles::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+packings::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
   if (!scene.zone.is_irregular())
-    return particles::make_lattice_packing<dim>(lattice_of<dim>(scene));
+    return packings::make_lattice_packing<dim>(lattice_of<dim>(scene));
   auto irregular = irregular_packing<dim>(scene);
   if (irregular.n_healed > 0)
     log.info("{} radii made smaller, lest a neighbour's cell lose its centre", irregular.n_healed);
@@ -326,7 +327,7 @@ particles::Packing<dim> make_packing(const Scene &scene, CoupledBody<dim> &body,
 }
 
 template <int dim>
-BrokenBond cut_face(const particles::Packing<dim> &packing, const particles::Face<dim> &face,
+BrokenBond cut_face(const packings::Packing<dim> &packing, const packings::Face<dim> &face,
                     double thickness)
 {
   BrokenBond cut = {};
@@ -351,16 +352,16 @@ double mean_cell_volume(const Scene &scene)
 {
   const double d = scene.zone.spacing, thickness = scene.specimen.thickness;
   if (scene.zone.is_irregular())
-    return scene.dimension == 2 ? particles::mean_cell_volume<2>(d) * thickness
-                                : particles::mean_cell_volume<3>(d);
-  switch (particles::lattice_kind(scene.zone.packing)) {
-  case particles::LatticeKind::square:
+    return scene.dimension == 2 ? packings::mean_cell_volume<2>(d) * thickness
+                                : packings::mean_cell_volume<3>(d);
+  switch (packings::lattice_kind(scene.zone.packing)) {
+  case packings::LatticeKind::square:
     return d * d * thickness;
-  case particles::LatticeKind::hexagonal:
+  case packings::LatticeKind::hexagonal:
     return std::sqrt(3.) / 2 * d * d * thickness;
-  case particles::LatticeKind::simple_cubic:
+  case packings::LatticeKind::simple_cubic:
     return d * d * d;
-  case particles::LatticeKind::fcc:
+  case packings::LatticeKind::fcc:
     return d * d * d / std::sqrt(2.);
   }
   return 0;
@@ -379,10 +380,10 @@ void make_zone(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
     densities.push_back(inclusion.material.density);
   }
   particles::Particles<dim> state;
-  particles::fill_particles(packing, densities, state);
+  packings::fill_particles(packing, densities, state);
   const auto constants = material_of(scene).elastic_constants<dim>();
-  auto dashpots = particles::absorbing_dashpots(packing, state, body.loads, scene.material.density,
-                                                constants.wave_speed_p, constants.wave_speed_s);
+  auto dashpots = packings::absorbing_dashpots(packing, state, body.loads, scene.material.density,
+                                               constants.wave_speed_p, constants.wave_speed_s);
   for (const auto &face : packing.faces)
     if (face.cracked)
       body.cut_faces.push_back(cut_face<dim>(packing, face, body.thickness));

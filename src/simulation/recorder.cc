@@ -1,10 +1,10 @@
 #include "src/simulation/recorder.h"
 
 #include "core/check.h"
+#include "src/analysis/curve.h"
+#include "src/drawing/run_pictures.h"
 #include "src/output/broken_bonds.h"
-#include "src/output/curve.h"
 #include "src/output/format.h"
-#include "src/output/run_pictures.h"
 
 #include <fmt/format.h>
 

@@ -32,7 +32,7 @@ private:
   bool weighted_; // an energy-weighted coupler, which is linear
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
-  typename coupling::NearParts<dim>::Motion near_; // at the last look
+  typename coupling::RigidFrames<dim>::Motion near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;
   bool warned_ = false;
   std::string history_;

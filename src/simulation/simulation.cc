@@ -2,8 +2,8 @@
 
 #include "core/check.h"
 #include "core/version.h"
-#include "particles/packing_file.h"
-#include "src/output/verdict.h"
+#include "packings/packing_file.h"
+#include "src/analysis/verdict.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures)
 {
   if (body_.seeds)
-    particles::write_packing_file(folder_.packing(), *body_.seeds);
+    packings::write_packing_file(folder_.packing(), *body_.seeds);
 }
 
 template <int dim>

@@ -1,7 +1,7 @@
 // The figures of one case: cost, results, and errors to both references.
 #pragma once
 
-#include "src/output/compare.h"
+#include "src/analysis/compare.h"
 #include "src/output/run_record.h"
 #include "src/sweep/sweep.h"
 

@@ -1,8 +1,8 @@
 #include "src/sweep/summary.h"
 
 #include "core/files.h"
+#include "src/drawing/html.h"
 #include "src/output/format.h"
-#include "src/output/html.h"
 #include "src/sweep/pareto.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // The page that shows a study: run time against error, the Pareto front, and all figures.
 #pragma once
 
-#include "src/output/plot.h"
+#include "src/drawing/plot.h"
 #include "src/sweep/case_result.h"
 
 namespace ligament::program

@@ -1,9 +1,9 @@
 #include "src/verification/cases.h"
 
 #include "core/check.h"
-#include "src/verification/breaking.h"
-#include "src/verification/closed_crack.h"
-#include "src/verification/waves_twin.h"
+#include "src/verification/bodies/waves_twin.h"
+#include "src/verification/cases/breaking.h"
+#include "src/verification/cases/closed_crack.h"
 
 namespace ligament::program
 {

@@ -2,7 +2,7 @@
 // the data types with the production code and serves to check it.
 #pragma once
 
-#include "particles/packing.h"
+#include "packings/packing.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -18,7 +18,7 @@ class ManyBodyOracle
 {
 public:
   /// E in Pa, nu; plane mode for 2D.
-  ManyBodyOracle(const particles::Packing<dim> &packing, double e, double nu,
+  ManyBodyOracle(const packings::Packing<dim> &packing, double e, double nu,
                  PlaneMode plane = PlaneMode::strain)
       : packing_(packing), e_(e), nu_(nu), g_(e / (2 * (1 + nu))), plane_(plane),
         broken(packing.faces.size(), false), traction(packing.faces.size(), Vector<dim>::Zero())
@@ -116,7 +116,7 @@ public:
   }
 
 private:
-  using Face = particles::Face<dim>;
+  using Face = packings::Face<dim>;
   using Matrix = Eigen::Matrix<double, dim, dim>;
 
   template <typename Do>
@@ -176,7 +176,7 @@ private:
     }
   }
 
-  particles::Packing<dim> packing_;
+  packings::Packing<dim> packing_;
   double e_, nu_, g_;
   PlaneMode plane_;
 

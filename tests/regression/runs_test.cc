@@ -1,8 +1,8 @@
 // Short whole runs of a small cracked plate: coupled against pure discrete elements, repeated, in
 // all kinds of bodies, with guards and ends.
 #include "core/files.h"
+#include "src/analysis/compare.h"
 #include "src/output/broken_bonds.h"
-#include "src/output/compare.h"
 #include "src/output/table.h"
 #include "src/simulation/simulation.h"
 #include "tests/support/small_plate.h"

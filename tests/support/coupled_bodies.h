@@ -4,7 +4,7 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/many_body_force.h"
-#include "particles/lattice_packing.h"
+#include "packings/lattice_packing.h"
 
 #include <cmath>
 #include <optional>
@@ -32,8 +32,8 @@ template <int dim>
 struct CoupledBodiesParameters
 {
   dem::DemMaterial material;
-  particles::LatticeKind kind =
-      dim == 2 ? particles::LatticeKind::hexagonal : particles::LatticeKind::fcc;
+  packings::LatticeKind kind =
+      dim == 2 ? packings::LatticeKind::hexagonal : packings::LatticeKind::fcc;
   Spin<dim> orientation = Spin<dim>::Zero();
   Vector<dim> size;         // specimen, centred at the origin
   Vector<dim> zone_size;    // beyond the specimen: not coupled there
@@ -58,7 +58,7 @@ template <int dim>
 CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
 {
   CoupledBodies<dim> body;
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = p.kind;
   lattice.spacing = 1;
   lattice.orientation = p.orientation;
@@ -91,9 +91,9 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   }
   lattice.zone_parts = p.zone;
   mesh.inner = overlap.zone.eroded(overlap.length).boxes;
-  auto packing = particles::make_lattice_packing<dim>(lattice);
+  auto packing = packings::make_lattice_packing<dim>(lattice);
   particles::Particles<dim> state;
-  particles::fill_particles(packing, p.material.density, state);
+  packings::fill_particles(packing, p.material.density, state);
   std::unique_ptr<particles::ParticleForce<dim>> law = std::make_unique<dem::ManyBodyForce<dim>>(
       std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>());
   if (p.replace_law)

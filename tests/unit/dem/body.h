@@ -7,7 +7,7 @@
 
 namespace ligament::dem::testing
 {
-using particles::Packing;
+using packings::Packing;
 using particles::Particles;
 
 /// A hexagonal (2D) or simple cubic (3D) block of n particles along each axis, six in ten faces as
@@ -69,9 +69,9 @@ Packing<dim> ragged_lattice(int n, unsigned seed)
       if (!inside)
         continue;
       const auto &dir = p.directions[o];
-      particles::Face<dim> face{i,      j,     dir.normal,         dir.area,
-                                d / 2,  d / 2, d / 2 * dir.normal, -d / 2 * dir.normal,
-                                int(o), false};
+      packings::Face<dim> face{i,      j,     dir.normal,         dir.area,
+                               d / 2,  d / 2, d / 2 * dir.normal, -d / 2 * dir.normal,
+                               int(o), false};
       if (uniform(random) > 0.4) // an irregular one: other area, other point on the face plane
       {
         face.direction = -1;

@@ -1,22 +1,22 @@
 // The lattices that the property tests run over, as types: dimension, kind, orientation.
 #pragma once
 
-#include "particles/lattice_packing.h"
+#include "packings/lattice_packing.h"
 #include "tests/unit/dem/body.h"
 
 #include <gtest/gtest.h>
 
 namespace ligament::dem::testing
 {
-template <int dim_, particles::LatticeKind kind_, bool turned_>
+template <int dim_, packings::LatticeKind kind_, bool turned_>
 struct Case
 {
   static constexpr int dim = dim_;
-  static constexpr particles::LatticeKind kind = kind_;
+  static constexpr packings::LatticeKind kind = kind_;
   static constexpr bool turned = turned_;
 };
 
-using Kind = particles::LatticeKind;
+using Kind = packings::LatticeKind;
 using Cases =
     ::testing::Types<Case<2, Kind::square, false>, Case<2, Kind::square, true>,
                      Case<2, Kind::hexagonal, false>, Case<2, Kind::hexagonal, true>,
@@ -34,9 +34,9 @@ inline void turn_lattice(Spin<3> &orientation)
 
 /// A box of about n spacings along each axis, commensurate with nothing.
 template <typename C>
-particles::LatticeParameters<C::dim> box(double n)
+packings::LatticeParameters<C::dim> box(double n)
 {
-  particles::LatticeParameters<C::dim> lattice;
+  packings::LatticeParameters<C::dim> lattice;
   lattice.kind = C::kind;
   lattice.spacing = 0.01;
   lattice.thickness = C::dim == 2 ? 0.3 : 1;

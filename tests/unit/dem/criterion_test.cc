@@ -1,5 +1,5 @@
 // Maximum tension is the largest principal stress on any packing, whatever the other stresses are.
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
 
 namespace ligament::dem::testing
@@ -15,7 +15,7 @@ struct StressedBody
   StressedBody(Packing<dim> made, const DemMaterial &material, const Strain<dim> &stress)
       : packing(std::move(made))
   {
-    particles::fill_particles(packing, 1., p);
+    packings::fill_particles(packing, 1., p);
     const Strain<dim> e = material.elastic_constants<dim>().stiffness.inverse() * stress;
     Eigen::Matrix<double, dim, dim> gradient = Vector<dim>(e.template head<dim>()).asDiagonal();
     for (int a = 0, k = n_strains<dim> - 1; a < dim; ++a)
@@ -73,18 +73,18 @@ TYPED_TEST_SUITE(Criterion, Cases);
 TYPED_TEST(Criterion, IsTheLargestPrincipalStressOnLattices)
 {
   constexpr int dim = TypeParam::dim;
-  const auto packing = particles::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 14 : 11));
+  const auto packing = packings::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 14 : 11));
   for (const double nu : {0., 0.3, 0.45})
     expect_principal_stress<dim>(packing, nu, 1);
 }
 
 TEST(Criterion, IsTheLargestPrincipalStressOnRandomPackings)
 {
-  particles::RandomParameters<2> plane;
+  packings::RandomParameters<2> plane;
   plane.spacing = 0.01, plane.upper.setConstant(0.16), plane.size_ratio = 3;
-  expect_principal_stress<2>(particles::make_random_packing<2>(plane).packing, 0.3, 2);
-  particles::RandomParameters<3> space;
+  expect_principal_stress<2>(packings::make_random_packing<2>(plane).packing, 0.3, 2);
+  packings::RandomParameters<3> space;
   space.spacing = 0.01, space.upper.setConstant(0.09);
-  expect_principal_stress<3>(particles::make_random_packing<3>(space).packing, 0.3, 2);
+  expect_principal_stress<3>(packings::make_random_packing<3>(space).packing, 0.3, 2);
 }
 } // namespace ligament::dem::testing

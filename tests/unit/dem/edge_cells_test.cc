@@ -13,7 +13,7 @@ struct EdgeCellsOf : ::testing::Test
   using Matrix = Eigen::Matrix<double, dim, dim>;
 
   /// A packing that is cut off inside the specimen: across its first axis, or all around.
-  static particles::LatticeParameters<dim> zone(bool all_around)
+  static packings::LatticeParameters<dim> zone(bool all_around)
   {
     auto lattice = box<C>(dim == 2 ? 14 : 11);
     for (int c = 0; c < (all_around ? dim : 1); ++c) {
@@ -100,10 +100,10 @@ TYPED_TEST(EdgeCellsOf, AnswerUniformStrainAtAnyRotation)
   for (const bool all_around : {false, true})
     for (const double nu : {0., 0.25, 0.45}) {
       const DemMaterial material{4e10, nu, 2600, PlaneMode::strain, 0};
-      const auto packing = particles::make_lattice_packing<dim>(Test::zone(all_around));
+      const auto packing = packings::make_lattice_packing<dim>(Test::zone(all_around));
       ManyBodyForce<dim> force(packing, material, {});
       Particles<dim> p;
-      particles::fill_particles(packing, material.density, p);
+      packings::fill_particles(packing, material.density, p);
       const double stress = -4e7;
       const typename Test::Matrix strain = Test::uniaxial_strain(material, stress);
       const typename Test::Matrix f = r * (Test::Matrix::Identity() + strain);
@@ -141,10 +141,10 @@ TYPED_TEST(EdgeCellsOf, NeverBreak)
   constexpr int dim = TypeParam::dim;
   using Test = EdgeCellsOf<TypeParam>;
   const DemMaterial material{4e10, 0.25, 2600, PlaneMode::strain, 0};
-  const auto packing = particles::make_lattice_packing<dim>(Test::zone(false));
+  const auto packing = packings::make_lattice_packing<dim>(Test::zone(false));
   ManyBodyForce<dim> force(packing, material, {}, {FractureLaw::Criterion::maximum_tension, 3e6});
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   const typename Test::Matrix f = Test::Matrix::Identity() + Test::uniaxial_strain(material, 9e7);
   const auto edge = Test::edge(force, p, f);
   force.set_coupled_edge(p, edge);

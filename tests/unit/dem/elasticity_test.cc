@@ -26,7 +26,7 @@ TYPED_TEST(Elasticity, InnerCellsAnswerEveryUnitStrainByTheStiffness)
 {
   constexpr int dim = TypeParam::dim;
   const auto lattice = box<TypeParam>(dim == 2 ? 9 : 7);
-  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  const auto packing = packings::make_lattice_packing<dim>(lattice);
   // Surface particles and their neighbours see a strain that the free surface doesn't allow.
   std::vector<int> depth(packing.size(), 2);
   for (const auto &face : packing.boundary_faces)
@@ -40,7 +40,7 @@ TYPED_TEST(Elasticity, InnerCellsAnswerEveryUnitStrainByTheStiffness)
       DemMaterial material{7e10, nu, 2500, plane, 0};
       ManyBodyForce<dim> force(packing, material, {});
       Particles<dim> p;
-      particles::fill_particles(packing, material.density, p);
+      packings::fill_particles(packing, material.density, p);
       const auto c = force.elastic_constants().stiffness;
       for (int k = 0; k < n_strains<dim>; ++k) {
         const Strain<dim> e = 1e-4 * Strain<dim>::Unit(k);
@@ -74,7 +74,7 @@ TYPED_TEST(Elasticity, SpecimenPulledByWallsWithFreeSidesIsExact)
 {
   constexpr int dim = TypeParam::dim;
   const auto lattice = box<TypeParam>(dim == 2 ? 9 : 6);
-  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  const auto packing = packings::make_lattice_packing<dim>(lattice);
   // At finite strain the law is not linear; the force works with displacements, so that nothing is
   // lost at this one, whose square vanishes.
   const double strain = 1e-14;
@@ -89,7 +89,7 @@ TYPED_TEST(Elasticity, SpecimenPulledByWallsWithFreeSidesIsExact)
       DemMaterial material{7e10, nu, 2500, plane, 0};
       ManyBodyForce<dim> force(packing, material, loads);
       Particles<dim> p;
-      particles::fill_particles(packing, material.density, p);
+      packings::fill_particles(packing, material.density, p);
       const bool plane_strain = dim == 2 && plane == PlaneMode::strain;
       const double lateral = plane_strain ? nu / (1 - nu) : nu;
       const double modulus = plane_strain ? 7e10 / (1 - nu * nu) : 7e10;
@@ -124,7 +124,7 @@ TYPED_TEST(Elasticity, TractionOnTwoSidesGivesTheSameState)
 {
   constexpr int dim = TypeParam::dim;
   const auto lattice = box<TypeParam>(dim == 2 ? 9 : 6);
-  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  const auto packing = packings::make_lattice_packing<dim>(lattice);
   const double nu = 0.3, stress = 1e-3; // strains of 1e-14, see above
   std::vector<core::BoundaryLoad<dim>> loads(2);
   for (int end = 0; end < 2; ++end) {
@@ -135,7 +135,7 @@ TYPED_TEST(Elasticity, TractionOnTwoSidesGivesTheSameState)
   DemMaterial material{7e10, nu, 2500, PlaneMode::strain, 0};
   ManyBodyForce<dim> force(packing, material, loads);
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   const double strain = stress / (dim == 2 ? 7e10 / (1 - nu * nu) : 7e10),
                lateral = dim == 2 ? nu / (1 - nu) : nu;
   for (int i = 0; i < p.size(); ++i)

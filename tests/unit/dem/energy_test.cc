@@ -7,11 +7,11 @@ namespace ligament::dem::testing
 template <int dim>
 struct Run
 {
-  Run(const particles::Packing<dim> &packing, const DemMaterial &material,
+  Run(const packings::Packing<dim> &packing, const DemMaterial &material,
       const std::vector<core::BoundaryLoad<dim>> &loads, const FractureLaw &law = {})
   {
     Particles<dim> p;
-    particles::fill_particles(packing, material.density, p);
+    packings::fill_particles(packing, material.density, p);
     auto f = std::make_unique<ManyBodyForce<dim>>(packing, material, loads, law);
     force = f.get();
     solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
@@ -65,7 +65,7 @@ template <typename C>
 std::pair<double, double> vibrate(int steps, double spacings)
 {
   constexpr int dim = C::dim;
-  const auto packing = particles::make_lattice_packing<dim>(box<C>(spacings));
+  const auto packing = packings::make_lattice_packing<dim>(box<C>(spacings));
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   Run<dim> run(packing, material, {});
   run.dt *= 0.5;
@@ -116,7 +116,7 @@ std::array<double, 3> tear(double fraction, double damping = 0)
 {
   constexpr int dim = C::dim;
   auto lattice = box<C>(dim == 2 ? 10 : 5);
-  const auto packing = particles::make_lattice_packing<dim>(lattice);
+  const auto packing = packings::make_lattice_packing<dim>(lattice);
   DemMaterial material{7e10, 0.25, 2500, PlaneMode::strain, 0.3};
   std::vector<core::BoundaryLoad<dim>> loads(3);
   for (int end = 0; end < 2; ++end) {
@@ -189,7 +189,7 @@ TYPED_TEST_SUITE(Touch, Dimensions);
 
 /// A cut that is inclined to the face between them.
 template <int dim>
-particles::CrackPlane<dim> inclined_cut(double d)
+packings::CrackPlane<dim> inclined_cut(double d)
 {
   if constexpr (dim == 2)
     return {{{0.3 * d, -d}, {0.7 * d, d}}, 1e-9 * d};
@@ -203,7 +203,7 @@ void bounce(int openings, bool joint)
 {
   auto packing = two_particles<dim>(true);
   if (joint)
-    particles::cut_faces<dim>(packing, {inclined_cut<dim>(packing.spacing)});
+    packings::cut_faces<dim>(packing, {inclined_cut<dim>(packing.spacing)});
   const double d = packing.spacing;
   for (int i = 0; i < 2; ++i) {
     const Vector<dim> n = (i ? 1 : -1) * Vector<dim>::Unit(0);
@@ -284,7 +284,7 @@ TYPED_TEST(Touch, FrictionSticksAndSlidesAtTheCoefficient)
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, mu};
   ManyBodyForce<dim> force(packing, material, {});
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   const double stiffness = 2 * material.shear_modulus() * area / d, overlap = 1e-4 * d;
   p.displacement[0][1] = -overlap;
   force.compute(p, 0);
@@ -318,7 +318,7 @@ TYPED_TEST(Touch, RollingTogetherIsNoSlip)
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 10};
   ManyBodyForce<dim> force(packing, material, {});
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   const double stiffness = 2 * material.shear_modulus() * packing.faces[0].area / d;
   // The increment's error is up to d angle^3 / 8: in all d (pi/2)^3 / 8 / steps^2 = 5e-9 d of slip.
   const int steps = 10000;
@@ -355,7 +355,7 @@ TYPED_TEST(Touch, StrangersMeetAndRepel)
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   ManyBodyForce<dim> force(packing, material, {});
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   force.compute(p, 0);
   EXPECT_EQ(force.n_contacts(), 1);
   const int steps = 70;

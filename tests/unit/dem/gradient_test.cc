@@ -1,5 +1,5 @@
 // The force is minus the gradient of the energy, walls and tractions included.
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/unit/dem/body.h"
 
 #include <gtest/gtest.h>
@@ -52,13 +52,13 @@ Materials grains(const DemMaterial &material, int n)
 template <int dim>
 Packing<dim> small_random_packing()
 {
-  particles::RandomParameters<dim> p;
+  packings::RandomParameters<dim> p;
   p.spacing = 0.5;
   p.thickness = dim == 2 ? 0.7 : 1;
   p.size_ratio = 3;
   p.relaxation_sweeps = 2;
   p.upper.setConstant(dim == 2 ? 2.4 : 1.4);
-  return particles::make_random_packing<dim>(p).packing;
+  return packings::make_random_packing<dim>(p).packing;
 }
 
 TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)

@@ -1,5 +1,5 @@
 // Joints of initial cuts: they press along the cut's normal, slide without interlocking, rub.
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
 
 namespace ligament::dem::testing
@@ -21,11 +21,11 @@ Packing<C::dim> cut_box(double n, bool random)
                        {upper[0], y, upper[2]},
                        {upper[0], y, lower[2]}}};
   if (!random)
-    return particles::make_lattice_packing<dim>(lattice);
-  particles::RandomParameters<dim> seeds;
-  static_cast<particles::SpecimenParameters<dim> &>(seeds) = lattice;
+    return packings::make_lattice_packing<dim>(lattice);
+  packings::RandomParameters<dim> seeds;
+  static_cast<packings::SpecimenParameters<dim> &>(seeds) = lattice;
   seeds.size_ratio = 2;
-  return particles::make_random_packing<dim>(seeds).packing;
+  return packings::make_random_packing<dim>(seeds).packing;
 }
 
 template <typename C>
@@ -37,7 +37,7 @@ struct CutBody
       : packing(cut_box<C>(n, random)), material{7e10, 0.3, 2500, PlaneMode::strain, friction},
         force(packing, material, {})
   {
-    particles::fill_particles(packing, material.density, p);
+    packings::fill_particles(packing, material.density, p);
     for (const auto &face : packing.faces)
       if (face.cracked)
         stiffness += 2 * material.shear_modulus() * face.area / (face.q_i + face.q_j);

@@ -1,5 +1,5 @@
 // Bodies of several materials: layers against the exact laminate, the stable step, breaking.
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
 
 namespace ligament::dem::testing
@@ -12,12 +12,12 @@ constexpr double spacing = 0.5;
 template <int dim>
 Packing<dim> block(int n)
 {
-  particles::LatticeParameters<dim> p;
+  packings::LatticeParameters<dim> p;
   p.kind = dim == 2 ? Kind::square : Kind::simple_cubic;
   p.spacing = spacing;
   p.upper.setConstant(spacing * n / 2);
   p.lower = -p.upper;
-  return particles::make_lattice_packing<dim>(p);
+  return packings::make_lattice_packing<dim>(p);
 }
 
 /// Strain of the layer across, at the lateral strain e: sigma_y is the same everywhere.

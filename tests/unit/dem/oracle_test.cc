@@ -13,7 +13,7 @@ TYPED_TEST_SUITE(AgainstOracle, Cases);
 TYPED_TEST(AgainstOracle, SameForcesAndEnergyInRandomStatesWithBrokenFaces)
 {
   constexpr int dim = TypeParam::dim;
-  auto packing = particles::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 24 : 9));
+  auto packing = packings::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 24 : 9));
   std::mt19937 random(3);
   for (auto &face : packing.faces) // leaves rows with every bond, and some with few
     face.cracked = packing.centre[1][face.i] > 0 && random() % 5 == 0;
@@ -23,7 +23,7 @@ TYPED_TEST(AgainstOracle, SameForcesAndEnergyInRandomStatesWithBrokenFaces)
       ManyBodyForce<dim> force(packing, material, {});
       const oracle::ManyBodyOracle<dim> oracle(packing, 3., nu, plane);
       Particles<dim> p;
-      particles::fill_particles(packing, 1., p);
+      packings::fill_particles(packing, 1., p);
       Spin<dim> turn = Spin<dim>::Constant(1.3);
       disturb<dim>(p, packing.spacing, 0.1, turn, 5);
       // Swollen, so that broken faces stay apart: the oracle knows no contact.

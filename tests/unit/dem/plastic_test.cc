@@ -102,11 +102,11 @@ TYPED_TEST(Plastic, ForcesAreTheGradientAtFrozenPlasticStrain)
 TYPED_TEST(Plastic, WithoutFlowNotABitDiffers)
 {
   constexpr int dim = TypeParam::value;
-  const auto packing = particles::make_lattice_packing<dim>(
+  const auto packing = packings::make_lattice_packing<dim>(
       box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 20 : 8));
   const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
   Particles<dim> start;
-  particles::fill_particles(packing, 1., start);
+  packings::fill_particles(packing, 1., start);
   disturb<dim>(start, packing.spacing, 1e-3, Spin<dim>::Zero(), 5);
   ManyBodyForce<dim> elastic(packing, material, {});
   auto p = start;
@@ -132,11 +132,11 @@ TYPED_TEST(Plastic, WithoutFlowNotABitDiffers)
 template <int dim>
 std::array<double, 3> stretch(double scale, double fraction)
 {
-  const auto packing = particles::make_lattice_packing<dim>(
+  const auto packing = packings::make_lattice_packing<dim>(
       box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 12 : 5));
   const DemMaterial material{1., 0.3, 1, PlaneMode::strain, 0};
   Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   auto f = std::make_unique<ManyBodyForce<dim>>(packing, material,
                                                 std::vector<core::BoundaryLoad<dim>>());
   auto &force = *f;
@@ -200,11 +200,11 @@ double continuum_stress(const DemMaterial &material, const VonMises &law, double
 
 TEST(PlasticStrip, TensionFollowsTheContinuumAndUnloadsElastically)
 {
-  particles::LatticeParameters<2> lattice;
+  packings::LatticeParameters<2> lattice;
   lattice.kind = Kind::hexagonal;
   lattice.spacing = 1;
   lattice.upper = {12, 6 * std::sqrt(3.) / 2};
-  const auto packing = particles::make_lattice_packing<2>(lattice);
+  const auto packing = packings::make_lattice_packing<2>(lattice);
   const DemMaterial material{1., 0.3, 1, PlaneMode::strain, 0};
   const double yield_stress = 2e-3, hardening = 0.1, strain = 0.01;
   const VonMises law(material.shear_modulus(), yield_stress, hardening);
@@ -216,7 +216,7 @@ TEST(PlasticStrip, TensionFollowsTheContinuumAndUnloadsElastically)
   const double duration = 2000;
   loads[1].ramp.duration = duration;
   Particles<2> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   auto f = std::make_unique<ManyBodyForce<2>>(packing, material, loads);
   auto &force = *f;
   particles::ParticleSolver<2> solver(std::move(p), std::move(f));

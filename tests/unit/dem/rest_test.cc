@@ -1,7 +1,7 @@
 // Regions at rest: left out or not, every particle goes the same way to the last bit.
-#include "particles/absorbing_sides.h"
+#include "packings/absorbing_sides.h"
+#include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "particles/random_packing.h"
 #include "tests/unit/dem/cases.h"
 
 namespace ligament::dem::testing
@@ -52,10 +52,10 @@ struct Motion
     if (strength > 0)
       fracture = {FractureLaw::Criterion::maximum_tension, strength};
     Particles<dim> state;
-    particles::fill_particles(packing, 1., state);
+    packings::fill_particles(packing, 1., state);
     const auto constants = material.elastic_constants<dim>();
-    auto dashpots = particles::absorbing_dashpots(packing, state, loads, 1., constants.wave_speed_p,
-                                                  constants.wave_speed_s);
+    auto dashpots = packings::absorbing_dashpots(packing, state, loads, 1., constants.wave_speed_p,
+                                                 constants.wave_speed_s);
     particles::ParticleSolver<dim> solver(
         std::move(state), std::make_unique<ManyBodyForce<dim>>(packing, material, loads, fracture));
     solver.dashpots = std::move(dashpots);
@@ -97,9 +97,9 @@ struct Motion
 };
 
 template <int dim>
-particles::LatticeParameters<dim> block(Kind kind, const Vector<dim> &size)
+packings::LatticeParameters<dim> block(Kind kind, const Vector<dim> &size)
 {
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.spacing = spacing;
   lattice.upper = spacing * size;
@@ -110,7 +110,7 @@ particles::LatticeParameters<dim> block(Kind kind, const Vector<dim> &size)
 // The front runs two bonds per step: of a bar of 800 it has 160 behind it after 80 steps.
 TEST(Rest, HexagonalAlongTheRows)
 {
-  const auto packing = particles::make_lattice_packing<2>(block<2>(Kind::hexagonal, {800.3, 7.2}));
+  const auto packing = packings::make_lattice_packing<2>(block<2>(Kind::hexagonal, {800.3, 7.2}));
   Motion<2>{packing, impact<2>(0, false)}.compare(0.5);
   Motion<2>{packing, impact<2>(1, true)}.compare(0.5);
   Motion<2>{packing, impact<2>(0, true), 0.}.compare(0.5); // without dilatation
@@ -120,7 +120,7 @@ TEST(Rest, HexagonalAlongTheRows)
 TEST(Rest, HexagonalAcrossTheRows)
 {
   for (const double width : {5.1, 150.3})
-    Motion<2>{particles::make_lattice_packing<2>(block<2>(Kind::hexagonal, {width, 300.2})),
+    Motion<2>{packings::make_lattice_packing<2>(block<2>(Kind::hexagonal, {width, 300.2})),
               impact<2>(2, width > 100)}
         .compare(0.4);
 }
@@ -128,14 +128,14 @@ TEST(Rest, HexagonalAcrossTheRows)
 TEST(Rest, SimpleCubicAndFaceCentredCubic)
 {
   for (const Kind kind : {Kind::simple_cubic, Kind::fcc}) {
-    Motion<3>{particles::make_lattice_packing<3>(block<3>(kind, {420.3, 4.2, 3.4})),
+    Motion<3>{packings::make_lattice_packing<3>(block<3>(kind, {420.3, 4.2, 3.4})),
               impact<3>(0, true),
               0.3,
               0,
               0,
               50}
         .compare(0.4);
-    Motion<3>{particles::make_lattice_packing<3>(block<3>(kind, {5.3, 4.2, 160.4})),
+    Motion<3>{packings::make_lattice_packing<3>(block<3>(kind, {5.3, 4.2, 160.4})),
               impact<3>(5, false),
               0.3,
               0,
@@ -147,17 +147,17 @@ TEST(Rest, SimpleCubicAndFaceCentredCubic)
 
 TEST(Rest, RandomPackings)
 {
-  particles::RandomParameters<2> flat;
+  packings::RandomParameters<2> flat;
   flat.spacing = spacing;
   flat.relaxation_sweeps = 2;
   flat.upper = {3.0, 0.08};
-  Motion<2>{particles::make_random_packing<2>(flat).packing, impact<2>(0, true), 0.3, 0, 0, 40}
+  Motion<2>{packings::make_random_packing<2>(flat).packing, impact<2>(0, true), 0.3, 0, 0, 40}
       .compare(0.3);
-  particles::RandomParameters<3> solid;
+  packings::RandomParameters<3> solid;
   solid.spacing = spacing;
   solid.relaxation_sweeps = 1;
   solid.upper = {1.2, 0.04, 0.05};
-  Motion<3>{particles::make_random_packing<3>(solid).packing, impact<3>(0, false), 0.3, 0, 0, 20}
+  Motion<3>{packings::make_random_packing<3>(solid).packing, impact<3>(0, false), 0.3, 0, 0, 20}
       .compare(0.2);
 }
 
@@ -168,14 +168,14 @@ TEST(Rest, NotchHoleAndCrack)
   lattice.notches = {{{0.3, 0.3}, {0.5, 0.5}}};
   lattice.holes = {{{0.6, 0.7}, 0.06}};
   lattice.cracks = {{{-0.1, 0.183}, {0.35, 0.25}}, {{0.2, 2.}, {0.7, 2.1}}};
-  Motion<2> run{particles::make_lattice_packing<2>(lattice), impact<2>(2, false), 0.3, 0.5};
+  Motion<2> run{packings::make_lattice_packing<2>(lattice), impact<2>(2, false), 0.3, 0.5};
   run.compare(0.2);
 }
 
 // A pull that breaks bonds at once; broken halves meet others.
 TEST(Rest, BreakingBonds)
 {
-  Motion<2> run{particles::make_lattice_packing<2>(block<2>(Kind::hexagonal, {400.3, 12.2})),
+  Motion<2> run{packings::make_lattice_packing<2>(block<2>(Kind::hexagonal, {400.3, 12.2})),
                 impact<2>(0, false), 0.3, 0.3, 0.02};
   run.loads[0].value[0] = -0.1;
   run.compare(0.3);
@@ -184,7 +184,7 @@ TEST(Rest, BreakingBonds)
 // A body that already moves somewhere, and a load that begins after the wave has left.
 TEST(Rest, InitialMotionAndTraction)
 {
-  Motion<2> run{particles::make_lattice_packing<2>(block<2>(Kind::hexagonal, {900.3, 7.2})),
+  Motion<2> run{packings::make_lattice_packing<2>(block<2>(Kind::hexagonal, {900.3, 7.2})),
                 impact<2>(1, true)};
   run.start = [](Particles<2> &p) {
     for (int i = 0; i < p.size(); ++i)
@@ -203,7 +203,7 @@ TEST(Rest, InitialMotionAndTraction)
 // held particles do no work.
 TEST(Rest, LimitsKeepTheInvariant)
 {
-  Motion<2> run{particles::make_lattice_packing<2>(block<2>(Kind::hexagonal, {600.3, 7.2})),
+  Motion<2> run{packings::make_lattice_packing<2>(block<2>(Kind::hexagonal, {600.3, 7.2})),
                 impact<2>(0, false)};
   run.steps = 300;
   auto plain = run.solver(), resting = run.solver();

@@ -26,20 +26,20 @@ struct RowKernel : ::testing::Test
   template <int dim>
   static void compare(Kind kind, const Vector<dim> &size, bool may_renumber = false)
   {
-    particles::LatticeParameters<dim> lattice;
+    packings::LatticeParameters<dim> lattice;
     lattice.kind = kind;
     if (may_renumber)
       lattice.small_layer = 0;
     lattice.spacing = 0.01;
     lattice.upper = lattice.spacing * size;
-    auto packing = particles::make_lattice_packing<dim>(lattice);
+    auto packing = packings::make_lattice_packing<dim>(lattice);
     std::mt19937 random(7);
     for (auto &face : packing.faces)
       face.cracked = random() % 50 == 0;
     const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
     ManyBodyForce<dim> force(packing, material, {});
     Particles<dim> p;
-    particles::fill_particles(packing, 1., p);
+    packings::fill_particles(packing, 1., p);
     disturb<dim>(p, packing.spacing, 1e-3, Spin<dim>::Constant(0.4), 5);
     for (int i = 0; i < p.size(); ++i) // swollen: the oracle knows no contact
       for (int c = 0; c < dim; ++c)
@@ -199,15 +199,15 @@ TEST_F(RowKernel, RefusesLayersThatNoWindowHolds)
 /// particles.
 void strain_plate(int width, int height, long small_layer)
 {
-  particles::LatticeParameters<3> lattice;
+  packings::LatticeParameters<3> lattice;
   lattice.kind = Kind::simple_cubic;
   lattice.spacing = 1;
   lattice.lower.setZero();
   lattice.upper = Vector<3>(width, width, height);
   lattice.small_layer = small_layer;
-  auto packing = particles::make_lattice_packing<3>(lattice);
+  auto packing = packings::make_lattice_packing<3>(lattice);
   Particles<3> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   ManyBodyForce<3> force(std::move(packing), DemMaterial{1., 0.3, 1, PlaneMode::strain, 0}, {});
   for (int i = 0; i < p.size(); ++i)
     p.displacement[0][i] = 1e-3 * p.reference[0][i];

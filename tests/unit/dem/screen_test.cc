@@ -1,7 +1,7 @@
 // Bounds of the kernels: no bond that exceeds the strength and no particle that could yield is
 // missed, in random states of any packing.
 #include "dem/principal_tension.h"
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
 #include "tests/support/von_mises.h"
 #include "tests/unit/dem/cases.h"
@@ -35,24 +35,24 @@ private:
 template <int dim>
 Packing<dim> lattice(Kind kind, double n, int longer)
 {
-  particles::LatticeParameters<dim> p;
+  packings::LatticeParameters<dim> p;
   p.kind = kind;
   p.spacing = 0.01;
   p.upper.setConstant((n + 0.3) * p.spacing);
   p.upper[dim - 1] *= longer;
-  return particles::make_lattice_packing<dim>(p);
+  return packings::make_lattice_packing<dim>(p);
 }
 
 template <int dim>
 Packing<dim> random_packing(double n, int longer)
 {
-  particles::RandomParameters<dim> p;
+  packings::RandomParameters<dim> p;
   p.spacing = 0.01;
   p.size_ratio = 2;
   p.relaxation_sweeps = 2;
   p.upper.setConstant((n + 0.3) * p.spacing);
   p.upper[dim - 1] *= longer;
-  return particles::make_random_packing<dim>(p).packing;
+  return packings::make_random_packing<dim>(p).packing;
 }
 
 /// Noise and swelling that grow from the lower end to the upper one, in a turned body.
@@ -60,7 +60,7 @@ template <int dim>
 Particles<dim> state(const Packing<dim> &packing, double swelling, unsigned seed)
 {
   Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   const auto noise = [&] { return uniform(random); };
@@ -238,7 +238,7 @@ template <int dim>
 Particles<dim> nearly_uniform_tension(const Packing<dim> &packing, double angle, double noise)
 {
   Particles<dim> p;
-  particles::fill_particles(packing, 1., p);
+  packings::fill_particles(packing, 1., p);
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> random(-1, 1);
   Vector<dim> e = Vector<dim>::Zero();

@@ -1,7 +1,7 @@
 // The kernel of irregular bonds agrees with the plain oracle on random packings, with every
 // instruction set of the machine; a removed bond leaves no trace.
 #include "core/dispatch.h"
-#include "particles/random_packing.h"
+#include "packings/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
 #include "tests/unit/dem/cases.h"
 
@@ -17,13 +17,13 @@ struct SliceKernel : ::testing::Test
   template <int dim>
   static Packing<dim> packing(unsigned seed)
   {
-    particles::RandomParameters<dim> random;
+    packings::RandomParameters<dim> random;
     random.spacing = 0.01;
     random.thickness = dim == 2 ? 0.7 : 1;
     random.size_ratio = 2;
     random.relaxation_sweeps = 2;
     random.upper = (dim == 2 ? 0.173 : 0.0617) * Vector<dim>::Ones();
-    auto packing = particles::make_random_packing<dim>(random).packing;
+    auto packing = packings::make_random_packing<dim>(random).packing;
     std::mt19937 numbers(seed);
     for (auto &face : packing.faces)
       face.cracked = numbers() % 20 == 0;
@@ -35,7 +35,7 @@ struct SliceKernel : ::testing::Test
   static Particles<dim> state(const Packing<dim> &packing)
   {
     Particles<dim> p;
-    particles::fill_particles(packing, 1., p);
+    packings::fill_particles(packing, 1., p);
     disturb<dim>(p, packing.spacing, 0.05, Spin<dim>::Constant(0.9), 5);
     for (int i = 0; i < p.size(); ++i)
       for (int c = 0; c < dim; ++c)

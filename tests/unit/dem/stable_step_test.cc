@@ -14,7 +14,7 @@ TYPED_TEST_SUITE(StableStep, Cases);
 TYPED_TEST(StableStep, OnePercentBelowTheDenseEigenvalue)
 {
   constexpr int dim = TypeParam::dim, dofs = n_particle_dofs<dim>;
-  const auto packing = particles::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 8 : 3));
+  const auto packing = packings::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 8 : 3));
   std::vector<core::BoundaryLoad<dim>> loads(1);
   loads[0].boundary = 2;
   loads[0].kind = core::BoundaryLoad<dim>::Kind::displacement;
@@ -22,7 +22,7 @@ TYPED_TEST(StableStep, OnePercentBelowTheDenseEigenvalue)
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   ManyBodyForce<dim> force(packing, material, loads);
   Particles<dim> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   p.mass[3] = std::numeric_limits<double>::infinity(); // held
   const int n = dofs * p.size();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
@@ -52,11 +52,11 @@ TEST(StableStep, HexagonalRule)
   // bending, a little less with it and with the smaller cells of the rim.
   using C = Case<2, Kind::hexagonal, false>;
   const auto lattice = box<C>(30);
-  const auto packing = particles::make_lattice_packing<2>(lattice);
+  const auto packing = packings::make_lattice_packing<2>(lattice);
   DemMaterial material{7e10, 0.3, 2500, PlaneMode::strain, 0};
   ManyBodyForce<2> force(packing, material, {});
   Particles<2> p;
-  particles::fill_particles(packing, material.density, p);
+  packings::fill_particles(packing, material.density, p);
   const double rule = 0.354 * lattice.spacing / force.elastic_constants().wave_speed_s;
   EXPECT_LT(force.stable_step(p), 1.01 * rule);
   EXPECT_GT(force.stable_step(p), 0.8 * rule);

@@ -2,8 +2,8 @@
 // loads, contacts, several materials, plastic strains and regions at rest break face by face as by
 // a search that clears nothing.
 #include "dem/principal_tension.h"
+#include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "particles/random_packing.h"
 #include "tests/support/von_mises.h"
 #include "tests/unit/dem/cases.h"
 
@@ -54,7 +54,7 @@ struct Body
   Particles<dim> state(double angle, double strain, double noise, unsigned seed) const
   {
     Particles<dim> p;
-    particles::fill_particles(packing, 1., p);
+    packings::fill_particles(packing, 1., p);
     std::mt19937 generator(seed);
     std::uniform_real_distribution<double> random(-1, 1);
     Vector<dim> e = Vector<dim>::Zero();
@@ -138,9 +138,9 @@ Loads<dim> loaded_sides(double extent)
 }
 
 template <int dim>
-particles::LatticeParameters<dim> box_of(Kind kind, bool turned, double n)
+packings::LatticeParameters<dim> box_of(Kind kind, bool turned, double n)
 {
-  particles::LatticeParameters<dim> lattice;
+  packings::LatticeParameters<dim> lattice;
   lattice.kind = kind;
   lattice.spacing = spacing;
   if (turned)
@@ -153,9 +153,9 @@ particles::LatticeParameters<dim> box_of(Kind kind, bool turned, double n)
 }
 
 template <int dim>
-particles::RandomParameters<dim> random_box(double n)
+packings::RandomParameters<dim> random_box(double n)
 {
-  particles::RandomParameters<dim> random;
+  packings::RandomParameters<dim> random;
   random.spacing = spacing;
   random.size_ratio = 2;
   random.relaxation_sweeps = 2;
@@ -166,7 +166,7 @@ particles::RandomParameters<dim> random_box(double n)
 
 /// From inside to one side.
 template <int dim>
-void add_crack(particles::SpecimenParameters<dim> &specimen)
+void add_crack(packings::SpecimenParameters<dim> &specimen)
 {
   const double x = 2 * specimen.upper[0], y = 0.13 * spacing, end = 0.2 * specimen.upper[0];
   if constexpr (dim == 2)
@@ -186,12 +186,12 @@ std::vector<Packing<dim>> packings(bool cracked)
       auto lattice = box_of<dim>(kind, turned, dim == 2 ? 40 : 8);
       if (cracked)
         add_crack<dim>(lattice);
-      made.push_back(particles::make_lattice_packing<dim>(lattice));
+      made.push_back(packings::make_lattice_packing<dim>(lattice));
     }
   auto random = random_box<dim>(dim == 2 ? 36 : 7);
   if (cracked)
     add_crack<dim>(random);
-  made.push_back(particles::make_random_packing<dim>(random).packing);
+  made.push_back(packings::make_random_packing<dim>(random).packing);
   return made;
 }
 } // namespace
@@ -277,7 +277,7 @@ int expect_same_motion(const Packing<dim> &packing, bool rests, int steps)
         packing, material, loads, FractureLaw{FractureLaw::Criterion::maximum_tension, 0.018});
     force->set_noted_share(noted_share);
     Particles<dim> state;
-    particles::fill_particles(packing, 1., state);
+    packings::fill_particles(packing, 1., state);
     return Solver(std::move(state), std::move(force));
   };
   Solver screened = make(1), full = make(all_faces);
@@ -313,13 +313,13 @@ TEST(ScreenOfBars, BreakingBarsWithRegionsAtRest)
   for (const bool rests : {false, true}) {
     auto flat = box_of<2>(Kind::hexagonal, false, 36);
     flat.upper[0] = spacing * 160;
-    int looked = expect_same_motion<2>(particles::make_lattice_packing<2>(flat), rests, 150);
+    int looked = expect_same_motion<2>(packings::make_lattice_packing<2>(flat), rests, 150);
     auto solid = box_of<3>(Kind::fcc, true, 5);
     solid.upper[0] = spacing * 120;
-    looked += expect_same_motion<3>(particles::make_lattice_packing<3>(solid), rests, 160);
+    looked += expect_same_motion<3>(packings::make_lattice_packing<3>(solid), rests, 160);
     auto random = random_box<2>(26);
     random.upper[0] = spacing * 160;
-    looked += expect_same_motion<2>(particles::make_random_packing<2>(random).packing, rests, 150);
+    looked += expect_same_motion<2>(packings::make_random_packing<2>(random).packing, rests, 150);
     EXPECT_GT(looked, 20);
   }
 }

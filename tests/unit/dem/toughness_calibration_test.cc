@@ -5,7 +5,7 @@
 
 namespace ligament::dem::testing
 {
-using Kind = particles::LatticeKind;
+using Kind = packings::LatticeKind;
 constexpr auto face_tension = FractureLaw::Criterion::face_tension,
                principal = FractureLaw::Criterion::maximum_tension;
 
@@ -102,7 +102,7 @@ TEST(ToughnessCalibration, PackingsAreAlike)
       calibrate_toughness<2>(Kind::hexagonal, Spin<2>(0.), material(0.22), principal);
   EXPECT_NEAR(calibrate_toughness<2>(Kind::hexagonal, Spin<2>(0.26), material(0.22), principal),
               along_a_row, 0.03 * along_a_row);
-  particles::RandomParameters<2> packing;
+  packings::RandomParameters<2> packing;
   packing.relaxation_sweeps = 10;
   const double random = calibrate_toughness<2>(packing, material(0.22), principal);
   EXPECT_NEAR(random, along_a_row, 0.03 * along_a_row);

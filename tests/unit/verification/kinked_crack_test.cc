@@ -1,5 +1,5 @@
 // The reference of wing cracks against what is known of straight and of barely kinked cracks.
-#include "src/verification/kinked_crack.h"
+#include "src/verification/bodies/kinked_crack.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Drawn scenes follow from their seed alone, are scenes that the program takes, and cover all
 // kinds.
 #include "core/counter_random.h"
-#include "particles/lattice_packing.h"
+#include "packings/lattice_packing.h"
 #include "src/scene/read_scene.h"
-#include "src/verification/random_scenes_draw.h"
+#include "src/verification/cases/random_scenes_draw.h"
 
 #include <gtest/gtest.h>
 
@@ -105,17 +105,17 @@ nlohmann::ordered_json lattice(const char *packing, nlohmann::ordered_json orien
 template <int dim>
 Components<dim> centres(const nlohmann::ordered_json &scene)
 {
-  particles::LatticeParameters<dim> p;
+  packings::LatticeParameters<dim> p;
   p.spacing = 1;
   p.upper = Vector<dim>::Constant(5);
   p.upper[1] = 6;
   p.lower = -p.upper;
   const auto &zone = scene["discrete_zone"];
-  p.kind = particles::lattice_kind(zone["packing"]);
+  p.kind = packings::lattice_kind(zone["packing"]);
   for (int c = 0; c < n_spins<dim>; ++c)
     p.orientation[c] = zone["orientation"].is_array() ? zone["orientation"][c].get<double>()
                                                       : zone["orientation"].get<double>();
-  return particles::make_lattice_packing<dim>(p).centre;
+  return packings::make_lattice_packing<dim>(p).centre;
 }
 
 /// Largest distance of an image of a centre from the centres of the mirrored scene.

@@ -1,5 +1,5 @@
 // Each figure of a drawn scene fails when what it measures is broken, and no other does.
-#include "src/verification/random_scenes_judge.h"
+#include "src/verification/cases/random_scenes_judge.h"
 
 #include <gtest/gtest.h>
 

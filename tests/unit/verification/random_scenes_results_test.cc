@@ -1,5 +1,5 @@
 // Results survive a killed program, and their statistics are those of the definitions.
-#include "src/verification/random_scenes_results.h"
+#include "src/verification/cases/random_scenes_results.h"
 
 #include <gtest/gtest.h>
 

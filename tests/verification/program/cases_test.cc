@@ -1,6 +1,6 @@
 // The built-in verification cases hold; the list finds them by name.
 #include "core/check.h"
-#include "src/verification/stability.h"
+#include "src/verification/cases/stability.h"
 
 #include <gtest/gtest.h>
 

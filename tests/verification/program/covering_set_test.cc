@@ -1,5 +1,5 @@
 // Every pair of settings stands in the covering set.
-#include "src/verification/covering_set.h"
+#include "src/verification/instruments/covering_set.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The energies that the noise runs judge: shadow energy of a mode, step error of the impulses,
 // slope and scatter of a series.
-#include "src/verification/noise_run.h"
-#include "src/verification/unit_bodies.h"
+#include "src/verification/bodies/unit_bodies.h"
+#include "src/verification/instruments/noise_run.h"
 
 #include <gtest/gtest.h>
 

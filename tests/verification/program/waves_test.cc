@@ -1,8 +1,8 @@
 #include "dem/many_body_force.h"
-#include "src/verification/bloch.h"
-#include "src/verification/random_bar.h"
-#include "src/verification/waves.h"
-#include "src/verification/waves_twin.h"
+#include "src/verification/bodies/random_bar.h"
+#include "src/verification/bodies/waves_twin.h"
+#include "src/verification/cases/waves.h"
+#include "src/verification/instruments/bloch.h"
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ struct Hexagonal
   Hexagonal()
   {
     material.poissons_ratio = 0.3;
-    auto packing = make_periodic_packing<2>(particles::LatticeKind::hexagonal, 4, 9, true);
-    particles::fill_particles(packing, material.density, state);
+    auto packing = make_periodic_packing<2>(packings::LatticeKind::hexagonal, 4, 9, true);
+    packings::fill_particles(packing, material.density, state);
     force = std::make_unique<dem::ManyBodyForce<2>>(std::move(packing), material,
                                                     std::vector<core::BoundaryLoad<2>>());
   }

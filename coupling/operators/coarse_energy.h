@@ -1,0 +1,97 @@
+// What the coupler adds to the discrete energy, as a function of the nodes' displacements, in three
+// regimes of motion.
+#pragma once
+
+#include "coupling/algebra/block_matrix.h"
+#include "coupling/operators/blended_operators.h"
+#include "coupling/operators/rigid_frames.h"
+
+#include <memory>
+#include <string>
+
+namespace ligament::coupling
+{
+/// How far the overlap may move (theory.md, "Large rotation and finite strain").
+enum class Regime
+{
+  linear,    // small rotations
+  corotated, // any rotation of each connected part of the overlap, little bending of it
+  nonlinear  // any rotation of every cell, finite strain, nonlinear laws
+};
+
+std::string name_of(Regime regime);
+
+template <int dim>
+class CoarseEnergy
+{
+public:
+  virtual ~CoarseEnergy() = default;
+
+  /// force -= dE/dU in N for the displacements U (m) of the near nodes; returns E in J. Calling it
+  /// again with the same U changes nothing more.
+  virtual double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const = 0;
+};
+
+/// 1/2 U.K U (theory.md eq. (C2)).
+template <int dim>
+class LinearCoarseEnergy : public CoarseEnergy<dim>
+{
+public:
+  explicit LinearCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness) : stiffness_(stiffness)
+  {
+  }
+  double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
+
+private:
+  BlockMatrix<dim> stiffness_;
+};
+
+/// 1/2 U_R.K U_R, U_R the displacement in axes that turn with each connected part of the near mesh
+/// (theory.md eq. (C13)).
+template <int dim>
+class CorotatedCoarseEnergy : public CoarseEnergy<dim>
+{
+public:
+  /// `parts` must live as long.
+  CorotatedCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness, const RigidFrames<dim> &parts)
+      : stiffness_(stiffness), parts_(parts)
+  {
+  }
+  double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
+
+private:
+  BlockMatrix<dim> stiffness_;
+  const RigidFrames<dim> &parts_;
+};
+
+/// Cells that turn one by one, minus the discrete energy itself on the interpolated motion, with
+/// the patch fit turning part by part (theory.md eq. (C14)).
+template <int dim>
+class NonlinearCoarseEnergy : public CoarseEnergy<dim>
+{
+public:
+  /// `correction`: the patch fit, or empty. `parts` must live as long.
+  NonlinearCoarseEnergy(const Overlap<dim> &overlap, const RigidFrames<dim> &parts,
+                        const particles::Particles<dim> &particles,
+                        const particles::ParticleForce<dim> &force, const fem::Body<dim> &body,
+                        const Eigen::SparseMatrix<double> &correction);
+  double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
+
+private:
+  struct Cell
+  {
+    std::array<int, fem::n_cell_nodes<dim>> nodes;
+    int shape, stiffness; // indices
+  };
+  double subtract_cells(const Nodal<dim> &u, Nodal<dim> &force) const;
+  double add_discrete(const Nodal<dim> &u, Nodal<dim> &force) const;
+
+  std::vector<Cell> cells_;
+  std::vector<fem::CellShape<dim>> shapes_;
+  std::vector<fem::CellMatrix<dim>> stiffness_;
+  std::vector<InterpolatedMotion<dim>> motions_;
+  std::unique_ptr<CorotatedCoarseEnergy<dim>> correction_;
+  std::unique_ptr<particles::PartialForce<dim>> discrete_;
+  std::unique_ptr<particles::Particles<dim>> state_; // of the interpolated motion
+};
+} // namespace ligament::coupling

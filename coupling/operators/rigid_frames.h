@@ -1,0 +1,45 @@
+// The connected parts of the near mesh, each with the rotation of its mean motion.
+#pragma once
+
+#include "core/polar_rotation.h"
+#include "coupling/operators/transfer.h"
+
+namespace ligament::coupling
+{
+template <int dim>
+class RigidFrames
+{
+public:
+  explicit RigidFrames(const Overlap<dim> &overlap);
+
+  /// A part in its present motion; displacements U of the near nodes in m.
+  struct Frame
+  {
+    core::PolarRotation<dim> rotation; // of the least-squares gradient
+    Vector<dim> translation;           // m, mean displacement
+  };
+  std::vector<Frame> frames(const Nodal<dim> &u) const;
+
+  /// How far the near cells move, at their centres.
+  struct Motion
+  {
+    double rotation = 0; // rad, the largest
+    double bending = 0;  // rad, the largest against the rotation of the part
+    double strain = 0;   // the largest |S - 1|
+  };
+  Motion largest_motion(const Nodal<dim> &u) const;
+
+  std::vector<std::vector<int>> nodes; // near nodes of each part
+  Nodal<dim> position;                 // m, of the nodes from the centre of their part
+  Nodal<dim> gradient;                 // 1/m: the gradient of a motion x is sum x_i (x) g_i
+
+private:
+  struct Cell
+  {
+    int part;
+    std::array<int, fem::n_cell_nodes<dim>> nodes;
+    Eigen::Matrix<double, dim, fem::n_cell_nodes<dim>> gradient; // at the centre, 1/m
+  };
+  std::vector<Cell> cells_;
+};
+} // namespace ligament::coupling

@@ -1,0 +1,163 @@
+#include "packings/clipped_cell.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::packings
+{
+namespace
+{
+template <int dim>
+struct PartSum
+{
+  int id;
+  Vector<dim> normal;
+  double distance;
+  double area;
+  Vector<dim> moment;
+};
+
+/// The Voronoi cell of all kept lattice points and the flat sides of the specimen.
+template <int dim>
+VoronoiCell<dim> voronoi_cell(const Lattice<dim> &lattice, const SpecimenShape<dim> &shape,
+                              const LatticeIndex<dim> &k)
+{
+  const double d = lattice.spacing;
+  const Vector<dim> x = lattice.position(k);
+  VoronoiCell<dim> cell(4 * d, start_plane, 1e-13 * d);
+  clip_by_sides(cell, shape, x);
+  for (std::size_t n = 0; n < lattice.reachable.size(); ++n) {
+    const LatticeNeighbour<dim> &other = lattice.reachable[n];
+    if (other.distance / 2 > cell.max_radius())
+      break;
+    if (cell.is_cut_by(other.direction, other.distance / 2) &&
+        is_kept(shape, lattice.position(k + other.offset), d))
+      cell.clip(other.direction, other.distance / 2, int(n));
+  }
+  return cell;
+}
+
+/// Calls visit(part, sign) for convex parts whose signed sum is the cell without the union of the
+/// voids: inclusion and exclusion of every set of voids, from number `first` on, that meets in it.
+template <int dim, typename Visit>
+void for_each_convex_part(const VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape,
+                          const Vector<dim> &x, double spacing, Visit &&visit,
+                          std::size_t first = 0, double sign = 1)
+{
+  if (first == 0)
+    visit(cell, sign);
+  int id = first_void_plane;
+  for (std::size_t v = 0; v < shape.voids.size(); id -= int(shape.voids[v++].sides.size())) {
+    // The polygon of a hole reaches a little out of its circle.
+    if (v < first || shape.voids[v].distance(x) > cell.max_radius() + 0.1 * spacing)
+      continue;
+    VoronoiCell<dim> common = cell;
+    int side_id = id;
+    for (const HalfSpace<dim> &side : shape.voids[v].sides)
+      common.clip(side.normal, side.offset - side.normal.dot(x), side_id--);
+    if (common.is_empty())
+      continue;
+    visit(common, -sign);
+    for_each_convex_part(common, shape, x, spacing, visit, v + 1, -sign);
+  }
+}
+} // namespace
+
+template <int dim>
+void clip_by_sides(VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape, const Vector<dim> &x)
+{
+  for (int a = 0; a < dim; ++a) {
+    cell.clip(-Vector<dim>::Unit(a), x[a] - shape.lower[a], first_side_plane - 2 * a);
+    cell.clip(Vector<dim>::Unit(a), shape.upper[a] - x[a], first_side_plane - 2 * a - 1);
+  }
+}
+
+template <int dim>
+std::pair<double, Vector<dim>> clipped_volume(const VoronoiCell<dim> &cell,
+                                              const SpecimenShape<dim> &shape, const Vector<dim> &x,
+                                              double spacing)
+{
+  std::pair<double, Vector<dim>> sum{0, Vector<dim>::Zero()};
+  for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &part, double sign) {
+    sum.first += sign * part.volume();
+    sum.second += sign * part.moment();
+  });
+  return sum;
+}
+
+template <int dim>
+ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape,
+                              const Vector<dim> &x, double spacing)
+{
+  std::vector<PartSum<dim>> sums;
+  for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &convex, double sign) {
+    for (const auto &face : convex.faces()) {
+      auto sum =
+          std::find_if(sums.begin(), sums.end(), [&](const auto &s) { return s.id == face.id; });
+      if (sum == sums.end())
+        sum = sums.insert(sum, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero()});
+      sum->area += sign * face.area;
+      sum->moment += sign * face.area * face.centroid;
+      volume += sign * face.area * face.distance / dim;
+    }
+    // Corners inside a void bound nothing.
+    for (const Vector<dim> &corner : convex.vertices())
+      if (std::none_of(shape.voids.begin(), shape.voids.end(),
+                       [&](const auto &v) { return v.contains(x + corner, 1e-9 * spacing); }))
+      {
+        lower = lower.cwiseMin(corner);
+        upper = upper.cwiseMax(corner);
+        radius = std::max(radius, corner.norm());
+      }
+  });
+  for (const PartSum<dim> &sum : sums) {
+    if (std::abs(sum.area) < 1e-12 * std::pow(spacing, dim - 1))
+      continue;
+    if (sum.id >= 0)
+      parts.push_back({sum.id, -1, sum.normal, sum.distance, sum.area, sum.moment});
+    else if (sum.id == start_plane)
+      is_open = true;
+    else if (sum.id > first_void_plane)
+      parts.push_back(
+          {-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area, sum.moment});
+    else // area and moment of what was taken away are negative, the normal leads out of the void
+      parts.push_back({-1, inner_surface<dim>, -sum.normal, -sum.distance, -sum.area, -sum.moment});
+  }
+}
+
+template <int dim>
+bool ClippedCell<dim>::reaches_through(const SpecimenShape<dim> &shape, const Vector<dim> &x,
+                                       double spacing) const
+{
+  // Round a corner the line of sight dips less deep into a void, which is at least d wide.
+  for (const Part &part : parts)
+    for (const Void<dim> &v : shape.voids)
+      if (v.hides(x, x + part.moment / part.area, 0.45 * spacing))
+        return true;
+  return is_open;
+}
+
+template <int dim>
+ClippedCell<dim>::ClippedCell(const Lattice<dim> &lattice, const SpecimenShape<dim> &shape,
+                              const LatticeIndex<dim> &k)
+    : ClippedCell(voronoi_cell(lattice, shape, k), shape, lattice.position(k), lattice.spacing)
+{
+  // All who compete for a point within 3 d of this particle lie within reach, so up to there cells
+  // are true. Farther points, or points behind a void, are material without particles of its own.
+  const double d = lattice.spacing;
+  core::require(radius <= 3 * d && !reaches_through(shape, lattice.position(k), d),
+                "beside a hole or notch the specimen is thinner than the particles can fill: make "
+                "the spacing smaller, or let the hole or notch reach through the surface");
+}
+
+template void clip_by_sides(VoronoiCell<2> &, const SpecimenShape<2> &, const Vector<2> &);
+template void clip_by_sides(VoronoiCell<3> &, const SpecimenShape<3> &, const Vector<3> &);
+template std::pair<double, Vector<2>>
+clipped_volume(const VoronoiCell<2> &, const SpecimenShape<2> &, const Vector<2> &, double);
+template std::pair<double, Vector<3>>
+clipped_volume(const VoronoiCell<3> &, const SpecimenShape<3> &, const Vector<3> &, double);
+template struct ClippedCell<2>;
+template struct ClippedCell<3>;
+} // namespace ligament::packings

@@ -1,0 +1,236 @@
+#include "packings/lattice_packing.h"
+
+#include "core/check.h"
+#include "packings/clipped_cell.h"
+#include "packings/row_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace ligament::packings
+{
+LatticeKind lattice_kind(const std::string &name)
+{
+  static const std::map<std::string, LatticeKind> kinds = {
+      {"square", LatticeKind::square},
+      {"hexagonal", LatticeKind::hexagonal},
+      {"simple_cubic", LatticeKind::simple_cubic},
+      {"fcc", LatticeKind::fcc}};
+  const auto kind = kinds.find(name);
+  core::require(kind != kinds.end(),
+                "unknown packing \"" + name + "\": use square, hexagonal, simple_cubic or fcc");
+  return kind->second;
+}
+
+namespace
+{
+template <int dim>
+class Packer
+{
+public:
+  explicit Packer(const LatticeParameters<dim> &parameters);
+  Packing<dim> pack();
+
+private:
+  using Index = LatticeIndex<dim>;
+
+  void place_particles();
+  void join_faces();
+
+  bool has_all_neighbours(const Index &k) const;
+  bool is_in_zone(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper) const;
+  int particle_at(const Index &k) const;
+  bool is_whole(int i) const { return irregular_of_[i] < 0; }
+  void add_lattice_face(int i, int j, int direction);
+  void add_irregular_faces(int i, const Index &k);
+
+  const SpecimenShape<dim> shape_;
+  const Lattice<dim> lattice_;
+  const double tolerance_; // m
+  const double thickness_;
+  Vector<dim> zone_lower_, zone_upper_;
+  std::array<std::array<bool, 2>, dim> coupled_;
+  const core::BoxUnion<dim> parts_;
+
+  std::optional<RowLayout<dim>> layout_;
+  std::vector<std::vector<int>> particle_in_; // row, at its points; -1: no particle
+  std::vector<int> irregular_of_;
+  std::vector<ClippedCell<dim>> irregular_;
+  Packing<dim> packing_;
+};
+
+template <int dim>
+Packer<dim>::Packer(const LatticeParameters<dim> &p)
+    : shape_(p), lattice_(p), tolerance_(1e-9 * p.spacing), thickness_(dim == 2 ? p.thickness : 1),
+      parts_(p.zone_parts)
+{
+  for (int a = 0; a < dim; ++a) {
+    coupled_[a] = {p.zone_lower[a] > p.lower[a] + tolerance_,
+                   p.zone_upper[a] < p.upper[a] - tolerance_};
+    zone_lower_[a] = std::max(p.zone_lower[a], p.lower[a]);
+    zone_upper_[a] = std::min(p.zone_upper[a], p.upper[a]);
+    core::require(zone_upper_[a] - zone_lower_[a] > p.spacing,
+                  "the discrete zone holds no particles: move it into the specimen or widen it");
+  }
+  layout_.emplace(lattice_, zone_lower_, zone_upper_, p.small_layer);
+  packing_.spacing = p.spacing;
+  packing_.thickness = thickness_;
+  for (const LatticeNeighbour<dim> &n : layout_->forward())
+    packing_.directions.push_back({n.direction, n.distance, lattice_.face_area * thickness_});
+}
+
+template <int dim>
+bool Packer<dim>::has_all_neighbours(const Index &k) const
+{
+  const double d = lattice_.spacing;
+  for (const LatticeNeighbour<dim> &n : lattice_.forward)
+    if (!is_kept(shape_, lattice_.position(k + n.offset), d) ||
+        !is_kept(shape_, lattice_.position(k - n.offset), d))
+      return false;
+  return true;
+}
+
+template <int dim>
+bool Packer<dim>::is_in_zone(const Vector<dim> &x, const Vector<dim> &lower,
+                             const Vector<dim> &upper) const
+{
+  for (int a = 0; a < dim; ++a)
+    if ((coupled_[a][0] && x[a] + lower[a] < zone_lower_[a] - tolerance_) ||
+        (coupled_[a][1] && x[a] + upper[a] > zone_upper_[a] + tolerance_))
+      return false;
+  return parts_.boxes.empty() || parts_.covers(x + lower, x + upper, tolerance_);
+}
+
+template <int dim>
+void Packer<dim>::place_particles()
+{
+  const double d = lattice_.spacing;
+  const Vector<dim> &extent = lattice_.extent;
+  for (const auto &row : layout_->rows()) {
+    auto &particle = particle_in_.emplace_back(row.n_points, -1);
+    bool in_run = false;
+    for (int n = 0; n < row.n_points; ++n, in_run = particle[n - 1] >= 0) {
+      const Index k = row.start + n * layout_->step();
+      const Vector<dim> x = lattice_.position(k);
+      // Where the centre is out of the zone, so is the cell.
+      if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
+        continue;
+      const double distance = shape_.distance(x);
+      if (distance < clearance * d)
+        continue;
+      bool whole = distance > (clearance + 1) * d;
+      if (!whole && has_all_neighbours(k)) {
+        whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
+                ((shape_.upper - x - extent).array() > -1e-12 * d).all();
+        for (const Void<dim> &v : shape_.voids)
+          whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
+      }
+      if (whole) {
+        if (!is_in_zone(x, -extent, extent))
+          continue;
+        irregular_of_.push_back(-1);
+        packing_.volume.push_back(lattice_.cell_volume * thickness_);
+      } else {
+        ClippedCell<dim> cell(lattice_, shape_, k);
+        if (!is_in_zone(x, cell.lower, cell.upper))
+          continue;
+        irregular_of_.push_back(int(irregular_.size()));
+        packing_.volume.push_back(cell.volume * thickness_);
+        irregular_.push_back(std::move(cell));
+      }
+      particle[n] = packing_.size() - 1;
+      if (!in_run)
+        packing_.row_begin.push_back(particle[n]);
+      packing_.global_id.push_back(Lattice<dim>::global_id(k));
+      for (int a = 0; a < dim; ++a)
+        packing_.centre[a].push_back(x[a]);
+    }
+  }
+  packing_.row_begin.push_back(packing_.size());
+}
+
+template <int dim>
+int Packer<dim>::particle_at(const Index &k) const
+{
+  const auto [row, n] = layout_->place(k);
+  return row < 0 ? -1 : particle_in_[row][n];
+}
+
+template <int dim>
+void Packer<dim>::add_lattice_face(int i, int j, int direction)
+{
+  const LatticeDirection<dim> &n = packing_.directions[direction];
+  const double q = n.distance / 2;
+  packing_.faces.push_back({i, j, n.normal, n.area, q, q, q * n.normal, -q * n.normal,
+                            is_whole(i) && is_whole(j) ? direction : -1, false});
+}
+
+template <int dim>
+void Packer<dim>::add_irregular_faces(int i, const Index &k)
+{
+  const std::size_t first_face = packing_.faces.size();
+  for (const auto &part : irregular_[irregular_of_[i]].parts) {
+    const Vector<dim> lever = part.moment / part.area;
+    if (part.neighbour < 0) {
+      packing_.boundary_faces.push_back(
+          {i, part.normal, part.area * thickness_, part.distance, lever, part.boundary});
+      continue;
+    }
+    const LatticeNeighbour<dim> &n = lattice_.reachable[part.neighbour];
+    const int j = particle_at(k + n.offset);
+    if (j <= i || is_whole(j)) // those of whole cells are lattice faces
+      continue;
+    packing_.faces.push_back({i, j, n.direction, part.area * thickness_, n.distance / 2,
+                              n.distance / 2, lever, lever - n.distance * n.direction, -1, false});
+  }
+  const auto &forward = layout_->forward();
+  for (std::size_t m = 0; m < forward.size(); ++m)
+    if (const int j = particle_at(k + forward[m].offset); j >= 0 && is_whole(j))
+      add_lattice_face(i, j, int(m));
+  std::sort(packing_.faces.begin() + first_face, packing_.faces.end(),
+            [](const auto &a, const auto &b) { return a.j < b.j; });
+}
+
+template <int dim>
+void Packer<dim>::join_faces()
+{
+  const auto &forward = layout_->forward();
+  packing_.faces.reserve(packing_.size() * forward.size() + 8 * irregular_.size());
+  for (std::size_t r = 0; r < particle_in_.size(); ++r)
+    for (std::size_t n = 0; n < particle_in_[r].size(); ++n) {
+      const int i = particle_in_[r][n];
+      if (i < 0)
+        continue;
+      const Index k = layout_->rows()[r].start + int(n) * layout_->step();
+      if (!is_whole(i))
+        add_irregular_faces(i, k);
+      else
+        for (std::size_t m = 0; m < forward.size(); ++m)
+          if (const int j = particle_at(k + forward[m].offset); j >= 0)
+            add_lattice_face(i, j, int(m));
+    }
+}
+
+template <int dim>
+Packing<dim> Packer<dim>::pack()
+{
+  place_particles();
+  core::require(packing_.size() > 0,
+                "the discrete zone holds no whole particle: widen it or make the spacing smaller");
+  join_faces();
+  cut_faces(packing_, shape_.cracks);
+  return std::move(packing_);
+}
+} // namespace
+
+template <int dim>
+Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters)
+{
+  return Packer<dim>(parameters).pack();
+}
+
+template Packing<2> make_lattice_packing(const LatticeParameters<2> &);
+template Packing<3> make_lattice_packing(const LatticeParameters<3> &);
+} // namespace ligament::packings

@@ -1,0 +1,101 @@
+#include "packings/relaxation.h"
+
+#include "packings/clipped_cell.h"
+#include "packings/power_diagram.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::packings
+{
+namespace
+{
+template <int dim>
+bool is_in(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &upper, double margin)
+{
+  return ((x - lower).array() >= -margin).all() && ((upper - x).array() >= -margin).all();
+}
+
+/// Radii of sweep k: they grow from equal ones, so that no cell is lost before its neighbours have
+/// made room for it. Weights enter by their differences alone.
+template <int dim>
+Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin)
+{
+  Seeds<dim> result = seeds;
+  for (double &r : result.radius)
+    r *= share;
+  heal_radii(result, bin);
+  return result;
+}
+
+template <int dim>
+void move_to_centroids(Seeds<dim> &seeds, const Seeds<dim> &present,
+                       const SpecimenShape<dim> &shape, double spacing, double bin,
+                       const Vector<dim> &lower, const Vector<dim> &upper, double margin)
+{
+  const PowerDiagram<dim> diagram(present, bin);
+  for (int i = 0; i < present.size(); ++i) {
+    const Vector<dim> &x = present.centre[i];
+    if (!is_in(x, lower, upper, margin))
+      continue;
+    VoronoiCell<dim> cell(start_half_width * spacing, start_plane, 1e-13 * spacing);
+    clip_by_sides(cell, shape, x);
+    diagram.cut(cell, i);
+    const auto [volume, moment] = clipped_volume(cell, shape, x, spacing);
+    if (const Vector<dim> to = x + moment / volume; volume > 0 && shape.distance(to) > 0)
+      seeds.centre[i] = to;
+  }
+}
+
+/// Unit vector along which the distance to the surface grows.
+template <int dim>
+Vector<dim> inward(const SpecimenShape<dim> &shape, const Vector<dim> &x, double step)
+{
+  Vector<dim> gradient;
+  for (int a = 0; a < dim; ++a)
+    gradient[a] = shape.distance(x + step * Vector<dim>::Unit(a)) -
+                  shape.distance(x - step * Vector<dim>::Unit(a));
+  return gradient.norm() > 0 ? gradient.normalized() : gradient;
+}
+
+template <int dim>
+void keep_off_surfaces(Seeds<dim> &seeds, const SpecimenShape<dim> &shape, double spacing)
+{
+  Seeds<dim> kept;
+  for (int i = 0; i < seeds.size(); ++i) {
+    Vector<dim> &x = seeds.centre[i];
+    const double size = std::min(spacing, 2 * seeds.radius[i]);
+    for (int step = 0; step < 4; ++step)
+      if (const double missing = 0.3 * size - shape.distance(x); missing > 0)
+        x += (missing + 1e-6 * size) * inward(shape, x, 1e-3 * size);
+    if (shape.distance(x) >= 0.25 * size)
+      kept.add(x, seeds.radius[i], seeds.id[i]);
+  }
+  seeds = std::move(kept);
+}
+} // namespace
+
+template <int dim>
+Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
+                         double size_ratio, int sweeps, const Vector<dim> &lower,
+                         const Vector<dim> &upper)
+{
+  // A seed feels its neighbours' neighbours at most, in each sweep.
+  const double reach = 3 * spacing * std::sqrt(size_ratio);
+  const Vector<dim> all = Vector<dim>::Constant((sweeps + 2) * reach);
+  Seeds<dim> seeds = draw_seeds<dim>(shape, spacing, seed, size_ratio, lower - all, upper + all);
+  const double bin = std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
+  for (int k = 0; k < sweeps; ++k) {
+    const double share = size_ratio > 1 ? std::min(1., 1.5 * (k + 1) / sweeps) : 1.;
+    move_to_centroids(seeds, grown(seeds, share, bin), shape, spacing, bin, lower, upper,
+                      (sweeps + 1 - k) * reach);
+  }
+  keep_off_surfaces(seeds, shape, spacing);
+  return seeds;
+}
+
+template Seeds<2> relaxed_seeds(const SpecimenShape<2> &, double, int, double, int,
+                                const Vector<2> &, const Vector<2> &);
+template Seeds<3> relaxed_seeds(const SpecimenShape<3> &, double, int, double, int,
+                                const Vector<3> &, const Vector<3> &);
+} // namespace ligament::packings

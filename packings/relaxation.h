@@ -1,0 +1,19 @@
+// Lloyd's relaxation of seeds: each moves to the centroid of its cell.
+#pragma once
+
+#include "packings/seeds.h"
+
+namespace ligament::packings
+{
+/// Cells of seeds are cut from a cube of this half width, in units of the spacing.
+inline constexpr double start_half_width = 6;
+
+/// Seeds for a zone [lower, upper] of the specimen, drawn and relaxed so that in the zone and one
+/// cell around it they are those of the whole specimen; none is nearer than 0.3 d (small ones: 0.3
+/// of their size) to a surface, as far as corners allow. Those that corners leave nearer than 0.25
+/// of it are removed.
+template <int dim>
+Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
+                         double size_ratio, int sweeps, const Vector<dim> &lower,
+                         const Vector<dim> &upper);
+} // namespace ligament::packings

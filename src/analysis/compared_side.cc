@@ -1,0 +1,180 @@
+#include "src/analysis/compared_side.h"
+
+#include "core/check.h"
+#include "core/parameters/spelling.h"
+#include "src/analysis/curve.h"
+#include "src/output/history.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+/// What a curve can be compared by.
+constexpr const char *known_columns[] = {"time",   "load",   "displacement",
+                                         "stress", "strain", "external_work"};
+
+std::string name_of(const std::string &path)
+{
+  auto normal = std::filesystem::path(path).lexically_normal();
+  if (!normal.has_filename())
+    normal = normal.parent_path();
+  std::string name = normal.extension() == ".csv" ? normal.stem() : normal.filename();
+  for (char &c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.')
+      c = '_';
+  return name;
+}
+
+} // namespace
+
+ComparedSide read_run(const std::string &path)
+{
+  ComparedSide side{name_of(path), RunFolder{path}, {}, {}};
+  core::require(side.folder->holds_a_run(),
+                path + ": not the output folder of a run (no run.json in it)");
+  side.record = read_run_record(side.folder->record());
+  side.curve = read_history(*side.folder, *side.record);
+  return side;
+}
+
+ComparedSide read_reference(const std::string &path)
+{
+  if (std::filesystem::is_directory(path))
+    return read_run(path);
+  core::require(std::filesystem::is_regular_file(path),
+                path + ": neither the output folder of a run nor a CSV file");
+  ComparedSide side{name_of(path), {}, {}, read_csv(path)};
+  core::require(unknown_columns(side).size() < side.curve.columns().size(),
+                path + ": none of its columns is one that compare knows: " +
+                    core::listed({std::begin(known_columns), std::end(known_columns)}, "and"));
+  return side;
+}
+
+std::vector<std::string> unknown_columns(const ComparedSide &side)
+{
+  std::vector<std::string> unknown;
+  for (const Column &column : side.curve.columns())
+    if (std::find(std::begin(known_columns), std::end(known_columns), column.name) ==
+        std::end(known_columns))
+      unknown.push_back(column.name);
+  return unknown;
+}
+
+std::optional<std::vector<double>> ComparedSide::values(const char *column, const char *unit) const
+{
+  if (!curve.has(column))
+    return {};
+  auto numbers = curve.column(column, unit);
+  const bool known =
+      std::any_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
+  return known ? std::optional(std::move(numbers)) : std::nullopt;
+}
+
+std::optional<std::size_t> ComparedSide::largest_row(const std::vector<double> &load) const
+{
+  const auto time = values("time", "s");
+  if (!record || !record->largest_time || !time)
+    return peak_index(load);
+  const double at = *record->largest_time;
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < time->size(); ++i)
+    if (std::abs((*time)[i] - at) < std::abs((*time)[row] - at))
+      row = i;
+  return row;
+}
+
+std::optional<TimeSeries> ComparedSide::series(const std::vector<const char *> &columns,
+                                               const char *unit) const
+{
+  const auto time = values("time", "s");
+  std::vector<std::vector<double>> all;
+  for (const char *column : columns)
+    if (const auto numbers = values(column, unit))
+      all.push_back(*numbers);
+  if (!time || all.size() != columns.size())
+    return {};
+  TimeSeries result;
+  for (std::size_t i = 0; i < time->size(); ++i) {
+    double sum = 0;
+    for (const auto &numbers : all)
+      sum += numbers[i];
+    if (std::isfinite((*time)[i]) && std::isfinite(sum)) {
+      result.time.push_back((*time)[i]);
+      result.value.push_back(sum);
+    }
+  }
+  return result;
+}
+
+bool has(const ComparedSide &side, const Measure &m)
+{
+  return side.values(m.x, m.x_unit) && side.values(m.y, m.y_unit);
+}
+
+std::optional<double> stiffness(const ComparedSide &side, const Measure &m)
+{
+  if (!has(side, m))
+    return {};
+  auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
+  const auto row = side.largest_row(y);
+  return row ? fit_stiffness(x, y, *row) : std::nullopt;
+}
+
+std::optional<double> largest(const ComparedSide &side, const Measure &m)
+{
+  const bool load = std::string(m.y) == "load";
+  if (side.record && (load ? side.record->largest_load : side.record->largest_stress))
+    return load ? side.record->largest_load : side.record->largest_stress;
+  const auto values = side.values(m.y, m.y_unit);
+  const auto index = values ? side.largest_row(*values) : std::nullopt;
+  return index ? std::optional((*values)[*index]) : std::nullopt;
+}
+
+std::optional<double> peak(const ComparedSide &side, const Measure &m)
+{
+  return side.record && !side.record->peak_load ? std::nullopt : largest(side, m);
+}
+
+std::optional<double> work_at_largest(const ComparedSide &side)
+{
+  const auto load = side.values("load", "N");
+  const auto index = load ? side.largest_row(*load) : std::nullopt;
+  if (!index)
+    return {};
+  if (const auto work = side.values("external_work", "J"))
+    return std::isfinite((*work)[*index]) ? std::optional((*work)[*index]) : std::nullopt;
+  const auto displacement = side.values("displacement", "m");
+  if (!displacement)
+    return {};
+  double area = 0;
+  for (std::size_t i = 1; i <= *index; ++i)
+    area += 0.5 * ((*load)[i] + (*load)[i - 1]) * ((*displacement)[i] - (*displacement)[i - 1]);
+  return area;
+}
+
+std::optional<double> onset_time(const ComparedSide &side)
+{
+  if (side.record && !side.record->peak_load)
+    return {};
+  const auto time = side.values("time", "s"), load = side.values("load", "N"),
+             discrete = side.values("potential_discrete", "J"),
+             far = side.values("potential_far", "J"), blended = side.values("blended", "J");
+  if (!time || !load || !discrete || !far || !blended)
+    return {};
+  const auto peak = side.largest_row(*load);
+  if (!peak)
+    return {};
+  std::size_t onset = 0;
+  const auto stored = [&](std::size_t i) { return (*discrete)[i] + (*far)[i] + (*blended)[i]; };
+  for (std::size_t i = 1; i <= *peak; ++i)
+    if (stored(i) > stored(onset))
+      onset = i;
+  return (*time)[onset];
+}
+
+} // namespace ligament::program

@@ -1,0 +1,90 @@
+#include "src/drawing/run_pictures.h"
+
+#include "core/check.h"
+#include "src/output/broken_bonds.h"
+#include "src/output/format.h"
+#include "src/output/vtk_reader.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+/// "Stress yy near the peak load, 2.98 ms".
+std::string caption(const ShownField &field, const BodyState &state)
+{
+  std::string text =
+      fmt::format("{} {}, {}", field.label(), state.caption, quantity(state.time, "s"));
+  text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+} // namespace
+
+std::vector<PictureEntry> write_pictures(const RunFolder &folder,
+                                         const std::vector<const BodyState *> &states,
+                                         const std::vector<std::string> &fields, int dimension,
+                                         double magnification, std::vector<std::string> *missing)
+{
+  std::vector<PictureEntry> entries;
+  FieldView view;
+  view.magnify = magnification;
+  for (const std::string &word : fields) {
+    view.field = shown_field(word, dimension);
+    auto pictures = pictures_of(states, dimension, view);
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      const std::string file = fmt::format("pictures/{}_{}.png", states[s]->name, word);
+      pictures[s].title = caption(view.field, *states[s]);
+      try {
+        write_picture(folder.path + "/" + file, pictures[s]);
+        entries.push_back({file, pictures[s].title});
+      } catch (const core::EnvironmentError &error) {
+        if (!missing)
+          throw;
+        missing->push_back(error.what());
+      }
+    }
+  }
+  return entries;
+}
+
+std::vector<PictureEntry> write_pictures(const RunFolder &folder, const RunRecord &record,
+                                         const std::vector<std::string> &fields,
+                                         const RunFolder &target)
+{
+  for (const std::string &word : fields)
+    shown_field(word, record.dimension); // before anything is read
+  core::require(!record.states.empty(), folder.path + ": the run has kept no fields to draw");
+  std::vector<BodyState> states;
+  for (const StateEntry &entry : record.states)
+    states.push_back(read_state(folder, entry));
+  std::vector<const BodyState *> all;
+  for (const BodyState &state : states)
+    all.push_back(&state);
+  make_folder(target.pictures());
+  return write_pictures(target, all, fields, record.dimension, record.magnification);
+}
+
+BodyState read_state(const RunFolder &folder, const StateEntry &entry)
+{
+  BodyState state;
+  state.name = entry.name;
+  state.caption = entry.caption;
+  state.time = entry.time;
+  if (!entry.particles.empty())
+    state.particles = read_particles_vtp(folder.path + "/" + entry.particles);
+  if (!entry.cells.empty())
+    state.cells = read_cells_vtu(folder.path + "/" + entry.cells);
+  if (std::filesystem::exists(folder.broken_bonds()))
+    for (const BrokenBond &bond : read_broken_bonds(folder.broken_bonds()))
+      if (bond.time <= entry.time)
+        state.bonds.push_back(bond);
+  if (std::filesystem::exists(folder.cut_faces()))
+    state.cuts = read_broken_bonds(folder.cut_faces());
+  return state;
+}
+} // namespace ligament::program

@@ -1,0 +1,273 @@
+// Compare: known figures from runs that differ in known ways.
+#include "src/analysis/compare.h"
+
+#include "core/check.h"
+#include "src/analysis/crack_path.h"
+#include "tests/unit/output/synthetic_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace ligament;
+using namespace ligament::program;
+using ligament::tests::SyntheticRun;
+
+namespace
+{
+// A few operations on doubles.
+constexpr double rounding = 1e-12;
+
+TEST(Compare, FindsTheFactorsBetweenTwoRuns)
+{
+  SyntheticRun run, reference;
+  run.peak_stress = 1.03 * reference.peak_stress;
+  run.stiffness = 0.98 * reference.stiffness;
+  run.wall_seconds = reference.wall_seconds / 8;
+  run.particles = reference.particles / 10;
+  run.crack_y = 1.5 * run.spacing;
+  run.displacement_factor = 1.25;
+  run.first_id = 77; // numbers differ between a zone and the whole specimen
+  run.write("a");
+  reference.write("b");
+  const CompareResult r = compare("a", "b/");
+
+  EXPECT_NEAR(*r.peak_load_error, 0.03, rounding);
+  EXPECT_NEAR(*r.stiffness_error, -0.02, rounding);
+  EXPECT_NEAR(*r.energy_error, run.work() / reference.work() - 1, rounding);
+  EXPECT_NEAR(*r.time_ratio, 8, rounding);
+  EXPECT_NEAR(*r.particle_ratio, 10, rounding);
+  // The same faces, shifted by 1.5 d: every distance is 1.5, in both directions.
+  for (const auto &distance : {r.crack_distance_mean, r.crack_distance_max,
+                               r.crack_distance_mean_to_onset, r.crack_distance_max_to_onset,
+                               r.crack_distance_mean_after_onset, r.crack_distance_max_after_onset})
+    EXPECT_NEAR(distance.value(), 1.5, rounding);
+  EXPECT_EQ(r.matched_particles, 10);
+  EXPECT_NEAR(*r.displacement_error, 0.25, rounding);
+  EXPECT_NEAR(*r.displacement_error_max, 0.25, rounding);
+  EXPECT_NEAR(*r.velocity_error, 0, rounding);
+  EXPECT_TRUE(r.notes.empty()) << table(r);
+  EXPECT_NE(r.plot.find("<svg"), std::string::npos);
+  EXPECT_EQ(r.file_name, "compare_b");
+}
+
+// The run breaks first, and its last state is too near to its onset.
+TEST(Compare, FieldsAreThoseOfTheSameTimeBeforeTheOnset)
+{
+  SyntheticRun run, reference;
+  run.displacement_factor = 1.25;
+  run.peak_time = 1e-3;
+  reference.peak_time = 1.02e-3;
+  const double onset = run.onset * run.peak_time;
+  run.snapshot_times = {0.995 * onset, 0.975 * onset, 0.955 * onset};
+  reference.snapshot_times = {1.015 * onset, 0.995 * onset, 0.975 * onset};
+  run.write("first");
+  reference.write("second");
+  const CompareResult same = compare("first", "second");
+  EXPECT_NEAR(same.displacement_error.value(), 0.25, rounding);
+  EXPECT_NE(table(same).find("926 µs"), std::string::npos) << table(same);
+
+  // 5 per mille apart: no error is better than a wrong one.
+  run.snapshot_times = {0.97 * onset};
+  run.write("other");
+  const CompareResult other = compare("other", "second");
+  EXPECT_FALSE(other.displacement_error);
+  EXPECT_FALSE(other.notes.empty());
+}
+
+// The run's crack is longer by n faces: only its own direction sees 1, 2, ... n diameters.
+TEST(Compare, LongerCrackCountsInOneDirection)
+{
+  SyntheticRun run, reference;
+  run.n_broken_after = 5;
+  reference.n_broken_after = 2;
+  run.write("longer");
+  reference.write("shorter");
+  const CompareResult r = compare("longer", "shorter");
+  const int n_run = run.n_broken_before + run.n_broken_after;
+  EXPECT_NEAR(*r.crack_distance_max, 3, rounding);
+  EXPECT_NEAR(*r.crack_distance_mean, 0.5 * (1. + 2. + 3.) / n_run, rounding);
+  EXPECT_NEAR(*r.crack_distance_max_to_onset, 0, rounding);
+  EXPECT_NEAR(*r.crack_distance_mean_after_onset, 0.5 * (1. + 2. + 3.) / run.n_broken_after,
+              rounding);
+}
+
+TEST(Compare, WhatCannotBeComputedIsNull)
+{
+  SyntheticRun run, intact;
+  intact.n_broken_before = intact.n_broken_after = 0;
+  intact.snapshot_times = {};
+  run.write("broken");
+  intact.write("intact");
+  const auto json = to_json(compare("broken", "intact"));
+  for (const char *name :
+       {"crack_distance_mean", "crack_distance_max", "displacement_error", "velocity_error"})
+    EXPECT_TRUE(json.at(name).is_null()) << name;
+  EXPECT_TRUE(json.at("peak_load_error").is_null()) << "nothing broke in one of them";
+  EXPECT_TRUE(json.at("largest_load_error").is_number());
+  EXPECT_FALSE(json.at("notes").empty());
+}
+
+// Waves, or loads that nothing has broken under: fields at one time, histories, no peak.
+TEST(Compare, RunsInWhichNothingBroke)
+{
+  SyntheticRun run, reference;
+  for (SyntheticRun *r : {&run, &reference})
+    r->n_broken_before = r->n_broken_after = 0;
+  run.displacement_factor = 1.25;
+  run.peak_stress = 1.1 * reference.peak_stress;
+  run.peak_time = 1.1 * reference.peak_time; // the same load at the same time, for longer
+  run.noise = 0.02;
+  run.write("wave");
+  reference.write("twin");
+  const CompareResult r = compare("wave", "twin");
+  EXPECT_FALSE(r.peak_load_error);
+  EXPECT_NEAR(*r.largest_load_error, 0.1, rounding);
+  EXPECT_EQ(table(r).find("peak load"), std::string::npos) << table(r);
+  EXPECT_NEAR(*r.displacement_error, 0.25, rounding);
+  EXPECT_NEAR(*r.kinetic_share, 2e-3, rounding);
+  // The load of the reference falls after its last row of loading, at 1.01 of its peak's time, when
+  // that of the run is at 1.01/1.1 of its own: up to there the runs differ.
+  EXPECT_NEAR(*r.compared_until, 1.1 * reference.peak_time, rounding);
+  EXPECT_NEAR(*r.load_history.largest, 1.1, 0.01);
+  // The work of 1.1 times the time at the same rate is that times squared; it rests at the end.
+  EXPECT_NEAR(*r.energy_error, 1.1 * 1.1 - 1, rounding);
+}
+
+TEST(Compare, HistoriesAreComparedAtEqualTimes)
+{
+  SyntheticRun run, reference;
+  for (SyntheticRun *r : {&run, &reference})
+    r->n_broken_before = r->n_broken_after = 0;
+  run.noise = 0.02;
+  run.trusted_until = 1e-4 + 1e-12; // just before the fall
+  run.write("noisy");
+  reference.write("plain");
+  const CompareResult r = compare("noisy", "plain");
+  // sin against a ramp over a whole number of periods: sqrt((1/2)/(1/3)); trapezoids of 100 rows.
+  EXPECT_NEAR(*r.load_history.mean / (0.02 * std::sqrt(1.5)), 1, 1e-3);
+  EXPECT_NEAR(*r.load_history.largest, 0.02, 1e-4);
+  EXPECT_NEAR(*r.displacement_history.mean, 0, rounding);
+  EXPECT_NEAR(*r.elastic_history.mean, 0, rounding);
+}
+
+TEST(Compare, RunsThatAreNotCompleteAreNamed)
+{
+  SyntheticRun run, reference;
+  reference.write("whole");
+  run.write("also_whole");
+  EXPECT_TRUE(compare("also_whole", "whole").complete);
+  for (const auto &[status, words] :
+       std::vector<std::pair<std::string, std::string>>{{"stopped", "was stopped by its guard"},
+                                                        {"interrupted", "was interrupted"},
+                                                        {"failed", "failed"},
+                                                        {"running", "is not finished"}})
+  {
+    run.status = status;
+    run.write("part");
+    for (const auto &r : {compare("part", "whole"), compare("whole", "part")}) {
+      EXPECT_FALSE(r.complete);
+      EXPECT_EQ(to_json(r).at("complete"), false);
+      EXPECT_NE(table(r).find(words + ": why it ended"), std::string::npos) << table(r);
+    }
+  }
+}
+
+// Three faces break before the run leaves its range, four later ones are not compared.
+TEST(Compare, WhatIsNotTrustedDoesNotCount)
+{
+  SyntheticRun run, reference;
+  reference.crack_y = 2 * reference.spacing;
+  reference.n_broken_after = 0;
+  run.trusted_until = run.onset * run.peak_time;
+  run.write("left");
+  reference.write("stayed");
+  const CompareResult r = compare("left", "stayed");
+  EXPECT_NEAR(*r.crack_distance_max, 2, rounding); // 4 along x with the later ones
+  EXPECT_LE(*r.compared_until, *run.trusted_until);
+}
+
+TEST(Compare, CurveWithUnitsAsReference)
+{
+  SyntheticRun run;
+  run.write("run");
+  // 1.25 times the peak at the same stiffness, in other units and without anything else.
+  std::string text = "displacement;load\nmm;kN\n";
+  for (int i = 0; i <= 50; ++i)
+    text += std::to_string(1e3 * 1.25 * i / 50. * run.peak_strain() * run.length) + ";" +
+            std::to_string(1e-3 * 1.25 * i / 50. * run.peak_load()) + "\n";
+  core::write_file("paper.csv", text);
+  const CompareResult r = compare("run", "paper.csv");
+  // std::to_string keeps 6 decimals of about 3e-3 mm and 100 kN.
+  const double cut = 0.5e-6 / (1e3 * 1.25 / 50 * run.peak_strain() * run.length);
+  EXPECT_NEAR(*r.peak_load_error, 1 / 1.25 - 1, cut);
+  EXPECT_NEAR(*r.stiffness_error, 0, cut);
+  EXPECT_NEAR(*r.energy_error, 1 / (1.25 * 1.25) - 1, 2 * cut);
+  EXPECT_FALSE(r.time_ratio);
+  EXPECT_FALSE(r.particle_ratio);
+  EXPECT_FALSE(r.crack_distance_max);
+  EXPECT_EQ(r.file_name, "compare_paper");
+}
+
+TEST(Compare, RefusesWhatIsNeither)
+{
+  SyntheticRun().write("good");
+  EXPECT_THROW(compare("good", "nothing_there"), core::InputError);
+  EXPECT_THROW(compare("nothing_there", "good"), core::InputError);
+  std::filesystem::create_directories("empty_folder");
+  EXPECT_THROW(compare("good", "empty_folder"), core::InputError);
+}
+
+TEST(CrackPath, NearestDistancesAgreeWithTheSlowSearch)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<BrokenBond> a(40), b(60);
+  for (auto *bonds : {&a, &b})
+    for (auto &bond : *bonds)
+      for (double &x : bond.centroid)
+        x = uniform(random);
+  const auto distances = nearest_distances(a, b);
+  ASSERT_EQ(distances.size(), a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double best = HUGE_VAL;
+    for (const auto &other : b)
+      best = std::min(best, std::hypot(a[i].centroid[0] - other.centroid[0],
+                                       a[i].centroid[1] - other.centroid[1],
+                                       a[i].centroid[2] - other.centroid[2]));
+    EXPECT_EQ(distances[i], best);
+  }
+  EXPECT_TRUE(nearest_distances(a, {}).empty());
+}
+
+TEST(Compare, NamesTheColumnsOfACurveThatItDoesNotKnow)
+{
+  SyntheticRun().write("a");
+  core::write_file("half.csv",
+                   "\xEF\xBB\xBFstrain,stress,temperature\n1,MPa,K\n0,0,1\n1e-5,0.7,1\n");
+  const CompareResult r = compare("a", "half.csv");
+  EXPECT_NE(table(r).find("does not know: \"temperature\""), std::string::npos) << table(r);
+  EXPECT_TRUE(r.peak_load_error) << "the byte order mark belongs to no name";
+  core::write_file("alien.csv", "mass,temperature\nkg,K\n0,1\n");
+  try {
+    compare("a", "alien.csv");
+    ADD_FAILURE() << "was read";
+  } catch (const core::InputError &error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("alien.csv: none of its columns"), std::string::npos) << text;
+    EXPECT_NE(text.find("\"stress\""), std::string::npos) << text;
+  }
+}
+
+TEST(Compare, WritesWhereItIsTold)
+{
+  SyntheticRun().write("a");
+  SyntheticRun().write("b");
+  CompareResult r = compare("a", "b");
+  EXPECT_FALSE(std::filesystem::exists("a/compare_b.svg"));
+  write_comparison(r, "elsewhere/deep");
+  EXPECT_TRUE(std::filesystem::exists("elsewhere/deep/compare_b.svg"));
+  EXPECT_EQ(r.html_file, "elsewhere/deep/compare_b.html");
+}
+} // namespace

@@ -1,0 +1,86 @@
+// The report: one well-formed page with everything that the run knows.
+#include "src/analysis/report.h"
+
+#include "core/check.h"
+#include "src/analysis/compare.h"
+#include "src/analysis/verdict.h"
+#include "src/drawing/drawing.h"
+#include "src/output/format.h"
+#include "src/output/vtk.h"
+#include "tests/unit/output/synthetic_run.h"
+#include "tests/unit/output/xml.h"
+
+#include <gtest/gtest.h>
+
+using namespace ligament;
+using namespace ligament::program;
+using ligament::tests::SyntheticRun;
+
+namespace
+{
+TEST(Report, HoldsEverythingInOneFile)
+{
+  const SyntheticRun run;
+  const RunFolder folder = run.write("reported");
+  RunRecord record = read_run_record(folder.record());
+  record.timing = {{"discrete forces", 3, 10}, {"rest", 1, 0}};
+  record.skipped = {{"contact search", "nothing <is> broken"}};
+  record.pictures = {{"pictures/peak.png", "At the peak"}, {"pictures/gone.png", "Lost"}};
+  write_run_record(folder.record(), record);
+  const std::string png = Drawing(8, 8, ImageFormat::png).file();
+  core::write_file(folder.pictures() + "/peak.png", png);
+  core::write_file(folder.resolved_scene(), "{\"title\": \"a & b\"}");
+  SyntheticRun().write("report_reference");
+  CompareResult comparison = compare("reported", "report_reference");
+  write_comparison(comparison, "reported");
+
+  const std::string path = write_report("reported");
+  EXPECT_EQ(path, folder.report());
+  const std::string text = core::read_file(path);
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  for (const std::string &part :
+       {escape_xml(record.title), escape_xml(verdict(record)), escape_xml(headline(record)),
+        std::string("At the peak"), "data:image/png;base64," + base64(png.data(), png.size()),
+        std::string("external work"), std::string("discrete forces"),
+        std::string("nothing &lt;is&gt; broken"), std::string("a &amp; b"), std::string("1.2.3"),
+        std::string("reported against report_reference")})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_EQ(text.find("<script"), std::string::npos);
+  EXPECT_EQ(text.find("Lost"), std::string::npos);
+}
+
+// Another field of a run that has ended: its pictures replace those of the run.
+TEST(Report, DrawsOtherFieldsFromTheKeptStates)
+{
+  const RunFolder folder = SyntheticRun().write("redrawn");
+  BodyState state;
+  state.name = "peak";
+  state.particles.reference = {0, 0, 0, 1, 0, 0};
+  state.particles.fields = {make_field("displacement", {0, 0, 0, 1e-3, 0, 0}),
+                            make_field("velocity", {3, 4, 0, 0, 0, 0}),
+                            make_field("radius", {0.5, 0.5}), make_field("global_id", {0, 1})};
+  FieldSeries(folder, 2).write(state);
+  RunRecord record = read_run_record(folder.record());
+  record.pictures = {{"pictures/peak.png", "of the run"}};
+  EXPECT_THROW(write_report("redrawn", {"velocity"}), core::InputError);
+  record.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
+  record.magnification = 50;
+  write_run_record(folder.record(), record);
+  const std::string text = core::read_file(write_report("redrawn", {"velocity", "velocity_x"}));
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  EXPECT_NE(text.find("Velocity near the peak load, 1.00 ms"), std::string::npos);
+  EXPECT_NE(text.find("Velocity x near the peak load, 1.00 ms"), std::string::npos);
+  EXPECT_EQ(text.find("of the run<"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.pictures() + "/peak_velocity.png"));
+  EXPECT_THROW(write_report("redrawn", {"veloctiy"}), core::InputError);
+}
+
+TEST(Report, NeedsNoMoreThanTheRecord)
+{
+  const RunFolder folder{"bare"};
+  folder.create();
+  write_run_record(folder.record(), {});
+  EXPECT_NO_THROW(tests::parse_xml(core::read_file(write_report("bare"))));
+  EXPECT_THROW(write_report("no_run_here"), core::InputError);
+}
+} // namespace
