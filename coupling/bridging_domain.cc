@@ -395,6 +395,14 @@ CoupledEnergy BridgingDomain<dim>::energy(const Bodies<dim> &bodies, const StepT
   return e;
 }
 
+template <int dim>
+std::vector<core::SkippedPart> BridgingDomain<dim>::skipped_parts() const
+{
+  if (parameters_.fine_damper == 0)
+    return {{"fluctuation damper", "/coupling/fine_damper is 0"}};
+  return {};
+}
+
 template class BridgingDomain<2>;
 template class BridgingDomain<3>;
 } // namespace ligament::coupling

@@ -40,6 +40,8 @@ public:
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 
   void take_velocities(Bodies<dim> &bodies) override;
+  bool can_turn() const override { return false; }
+  std::vector<core::SkippedPart> skipped_parts() const override;
   const Overlap<dim> *overlap() const override { return &overlap_; }
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
 
