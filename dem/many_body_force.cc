@@ -348,6 +348,21 @@ particles::ElasticConstants<dim> ManyBodyForce<dim>::elastic_constants() const
   return materials_.base().elastic_constants<dim>();
 }
 
+template <int dim>
+std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
+{
+  std::vector<core::SkippedPart> skipped;
+  if (materials_.has_no_dilatation())
+    skipped.push_back({"dilatation sweep", "Poisson's ratio is 0"});
+  if (!can_break())
+    skipped.push_back({"bond checks", "no fracture criterion"});
+  skipped.push_back({"stress tensors in the loop", "the criterion reads tractions; tensors are "
+                                                   "computed for output only"});
+  if (contacts_.all().empty())
+    skipped.push_back({"contacts until a bond breaks", "no initial crack"});
+  return skipped;
+}
+
 template class ManyBodyForce<2>;
 template class ManyBodyForce<3>;
 } // namespace ligament::dem

@@ -25,14 +25,14 @@ public:
   const std::string &history() const { return history_; }
 
 private:
-  coupling::Regime needed(const CoupledBody<dim> &body) const;
+  coupling::Regime needed() const;
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
-  bool weighted_; // an energy-weighted coupler, which is linear
+  bool can_turn_; // else the coupler is linear
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
-  typename coupling::RigidFrames<dim>::Motion near_; // at the last look
+  coupling::NearMotion near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;
   bool warned_ = false;
   std::string history_;
