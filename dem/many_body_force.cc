@@ -1,5 +1,8 @@
 #include "dem/many_body_force.h"
 
+#include "dem/bond_law.h"
+#include "dem/laws/series_bond.h"
+
 #include <algorithm>
 
 namespace ligament::dem
@@ -193,9 +196,8 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
                                            const std::vector<double> &pressure) const
 {
   if (b.joins_materials)
-    return b.area * Interfaces<dim>::traction(b, m, pressure);
-  return b.area / b.distance *
-         (2 * b.weight * b.shear_i * m.elastic + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+    return b.area * SeriesBond<dim>(b, m).traction(pressure[b.i], pressure[b.j]);
+  return law_of(b).force(m.elastic, pressure[b.i], m.a_i, pressure[b.j], m.a_j);
 }
 
 template <int dim>
