@@ -42,7 +42,7 @@ ScalarMatrix<dim> loss_matrix(const Overlap<dim> &overlap,
 
 template <int dim>
 FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                            const std::function<double(double)> &damping, const std::string &solver)
+                            const std::function<double(double)> &damping, Solver solver)
     : carrier_(
           overlap,
           [&](const typename Overlap<dim>::Member &m) {

@@ -32,7 +32,7 @@ public:
                "choose the same, and a \"strength\" that is never reached where nothing breaks");
     poissons_ratio(inclusion.material, key + "/poissons_ratio");
     if (inclusion.balls.empty() && inclusion.boxes.empty() && f_.sound({key}) &&
-        scene_.zone.packing != "file")
+        scene_.zone.packing != PackingKind::file)
       f_.error(key, fmt::format("{} has neither \"balls\" nor \"boxes\"", key),
                "no particle would be of this material", "add one of them, or remove the inclusion");
   }

@@ -21,15 +21,14 @@ using core::require;
 template <int dim>
 std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
 {
-  const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
   std::vector<core::BoundaryLoad<dim>> loads;
   for (const auto &parameters : scene.loads) {
     core::BoundaryLoad<dim> load;
     using Kind = typename core::BoundaryLoad<dim>::Kind;
-    load.boundary = int(std::find(names.begin(), names.end(), parameters.boundary) - names.begin());
-    load.kind = parameters.kind == "velocity"       ? Kind::velocity
-                : parameters.kind == "displacement" ? Kind::displacement
-                                                    : Kind::traction;
+    load.boundary = parameters.boundary;
+    load.kind = parameters.kind == LoadKind::velocity       ? Kind::velocity
+                : parameters.kind == LoadKind::displacement ? Kind::displacement
+                                                            : Kind::traction;
     for (int c = 0; c < dim; ++c)
       load.value[c] = parameters.value[c];
     load.ramp.duration = parameters.ramp;

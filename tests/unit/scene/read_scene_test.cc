@@ -57,7 +57,7 @@ TEST(ReadScene, CoupledPlate)
   EXPECT_FALSE(s.loads[1].value[0]);
   EXPECT_EQ(s.loads[1].value[1].value(), -0.01);
   EXPECT_EQ(s.loads[1].ramp, 0.0002);
-  EXPECT_EQ(s.time.stop_when, "specimen_broken");
+  EXPECT_EQ(s.time.stop_when, StopWhen::specimen_broken);
   EXPECT_EQ(s.output.field_interval, 1e-4);
 }
 
@@ -65,7 +65,7 @@ TEST(ReadScene, CoupledBarIn3d)
 {
   const Scene s = good(bar);
   EXPECT_EQ(s.dimension, 3);
-  EXPECT_EQ(s.zone.packing, "fcc");
+  EXPECT_EQ(s.zone.packing, PackingKind::fcc);
   EXPECT_DOUBLE_EQ(s.zone.orientation[2], std::acos(-1.0) / 4);
   EXPECT_EQ(s.loads[1].kind, "displacement");
   EXPECT_EQ(s.loads[1].value[2].value(), 0);
