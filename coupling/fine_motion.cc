@@ -55,7 +55,7 @@ FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Partic
   make_lanes(overlap, particles, damping);
   motion_.resize(dim * lanes_.slots.size());
   for (const auto &m : overlap.members)
-    if (m.pad) {
+    if (m.pad && particles.turns) { // what pads have of their own is how they turn
       Pad pad = {m.particle, m.nodes, m.gradient, {}};
       for (int a = 0; a < nc; ++a)
         pad.spin[a] = Overlap<dim>::spin_block(m, a);
