@@ -26,8 +26,8 @@ public:
         inclusion.material.fracture.criterion != scene_.material.fracture.criterion)
       f_.error(f_.given(criterion) ? criterion : key,
                fmt::format("\"criterion\" of {} is \"{}\", that of /material is \"{}\"", key,
-                           inclusion.material.fracture.criterion,
-                           scene_.material.fracture.criterion),
+                           word_of(inclusion.material.fracture.criterion),
+                           word_of(scene_.material.fracture.criterion)),
                "one criterion serves the whole body",
                "choose the same, and a \"strength\" that is never reached where nothing breaks");
     poissons_ratio(inclusion.material, key + "/poissons_ratio");

@@ -160,7 +160,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     const std::string key = "/loads/" + std::to_string(k);
     if (!f.sound({key}))
       continue;
-    if (scene.dimension == 2 && (load.boundary >= 2 * scene.dimension)) {
+    if (load.boundary >= 2 * scene.dimension) {
       f.error(key + "/boundary",
               fmt::format("\"boundary\" in {} is \"{}\", a side that 2D scenes do not have", key,
                           side_names[load.boundary]),
