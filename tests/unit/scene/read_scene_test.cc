@@ -53,7 +53,7 @@ TEST(ReadScene, CoupledPlate)
   EXPECT_EQ(s.far_field.value().levels, 2);
   EXPECT_EQ(s.coupling.step_ratio, 2);
   ASSERT_EQ(s.loads.size(), 2u);
-  EXPECT_EQ(s.loads[1].kind, "velocity");
+  EXPECT_EQ(s.loads[1].kind, LoadKind::velocity);
   EXPECT_FALSE(s.loads[1].value[0]);
   EXPECT_EQ(s.loads[1].value[1].value(), -0.01);
   EXPECT_EQ(s.loads[1].ramp, 0.0002);
@@ -67,7 +67,7 @@ TEST(ReadScene, CoupledBarIn3d)
   EXPECT_EQ(s.dimension, 3);
   EXPECT_EQ(s.zone.packing, PackingKind::fcc);
   EXPECT_DOUBLE_EQ(s.zone.orientation[2], std::acos(-1.0) / 4);
-  EXPECT_EQ(s.loads[1].kind, "displacement");
+  EXPECT_EQ(s.loads[1].kind, LoadKind::displacement);
   EXPECT_EQ(s.loads[1].value[2].value(), 0);
   EXPECT_EQ(s.coupling.gap_filter, 4); // a default
   EXPECT_TRUE(std::isinf(s.output.field_interval));
