@@ -71,11 +71,11 @@ void compare_solvers(const std::string &name, const Eigen::SparseMatrix<double> 
   };
   const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(mass);
   const double plain = time_of([&](Rows &x) { x = cholesky.solve(x); });
-  for (const std::string library : {"eigen", "amesos"}) {
+  for (const auto library : {coupling::Solver::eigen, coupling::Solver::amesos}) {
     const auto solver = coupling::make_linear_solver(library);
     solver->factorise(mass);
     print(fmt::format("{}, M_c of {} nodes, solver {}; reference: SimplicialLLT of Eigen", name,
-                      mass.rows(), library),
+                      mass.rows(), coupling::solver_names[int(library)]),
           time_of([&](Rows &x) { solver->solve(x.data(), dim); }), unit, plain);
   }
   for (const double tolerance : {1e-3, 1e-12}) {

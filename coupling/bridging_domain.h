@@ -4,22 +4,12 @@
 
 #include "coupling/algebra/block_matrix.h"
 #include "coupling/coupler.h"
+#include "coupling/coupler_parameters.h"
 #include "coupling/operators/fluctuation_projector.h"
 #include "coupling/operators/velocity_constraint.h"
 
 namespace ligament::coupling
 {
-struct BridgingDomainParameters
-{
-  Scheme scheme = Scheme::acceleration;
-  double fine_damper = 8; // c_f
-  DamperForm damper_form = DamperForm::symmetrised;
-  int multiplier_cells = 1;
-  /// Normal strains (xx, yy, zz) at which constant forces cancel the ghost forces; 0: none.
-  std::array<double, 3> reference_strain = {};
-  std::string solver = "eigen";
-};
-
 /// Energy-weighted bridging domain (theory.md section 3.9). The zone's particles carry their
 /// weighted masses and inertias from now on, and its force the weighted energy: kinetic and
 /// potential energy of the halves are those of the blended body.

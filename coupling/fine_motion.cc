@@ -42,7 +42,7 @@ ScalarMatrix<dim> loss_matrix(const Overlap<dim> &overlap,
 
 template <int dim>
 FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                            const std::function<double(double)> &damping, const std::string &solver)
+                            const std::function<double(double)> &damping, Solver solver)
     : carrier_(
           overlap,
           [&](const typename Overlap<dim>::Member &m) {
@@ -55,7 +55,7 @@ FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Partic
   make_lanes(overlap, particles, damping);
   motion_.resize(dim * lanes_.slots.size());
   for (const auto &m : overlap.members)
-    if (m.pad) {
+    if (m.pad && particles.turns) { // what pads have of their own is how they turn
       Pad pad = {m.particle, m.nodes, m.gradient, {}};
       for (int a = 0; a < nc; ++a)
         pad.spin[a] = Overlap<dim>::spin_block(m, a);

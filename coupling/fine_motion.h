@@ -17,7 +17,7 @@ class FineMotion
 public:
   /// damping: 1 - exp(-c_f dt) for a member's position s in [0, 1]. Starts with w = 0.
   FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-             const std::function<double(double)> &damping, const std::string &solver);
+             const std::function<double(double)> &damping, Solver solver);
 
   int n_pads() const { return int(pads_.size()); }
 

@@ -243,7 +243,7 @@ double FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone
     const int i = member.particle;
     for (int c = 0; c < dim; ++c)
       sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
-    for (int c = 0; c < n_spins<dim> && member.pad; ++c)
+    for (int c = 0; c < n_spins<dim> && member.pad && zone.turns; ++c)
       sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
   }
   return sum / 2;

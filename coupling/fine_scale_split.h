@@ -4,23 +4,13 @@
 
 #include "coupling/algebra/scalar_matrix.h"
 #include "coupling/coupler.h"
+#include "coupling/coupler_parameters.h"
 #include "coupling/fine_motion.h"
 #include "coupling/operators/coarse_energy.h"
 #include "coupling/operators/patch_fit.h"
 
 namespace ligament::coupling
 {
-struct FineScaleSplitParameters
-{
-  int step_ratio = 1;     // m: the far field acts once per m steps
-  double fine_damper = 8; // c_f
-  double gap_filter = 4;  // c_g
-  bool patch_fit = true;
-  std::string solver = "eigen";
-  /// Factor on the particles' share of M_c; the far field's density carries it already.
-  double coarse_mass = 1;
-};
-
 /// Figures of the set-up, for the log and for verification.
 struct SplitReport
 {

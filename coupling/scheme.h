@@ -38,6 +38,15 @@ enum class WeightShape
 
 inline const std::vector<std::string> weight_names = {"linear", "cubic", "cosine", "constant"};
 
+/// Which library solves the systems of the overlap.
+enum class Solver
+{
+  eigen, // sparse Cholesky
+  amesos // Trilinos, KLU
+};
+
+inline const std::vector<std::string> solver_names = {"eigen", "amesos"};
+
 /// How the energy-weighted schemes damp the particles' motion against the mesh.
 enum class DamperForm
 {

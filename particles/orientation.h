@@ -9,10 +9,12 @@
 
 namespace ligament::particles
 {
-/// In 2D the angle nearest to the present one: angles are unwrapped.
+/// In 2D the angle nearest to the present one: angles are unwrapped. Nothing without orientations.
 template <int dim>
 void set_orientation(Particles<dim> &particles, int i, const Eigen::Matrix<double, dim, dim> &r)
 {
+  if (!particles.turns)
+    return;
   if constexpr (dim == 2) {
     // Of the present angle only the number of whole turns enters: nothing else is remembered.
     double &angle = particles.rotation[0][i];

@@ -13,6 +13,8 @@ ParticleSolver<dim>::ParticleSolver(Particles<dim> particles,
                                     std::unique_ptr<ParticleForce<dim>> force)
     : state(std::move(particles)), force(std::move(force))
 {
+  if (!this->force->has_rotations())
+    state.drop_orientations();
 }
 
 template <int dim>
@@ -72,7 +74,8 @@ void ParticleSolver<dim>::kick(double dt)
       });
   };
   kick(state.velocity, state.force, dt);
-  kick(state.spin, state.torque, dt / state.gyration);
+  if (state.turns)
+    kick(state.spin, state.torque, dt / state.gyration);
   dashpots.act(
       dt, [this](int i) { return state.inverse_mass(i); }, state.force, state.velocity);
 }
@@ -90,6 +93,8 @@ void ParticleSolver<dim>::drift(double dt)
         u[i] += dt * v[i];
     });
   }
+  if (!state.turns)
+    return;
   if constexpr (dim == 2) {
     double *__restrict angle = state.rotation[0].data();
     const double *__restrict w = state.spin[0].data();
@@ -119,7 +124,7 @@ double ParticleSolver<dim>::kinetic_energy(double dt) const
       const double v = state.velocity[c][i];
       sum += v * (state.mass[i] * v + dt * state.force[c][i]);
     }
-    for (int c = 0; c < n_spins<dim>; ++c) {
+    for (int c = 0; c < n_spins<dim> && state.turns; ++c) {
       const double w = state.spin[c][i];
       sum += w * (state.inertia(i) * w + dt * state.torque[c][i]);
     }
@@ -171,7 +176,7 @@ double ParticleSolver<dim>::damp_velocities(double factor, double dt)
   for (int c = 0; c < dim; ++c)
     twice_energy +=
         damp(state.velocity[c], state.force[c], state.mass, state.n_owned, factor, power);
-  for (int c = 0; c < n_spins<dim>; ++c)
+  for (int c = 0; c < n_spins<dim> && state.turns; ++c)
     twice_energy += state.gyration *
                     damp(state.spin[c], state.torque[c], state.mass, state.n_owned, factor, power);
   return (1 - factor) / 2 * ((1 + factor) * twice_energy + dt * power);

@@ -11,7 +11,8 @@ namespace ligament::particles
 {
 /// Owned particles first, ghosts after. Total Lagrangian: reference centres, displacements and
 /// orientations against the reference. Orientation: 2D one angle (rad, unwrapped); 3D a unit
-/// quaternion (w, x, y, z). Held particles have infinite mass.
+/// quaternion (w, x, y, z). Held particles have infinite mass. Where nothing turns them they have
+/// no orientation: rotation, spin and torque are empty.
 template <int dim>
 struct Particles
 {
@@ -19,6 +20,7 @@ struct Particles
 
   int n_owned = 0;
   int n_ghosts = 0;
+  bool turns = true; // else rotation, spin and torque are empty
 
   Components<dim> reference;        // m, centre in the reference configuration
   Components<dim> displacement;     // m
@@ -51,6 +53,9 @@ struct Particles
 
   /// n owned particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
   void resize(int n);
+
+  /// From now on they have no orientation.
+  void drop_orientations();
 };
 
 template <int dim>
@@ -63,11 +68,14 @@ void Particles<dim>::for_each_array(Visit &&visit)
   };
   components("reference", reference);
   components("displacement", displacement);
-  components("rotation", rotation);
+  if (turns)
+    components("rotation", rotation);
   components("velocity", velocity);
-  components("spin", spin);
+  if (turns)
+    components("spin", spin);
   components("force", force);
-  components("torque", torque);
+  if (turns)
+    components("torque", torque);
   visit("volume", volume);
   visit("mass", mass);
 }
@@ -77,9 +85,11 @@ void Particles<dim>::save(core::State &state, const core::Names &names) const
 {
   core::Table table(names.sorted());
   names.save(table, "displacement", displacement);
-  names.save(table, "rotation", rotation);
   names.save(table, "velocity", velocity);
-  names.save(table, "spin", spin);
+  if (turns) {
+    names.save(table, "rotation", rotation);
+    names.save(table, "spin", spin);
+  }
   state["particles"] = std::move(table);
 }
 
@@ -88,9 +98,11 @@ void Particles<dim>::load(const core::State &state, const core::Names &names)
 {
   const core::Table &table = core::table(state, "particles");
   names.load(table, "displacement", displacement);
-  names.load(table, "rotation", rotation);
   names.load(table, "velocity", velocity);
-  names.load(table, "spin", spin);
+  if (turns) {
+    names.load(table, "rotation", rotation);
+    names.load(table, "spin", spin);
+  }
 }
 
 template <int dim>
@@ -99,8 +111,17 @@ void Particles<dim>::resize(int n)
   n_owned = n;
   n_ghosts = 0;
   for_each_array([&](const char *, auto &array) { array.assign(n, 0); });
-  if (dim == 3)
+  if (dim == 3 && turns)
     rotation[0].assign(n, 1.);
   global_id = GlobalIds(n);
+}
+
+template <int dim>
+void Particles<dim>::drop_orientations()
+{
+  turns = false;
+  rotation = {};
+  spin = {};
+  torque = {};
 }
 } // namespace ligament::particles

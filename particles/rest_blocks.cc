@@ -75,7 +75,8 @@ template <int dim>
 bool RestBlocks<dim>::is_forced(const Particles<dim> &p, int block) const
 {
   const auto acts = [&](const std::vector<double> &values) {
-    return std::any_of(values.begin() + begin_[block], values.begin() + begin_[block + 1],
+    return !values.empty() && // else nothing turns
+           std::any_of(values.begin() + begin_[block], values.begin() + begin_[block + 1],
                        [](double f) { return f != 0; });
   };
   return std::any_of(p.force.begin(), p.force.end(), acts) ||
@@ -87,7 +88,7 @@ bool RestBlocks<dim>::moves(const Particles<dim> &p, int block) const
 {
   const auto exceeds = [&](const std::vector<double> &values, double limit) {
     double largest = 0;
-    for (int i = begin_[block]; i < begin_[block + 1]; ++i)
+    for (int i = begin_[block]; i < begin_[block + 1] && !values.empty(); ++i)
       largest = std::max(largest, std::abs(values[i]));
     return largest > limit;
   };

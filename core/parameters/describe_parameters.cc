@@ -55,7 +55,7 @@ Json value_json(const Parameter &p, int dimension)
   if (auto *x = std::get_if<std::optional<double> *>(&p.target))
     return **x ? Json(***x) : Json();
   if (auto *x = std::get_if<Choice>(&p.target))
-    return p.choices[x->get()];
+    return x->get() < 0 ? Json() : Json(p.choices[x->get()]);
   if (auto *x = std::get_if<Point *>(&p.target))
     return p.kind == Kind::rotation && dimension == 2 ? Json((**x)[0])
                                                       : point_json(p, **x, dimension);

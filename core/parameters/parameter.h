@@ -20,7 +20,7 @@ class ParameterSection;
 using Point = std::array<double, 3>;
 using PartialPoint = std::array<std::optional<double>, 3>;
 
-/// An enum, reached by the index of its word in Parameter::choices.
+/// An enum, reached by the index of its word in Parameter::choices; -1: not given.
 struct Choice
 {
   std::function<int()> get;

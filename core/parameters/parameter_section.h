@@ -40,6 +40,18 @@ public:
         .one_of(std::move(words));
   }
 
+  /// The same of an enum that may not be given.
+  template <typename Enum>
+  Parameter &add(const std::string &key, std::optional<Enum> &target, const std::string &text,
+                 std::vector<std::string> words)
+  {
+    return insert(key, Parameter::Kind::choice,
+                  Choice{[&target] { return target ? static_cast<int>(*target) : -1; },
+                         [&target](int k) { target = static_cast<Enum>(k); }},
+                  text)
+        .one_of(std::move(words));
+  }
+
   /// A key that others may write (editors: "$schema") and the program leaves alone.
   Parameter &ignore(const std::string &key, const std::string &text);
 

@@ -1,10 +1,11 @@
 // Two verbs for the small symmetric positive definite systems of the overlap, and who can do them.
 #pragma once
 
+#include "coupling/scheme.h"
+
 #include <Eigen/SparseCore>
 
 #include <memory>
-#include <string>
 
 namespace ligament::coupling
 {
@@ -25,6 +26,5 @@ public:
   virtual void solve(double *x, int n_columns) const = 0;
 };
 
-/// name: "eigen" (sparse Cholesky) or "amesos" (Trilinos, KLU).
-std::unique_ptr<LinearSolver> make_linear_solver(const std::string &name);
+std::unique_ptr<LinearSolver> make_linear_solver(Solver solver);
 } // namespace ligament::coupling

@@ -85,10 +85,12 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
       force.part(particles, members, [&](const Vector<dim> &location, const std::vector<int> &of) {
         return overlap.subtracted_share(location, of);
       });
+  state_->turns = particles.turns;
   state_->resize(int(members.size()));
   for (std::size_t k = 0; k < members.size(); ++k) {
     set(state_->reference, int(k), get(particles.reference, members[k]));
-    set(state_->rotation, int(k), get(particles.rotation, members[k]));
+    if (particles.turns)
+      set(state_->rotation, int(k), get(particles.rotation, members[k]));
     state_->volume[k] = particles.volume[members[k]];
   }
 }
@@ -131,7 +133,9 @@ double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> 
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     const auto &polar = polars[k];
     const Vector<dim> f = get(state_->force, int(k));
-    const Spin<dim> y = polar.conjugate(polar.to_body(get(state_->torque, int(k))));
+    const Spin<dim> torque =
+        state_->turns ? get(state_->torque, int(k)) : Spin<dim>(Spin<dim>::Zero());
+    const Spin<dim> y = polar.conjugate(polar.to_body(torque));
     for (const NodeShare<dim> &s : motions_[k])
       force.row(s.node) -= (s.value * f + polar.force(y, s.gradient)).transpose();
   }

@@ -7,7 +7,7 @@ namespace ligament::coupling
 template <int dim>
 CoarseProjection<dim>::CoarseProjection(const Overlap<dim> &overlap,
                                         const std::function<double(const Member &)> &mass,
-                                        const std::string &solver)
+                                        Solver solver)
     : solver_(make_linear_solver(solver))
 {
   const int n = overlap.n_nodes();

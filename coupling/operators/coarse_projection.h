@@ -17,7 +17,7 @@ public:
   using Member = typename Overlap<dim>::Member;
   /// mass: entry of M of a member, in kg.
   CoarseProjection(const Overlap<dim> &overlap, const std::function<double(const Member &)> &mass,
-                   const std::string &solver);
+                   Solver solver);
 
   /// Phi^T M w in, x out; rows are near nodes.
   void solve(Nodal<dim> &nodal) const;

@@ -17,8 +17,7 @@ std::vector<double> particle_masses(const Overlap<dim> &overlap, const Transfer<
 
 template <int dim>
 FluctuationProjector<dim>::FluctuationProjector(const Overlap<dim> &overlap,
-                                                const Transfer<dim> &transfer,
-                                                const std::string &solver)
+                                                const Transfer<dim> &transfer, Solver solver)
     : transfer_(transfer),
       carried_(
           overlap,

@@ -12,8 +12,7 @@ template <int dim>
 class FluctuationProjector
 {
 public:
-  FluctuationProjector(const Overlap<dim> &overlap, const Transfer<dim> &transfer,
-                       const std::string &solver);
+  FluctuationProjector(const Overlap<dim> &overlap, const Transfer<dim> &transfer, Solver solver);
 
   /// w <- Q w, in place; one array per component in the order of the transfer's members.
   void project(Components<dim> &w) const;

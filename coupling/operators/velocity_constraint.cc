@@ -83,7 +83,7 @@ template <int dim>
 VelocityConstraint<dim>::VelocityConstraint(Scheme scheme, const Overlap<dim> &overlap,
                                             const Transfer<dim> &transfer,
                                             const std::vector<double> &shares, const Matrix &mass,
-                                            int multiplier_cells, const std::string &solver)
+                                            int multiplier_cells, Solver solver)
     : scheme_(scheme), transfer_(transfer), shares_(shares), solver_(make_linear_solver(solver))
 {
   std::vector<double> particle_mass(overlap.member_of_particle.size()), share(particle_mass);

@@ -21,7 +21,7 @@ public:
   /// multipliers' hats in cells, 1 for the shape functions of the mesh.
   VelocityConstraint(Scheme scheme, const Overlap<dim> &overlap, const Transfer<dim> &transfer,
                      const std::vector<double> &shares, const Eigen::SparseMatrix<double> &mass,
-                     int multiplier_cells, const std::string &solver);
+                     int multiplier_cells, Solver solver);
 
   /// Corrects velocities of members (transfer's order) and near nodes, in m/s.
   void project(Components<dim> &v, Nodal<dim> &nodal) const;

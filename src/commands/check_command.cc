@@ -73,7 +73,7 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  steps                {:>12}\n", steps);
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
   fmt::print("  predicted time       {:>12}{}\n", duration_text(seconds),
-             scene.time.stop_when == "end" ? "" : ", less if it breaks earlier");
+             scene.time.stop_when == StopWhen::end ? "" : ", less if it breaks earlier");
   double saving = 0;
   std::optional<CostAdvice> advice;
   if (joined) {

@@ -194,12 +194,10 @@ std::string component_text(const PartialPoint &value, const std::string &unit, b
 template <int dim>
 void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture &picture)
 {
-  static const std::array<const char *, 6> names = {"left", "right", "bottom",
-                                                    "top",  "back",  "front"};
-  const int boundary = int(std::find(names.begin(), names.end(), load.boundary) - names.begin());
-  const Side<dim> side{body.lower, body.upper, boundary / 2, boundary % 2 == 1};
-  const bool is_traction = load.kind == "traction";
-  const std::string unit = load.kind == "velocity" ? "m/s" : is_traction ? "Pa" : "m";
+  const Side<dim> side{body.lower, body.upper, load.boundary / 2, load.boundary % 2 == 1};
+  const std::string &name = side_names[load.boundary];
+  const bool is_traction = load.kind == LoadKind::traction;
+  const std::string unit = load.kind == LoadKind::velocity ? "m/s" : is_traction ? "Pa" : "m";
   const Color color = is_traction ? traction_color : motion_color;
 
   std::array<double, 3> direction = {};
@@ -210,19 +208,19 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
     for (const auto &place : side.places(dim == 2 ? 12 : 6))
       picture.arrows.push_back({place, direction, outward < 0, color});
     picture.legend.push_back(
-        {load.boundary + ": " + load.kind + component_text(load.value, unit, false), color,
+        {name + ": " + word_of(load.kind) + component_text(load.value, unit, false), color,
          Mark::arrow});
   }
   if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction)
   {
     picture.segments.push_back(hatching(side));
-    picture.legend.push_back({load.boundary + ": held in" + held, held_color, Mark::line});
+    picture.legend.push_back({name + ": held in" + held, held_color, Mark::line});
   }
   if (load.absorbing) {
     picture.segments.push_back(outline(side, 0, absorbing_color, 6, false));
     if (load.absorbing_layer > 0)
       picture.segments.push_back(outline(side, load.absorbing_layer, absorbing_color, 2, true));
-    picture.legend.push_back({load.boundary + ": absorbing", absorbing_color, Mark::line});
+    picture.legend.push_back({name + ": absorbing", absorbing_color, Mark::line});
   }
 }
 

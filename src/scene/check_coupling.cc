@@ -69,10 +69,11 @@ void check_scheme(const Scene &scene, Findings &f)
                         "in the far field",
                         scene.coupling.step_ratio, name),
             "its constraint joins all velocities in every step", "give 1");
-  if (const std::string &regime = scene.coupling.regime;
-      weighted && (regime == "corotated" || regime == "nonlinear"))
+  if (const RegimeChoice regime = scene.coupling.regime;
+      weighted && (regime == RegimeChoice::corotated || regime == RegimeChoice::nonlinear))
     f.error("/coupling/regime",
-            fmt::format("\"regime\" in /coupling is \"{}\", but \"{}\" is linear", regime, name),
+            fmt::format("\"regime\" in /coupling is \"{}\", but \"{}\" is linear", word_of(regime),
+                        name),
             "energy-weighted schemes have no other regime",
             "leave it out, or choose \"fine_scale_split\"");
   const std::vector<std::string> split = {"gap_filter", "patch_fit", "coarse_mass"},
@@ -109,7 +110,8 @@ void check_no_scheme(const Scene &scene, Findings &f)
               "each other",
               "they overlap but are not joined", "");
   if (f.sound({"/coupling/regime", "/coupling/scheme"}) &&
-      scene.coupling.scheme == coupling::Scheme::none && scene.coupling.regime == "nonlinear")
+      scene.coupling.scheme == coupling::Scheme::none &&
+      scene.coupling.regime == RegimeChoice::nonlinear)
     f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" without a coupler",
             "it is about the energy of the overlap, and \"scheme\" is \"none\"",
             "choose \"corotated\" for a far field that turns, or another scheme");

@@ -26,13 +26,13 @@ public:
         inclusion.material.fracture.criterion != scene_.material.fracture.criterion)
       f_.error(f_.given(criterion) ? criterion : key,
                fmt::format("\"criterion\" of {} is \"{}\", that of /material is \"{}\"", key,
-                           inclusion.material.fracture.criterion,
-                           scene_.material.fracture.criterion),
+                           word_of(inclusion.material.fracture.criterion),
+                           word_of(scene_.material.fracture.criterion)),
                "one criterion serves the whole body",
                "choose the same, and a \"strength\" that is never reached where nothing breaks");
     poissons_ratio(inclusion.material, key + "/poissons_ratio");
     if (inclusion.balls.empty() && inclusion.boxes.empty() && f_.sound({key}) &&
-        scene_.zone.packing != "file")
+        scene_.zone.packing != PackingKind::file)
       f_.error(key, fmt::format("{} has neither \"balls\" nor \"boxes\"", key),
                "no particle would be of this material", "add one of them, or remove the inclusion");
   }

@@ -8,14 +8,6 @@ namespace ligament::program
 {
 namespace
 {
-constexpr const char *side_names[] = {"left", "right", "bottom", "top", "back", "front"};
-
-int side_number(const std::string &boundary)
-{
-  return int(std::find(std::begin(side_names), std::end(side_names), boundary) -
-             std::begin(side_names));
-}
-
 bool has_components(const PartialPoint &value)
 {
   return std::any_of(value.begin(), value.end(), [](const auto &x) { return x.has_value(); });
@@ -64,7 +56,7 @@ void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, 
           key + "/boundary",
           fmt::format("\"boundary\" in {}: side \"{}\" absorbs waves and has another load "
                       "that {}",
-                      key, load.boundary,
+                      key, side_names[load.boundary],
                       load.absorbing && other.absorbing ? "absorbs them, too"
                                                         : "prescribes its motion"),
           fmt::format("/loads/{} acts on it already", j), "keep one of the two");
@@ -82,7 +74,7 @@ void check_twice(const Scene &scene, std::size_t k, const std::string &key, Find
         return f.error(
             key + "/boundary",
             fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice", key,
-                        "xyz"[c], load.boundary),
+                        "xyz"[c], side_names[load.boundary]),
             fmt::format("/loads/{} acts on it already", j),
             "keep one of the two, or set the component to null in one");
 }
@@ -103,7 +95,7 @@ bool cover_side(const Layout &layout, int side, double depth)
 void check_layer(const Scene &scene, const LoadParameters &load, const std::string &key,
                  const Layout &layout, Findings &f)
 {
-  const int side = side_number(load.boundary), axis = side / 2;
+  const int side = load.boundary, axis = side / 2;
   const bool upper = side % 2;
   double room = layout.specimen.upper[axis] - layout.specimen.lower[axis];
   if (layout.coupled_side[side])
@@ -131,7 +123,7 @@ void check_layer(const Scene &scene, const LoadParameters &load, const std::stri
 void check_against_overlap(const LoadParameters &load, const std::string &key, const Layout &layout,
                            Findings &f)
 {
-  const int side = side_number(load.boundary), axis = side / 2;
+  const int side = load.boundary, axis = side / 2;
   if (!layout.coupled || layout.coupled_side[side])
     return;
   if (!layout.boxes.boxes.empty()) {
@@ -139,7 +131,7 @@ void check_against_overlap(const LoadParameters &load, const std::string &key, c
       f.error(
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
-                      key, load.boundary),
+                      key, side_names[load.boundary]),
           "the union of /discrete_zone/boxes reaches this side and covers a part of it; an "
           "overlap may end only at free sides",
           "end the boxes before this side, let them cover it, or load other sides");
@@ -151,7 +143,7 @@ void check_against_overlap(const LoadParameters &load, const std::string &key, c
       f.error(
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
-                      key, load.boundary),
+                      key, side_names[load.boundary]),
           fmt::format("/discrete_zone/region reaches this side and is coupled along \"{}\"; an "
                       "overlap may end only at free sides",
                       side_names[other]),
@@ -168,10 +160,10 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     const std::string key = "/loads/" + std::to_string(k);
     if (!f.sound({key}))
       continue;
-    if (scene.dimension == 2 && (load.boundary == "back" || load.boundary == "front")) {
+    if (load.boundary >= 2 * scene.dimension) {
       f.error(key + "/boundary",
               fmt::format("\"boundary\" in {} is \"{}\", a side that 2D scenes do not have", key,
-                          load.boundary),
+                          side_names[load.boundary]),
               "/dimension is 2", "choose \"left\", \"right\", \"bottom\" or \"top\"");
       continue;
     }

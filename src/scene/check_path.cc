@@ -11,22 +11,22 @@ namespace ligament::program
 namespace
 {
 /// Normals of the planes (2D: rows) along which a crack runs straight in a lattice, lattice axes.
-std::vector<Vector<3>> smooth_planes(const std::string &packing)
+std::vector<Vector<3>> smooth_planes(PackingKind packing)
 {
   std::vector<Vector<3>> normals;
   const auto in_plane = [&](double degrees) {
     const double angle = degrees * M_PI / 180;
     normals.push_back({-std::sin(angle), std::cos(angle), 0});
   };
-  if (packing == "square")
+  if (packing == PackingKind::square)
     for (const double angle : {0, 90})
       in_plane(angle);
-  if (packing == "hexagonal")
+  if (packing == PackingKind::hexagonal)
     for (const double angle : {0, 60, 120})
       in_plane(angle);
-  if (packing == "simple_cubic")
+  if (packing == PackingKind::simple_cubic)
     normals = {Vector<3>::UnitX(), Vector<3>::UnitY(), Vector<3>::UnitZ()};
-  if (packing == "fcc") { // rows along x and y, cube axis along z: cube and octahedron
+  if (packing == PackingKind::fcc) { // rows along x and y, cube axis along z: cube and octahedron
     const double s = std::sqrt(2. / 3), c = std::sqrt(1. / 3), q = std::sqrt(0.5);
     normals = {{0, 0, 1}, {q, q, 0}, {q, -q, 0}, {s, 0, c}, {-s, 0, c}, {0, s, c}, {0, -s, c}};
   }
@@ -56,22 +56,24 @@ Eigen::Matrix3d turn_of(const DiscreteZone &zone, int dim)
 
 void check_path(const Scene &scene, const Crack &crack, const std::string &key, Findings &f)
 {
-  if (scene.zone.extent == DiscreteZone::Extent::none || scene.zone.is_irregular() ||
+  if (scene.zone.extent == DiscreteZone::Extent::none || !scene.zone.packing ||
+      scene.zone.is_irregular() ||
       !f.sound({"/discrete_zone/packing", "/discrete_zone/orientation",
                 "/material/fracture/criterion"}) ||
-      scene.material.fracture.criterion == "none")
+      scene.material.fracture.criterion == Criterion::none)
     return;
   const Vector<3> normal =
       turn_of(scene.zone, scene.dimension).transpose() * normal_of(crack, scene.dimension);
   double nearest = 0;
-  for (const Vector<3> &plane : smooth_planes(scene.zone.packing))
+  for (const Vector<3> &plane : smooth_planes(*scene.zone.packing))
     nearest = std::max(nearest, std::abs(plane.dot(normal)));
   const double off = std::acos(std::min(nearest, 1.)) * 180 / M_PI;
   if (nearest == 0 || off < 1)
     return;
   f.warning(key,
             fmt::format("{} is turned by {:.0f} degrees against the {} of the lattice \"{}\"", key,
-                        off, scene.dimension == 2 ? "rows" : "smooth planes", scene.zone.packing),
+                        off, scene.dimension == 2 ? "rows" : "smooth planes",
+                        word_of(*scene.zone.packing)),
             "cracks in a lattice follow its rows, up to 20 degrees off the path in a solid",
             "where the path matters choose the packing \"random\", or turn \"orientation\"");
 }

@@ -59,10 +59,10 @@ void check_models(const Scene &scene, Findings &f)
 void check_packing_keys(const Scene &scene, Findings &f)
 {
   const DiscreteZone &zone = scene.zone, plain;
-  const std::string &packing = zone.packing;
-  const auto refuse = [&](const std::string &name, const std::string &needed, bool differs) {
-    const std::string key = zone_key + "/" + name;
-    if (packing == needed || !f.sound_and_given({key}))
+  const std::string packing = word_of(*zone.packing);
+  const auto refuse = [&](const std::string &name, PackingKind only, bool differs) {
+    const std::string key = zone_key + "/" + name, &needed = word_of(only);
+    if (zone.packing == only || !f.sound_and_given({key}))
       return;
     const std::string message = fmt::format(
         "\"{}\" in /discrete_zone has no meaning for the packing \"{}\"", name, packing);
@@ -73,11 +73,13 @@ void check_packing_keys(const Scene &scene, Findings &f)
     else
       f.warning(key, message, reason, remedy);
   };
-  refuse("seed", "random", zone.seed != plain.seed);
-  refuse("relaxation_sweeps", "random", zone.relaxation_sweeps != plain.relaxation_sweeps);
-  refuse("size_ratio", "random", zone.size_ratio != plain.size_ratio);
-  refuse("packing_file", "file", !zone.packing_file.empty());
-  if (packing == "file" && zone.packing_file.empty() && f.sound({zone_key + "/packing_file"}))
+  refuse("seed", PackingKind::random, zone.seed != plain.seed);
+  refuse("relaxation_sweeps", PackingKind::random,
+         zone.relaxation_sweeps != plain.relaxation_sweeps);
+  refuse("size_ratio", PackingKind::random, zone.size_ratio != plain.size_ratio);
+  refuse("packing_file", PackingKind::file, !zone.packing_file.empty());
+  if (zone.packing == PackingKind::file && zone.packing_file.empty() &&
+      f.sound({zone_key + "/packing_file"}))
     f.error(zone_key + "/packing",
             "\"packing\" in /discrete_zone is \"file\", but there is no \"packing_file\"",
             "the particles stand in a file", "add \"packing_file\"");
@@ -97,11 +99,12 @@ void check_packing(const Scene &scene, Findings &f)
   check_packing_keys(scene, f);
   if (!f.sound({"/dimension"}) || scene.zone.is_irregular())
     return;
-  const bool plane = scene.zone.packing == "square" || scene.zone.packing == "hexagonal";
+  const bool plane =
+      scene.zone.packing == PackingKind::square || scene.zone.packing == PackingKind::hexagonal;
   if (plane != (scene.dimension == 2))
     f.error(key,
             fmt::format("\"packing\" in /discrete_zone is \"{}\", which is not a packing in {}D",
-                        scene.zone.packing, scene.dimension),
+                        word_of(*scene.zone.packing), scene.dimension),
             fmt::format("/dimension is {}", scene.dimension),
             scene.dimension == 2 ? "choose \"hexagonal\", \"square\" or \"random\""
                                  : "choose \"fcc\", \"simple_cubic\" or \"random\"");
@@ -119,7 +122,8 @@ void check_time(const Scene &scene, Findings &f)
                         *scene.time.step, scene.time.duration),
             "nothing would be computed", "give a smaller step, or none");
   if (f.sound({"/time/stop_when", "/material/fracture/criterion"}) &&
-      scene.time.stop_when == "specimen_broken" && scene.material.fracture.criterion == "none")
+      scene.time.stop_when == StopWhen::specimen_broken &&
+      scene.material.fracture.criterion == Criterion::none)
     f.warning("/time/stop_when", "\"stop_when\" in /time waits for a fracture that cannot happen",
               "the fracture criterion is \"none\"", "");
 }
@@ -146,7 +150,7 @@ void check_fracture(const FractureParameters &fracture, const std::string &secti
     f.error(section + "/toughness",
             fmt::format("both \"strength\" and \"toughness\" in {}", section),
             "the strength of a bond follows from the toughness", "remove one of them");
-  if (toughness && zone.packing == "file")
+  if (toughness && zone.packing == PackingKind::file)
     f.error(section + "/toughness",
             fmt::format("\"toughness\" in {} cannot be used with the packing \"file\"", section),
             "the factor between toughness and strength is calibrated on samples of a packing, "
@@ -154,10 +158,10 @@ void check_fracture(const FractureParameters &fracture, const std::string &secti
             "give the \"strength\" of a face");
   if (!f.sound({section + "/criterion"}))
     return;
-  if (fracture.criterion == "none" && (strength || toughness))
+  if (fracture.criterion == Criterion::none && (strength || toughness))
     f.warning(section + (strength ? "/strength" : "/toughness"),
               "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"", "");
-  if (fracture.criterion != "none" && !strength && !toughness && f.sound({section}))
+  if (fracture.criterion != Criterion::none && !strength && !toughness && f.sound({section}))
     f.error(section + "/criterion",
             fmt::format("\"criterion\" in {} has neither \"strength\" nor \"toughness\"", section),
             "it needs to know when a bond breaks", "add one of them, or choose \"none\"");

@@ -67,10 +67,10 @@ void check_choice_of_zone(const DiscreteZone &zone, int dimension, Findings &fin
 /// Keys that mean nothing to the packing are not echoed: reading them again would be doubted.
 void leave_out_unused(const DiscreteZone &zone, nlohmann::ordered_json &json)
 {
-  if (zone.packing != "random")
+  if (zone.packing != PackingKind::random)
     for (const char *key : {"seed", "relaxation_sweeps", "size_ratio"})
       json.erase(key);
-  if (zone.packing != "file")
+  if (zone.packing != PackingKind::file)
     json.erase("packing_file");
 }
 
@@ -89,10 +89,10 @@ void complete(Scene &scene)
     scene.far_field.reset();
   for (LoadParameters &load : scene.loads) {
     if (load.absorbing)
-      load.kind = "traction";
-    for (const auto &[kind, value] :
-         {std::pair("velocity", load.velocity), std::pair("displacement", load.displacement),
-          std::pair("traction", load.traction)})
+      load.kind = LoadKind::traction;
+    for (const auto &[kind, value] : {std::pair(LoadKind::velocity, load.velocity),
+                                      std::pair(LoadKind::displacement, load.displacement),
+                                      std::pair(LoadKind::traction, load.traction)})
       if (value[0] || value[1] || value[2]) {
         load.kind = kind;
         load.value = value;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/types.h"
-#include "coupling/scheme.h"
+#include "coupling/coupler_parameters.h"
+#include "src/scene/choices.h"
 
 #include <array>
 #include <limits>
@@ -48,7 +49,7 @@ struct Specimen
 
 struct FractureParameters
 {
-  std::string criterion = "none";  // none, maximum_tension, face_tension
+  Criterion criterion = Criterion::none;
   std::optional<double> strength;  // Pa
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
 };
@@ -91,8 +92,7 @@ struct DiscreteZone
   Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
   /// The zone is their union; `lower` and `upper` then are the corners around all. Empty: one box.
   std::vector<ZoneBox> boxes;
-  /// square, hexagonal (2D); simple_cubic, fcc (3D); random, file; empty: not given
-  std::string packing;
+  std::optional<PackingKind> packing;
   std::string packing_file;   // for packing file; relative to the scene until it is read
   int seed = 1;               // this and the next two: for packing random
   int relaxation_sweeps = 10; // of Lloyd's relaxation
@@ -101,7 +101,10 @@ struct DiscreteZone
   /// 2D: {angle}; 3D: rotation vector; rad. Close-packed rows lie along x at 0.
   Point orientation = {0, 0, 0};
 
-  bool is_irregular() const { return packing == "random" || packing == "file"; }
+  bool is_irregular() const
+  {
+    return packing == PackingKind::random || packing == PackingKind::file;
+  }
 };
 
 struct FarField
@@ -115,22 +118,26 @@ struct FarField
 
 struct CouplingParameters
 {
+  static constexpr coupling::FineScaleSplitParameters split = {}; // the defaults
+  static constexpr coupling::BridgingDomainParameters weighted = {};
+
   coupling::Scheme scheme = coupling::Scheme::fine_scale_split;
   int overlap_cells = 3;
-  int transition_cells = 6; // over which the mass goes from consistent to lumped
-  int step_ratio = 1;       // m: far field steps once per m fine steps
-  double fine_damper = 8;   // c_f
-  double gap_filter = 4;    // c_g
-  bool patch_fit = true;
+  int transition_cells = 6;               // over which the mass goes from consistent to lumped
+  int step_ratio = split.step_ratio;      // m: far field steps once per m fine steps
+  double fine_damper = split.fine_damper; // c_f
+  double gap_filter = split.gap_filter;   // c_g
+  bool patch_fit = split.patch_fit;
   // Energy-weighted schemes only:
   coupling::WeightShape weight = coupling::WeightShape::cubic;
-  coupling::DamperForm damper_form = coupling::DamperForm::symmetrised;
-  int multiplier_cells = 1;
+  coupling::DamperForm damper_form = weighted.damper_form;
+  int multiplier_cells = weighted.multiplier_cells;
   Point ghost_force_correction = {0, 0, 0}; // normal strains
-  std::string solver = "eigen";             // eigen, amesos
-  std::string guard = "stop";               // stop, warn
-  std::string regime = "automatic";         // linear, corotated, nonlinear
-  double coarse_mass = 1; // factor on the masses of the coarse motion and the far field
+  coupling::Solver solver = split.solver;
+  Guard guard = Guard::stop;
+  RegimeChoice regime = RegimeChoice::automatic;
+  double coarse_mass =
+      split.coarse_mass; // factor on the masses of the coarse motion and the far field
 };
 
 struct Damping
@@ -140,14 +147,18 @@ struct Damping
   bool kinetic = false;
 };
 
+/// By number: twice the axis, and one more for the upper side.
+inline const std::vector<std::string> side_names = {"left", "right", "bottom",
+                                                    "top",  "back",  "front"};
+
 struct LoadParameters
 {
-  std::string boundary;                          // left right bottom top back front
+  int boundary = 0;                              // number of the side, see side_names
   PartialPoint velocity, displacement, traction; // m/s, m, Pa; one of them has components
   double ramp = 0;                               // s
   bool absorbing = false;                        // lets waves out, beside a traction or alone
   double absorbing_layer = 0;                    // m
-  std::string kind;                              // name of the one that has components
+  LoadKind kind = LoadKind::traction;            // the one that has components
   PartialPoint value;                            // and its components
 };
 
@@ -155,9 +166,9 @@ struct TimeParameters
 {
   double duration; // s
   double step_fraction = 0.9;
-  std::optional<double> step;    // s; refused above the stable one
-  std::string stop_when = "end"; // end, specimen_broken
-  double rest_threshold = 0;     // strain from which on a wave wakes what is at rest
+  std::optional<double> step; // s; refused above the stable one
+  StopWhen stop_when = StopWhen::end;
+  double rest_threshold = 0; // strain from which on a wave wakes what is at rest
 };
 
 /// One of the quantities that pictures show.

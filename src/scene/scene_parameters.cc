@@ -37,7 +37,7 @@ void declare_specimen(Section &s, Specimen &p)
 
 void declare_fracture(Section &s, FractureParameters &f)
 {
-  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing").one_of({"none", "maximum_tension", "face_tension"});
+  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing", words(Criterion()));
   s.add("strength", f.strength, "tension at which a bond breaks; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
 }
@@ -76,7 +76,7 @@ void declare_zone(Section &s, DiscreteZone &z)
   s.add("extent", z.extent, "none: finite elements alone; all: discrete elements alone; box: the region below", {"none", "all", "box"});
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
   s.list("boxes", z.boxes, "in place of region: several boxes; those that overlap or touch are one zone, others are separate zones", declare_region<ZoneBox>);
-  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file").one_of({"square", "hexagonal", "simple_cubic", "fcc", "random", "file"}).required_unless("extent is none");
+  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file", words(PackingKind())).required_unless("extent is none");
   s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").usually(1e-10, 1e2, "mm um nm").above(0).required_unless("extent is none");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();
   s.add("seed", z.seed, "random packing: which one").at_least(0).at_most(1000000000);
@@ -109,9 +109,9 @@ void declare_coupling(Section &s, CouplingParameters &c)
   s.add("damper_form", c.damper_form, "how fine_damper acts; printed: as the literature prints it, may add energy; energy-weighted schemes only", coupling::damper_form_names);
   s.add("multiplier_cells", c.multiplier_cells, "edge of the multipliers' hat functions in cells; energy-weighted schemes only").at_least(1).at_most(10);
   s.add("ghost_force_correction", c.ghost_force_correction, "normal strains (xx, yy, zz) at which constant forces cancel the overlap's ghost forces, 0: off; energy-weighted schemes only").at_least(-0.1).at_most(0.1);
-  s.add("solver", c.solver, "which library solves the systems of the overlap").one_of({"eigen", "amesos"});
-  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons").one_of({"stop", "warn"});
-  s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it").one_of({"automatic", "linear", "corotated", "nonlinear"});
+  s.add("solver", c.solver, "which library solves the systems of the overlap", coupling::solver_names);
+  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons", words(Guard()));
+  s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it", words(RegimeChoice()));
   s.add("coarse_mass", c.coarse_mass, "factor on the masses of the coarse motion and of the far field, for fewer steps to a static answer; down to spacing/cell_size, with damping only").above(0).at_most(1);
 }
 
@@ -124,7 +124,7 @@ void declare_damping(Section &s, Damping &d)
 
 void declare_load(Section &s, LoadParameters &l)
 {
-  s.add("boundary", l.boundary, "side of the specimen").one_of({"left", "right", "bottom", "top", "back", "front"}).required();
+  s.add("boundary", l.boundary, "side of the specimen", side_names).required();
   s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
@@ -139,7 +139,7 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
   s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").usually(1e-18, 1e2, "us ns ps").above(0);
   s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
-  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)").one_of({"end", "specimen_broken"});
+  s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)", words(StopWhen()));
 }
 
 void declare_picture(Section &s, PictureParameters &p)

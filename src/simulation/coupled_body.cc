@@ -21,15 +21,14 @@ using core::require;
 template <int dim>
 std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
 {
-  const std::array<const char *, 6> names = {"left", "right", "bottom", "top", "back", "front"};
   std::vector<core::BoundaryLoad<dim>> loads;
   for (const auto &parameters : scene.loads) {
     core::BoundaryLoad<dim> load;
     using Kind = typename core::BoundaryLoad<dim>::Kind;
-    load.boundary = int(std::find(names.begin(), names.end(), parameters.boundary) - names.begin());
-    load.kind = parameters.kind == "velocity"       ? Kind::velocity
-                : parameters.kind == "displacement" ? Kind::displacement
-                                                    : Kind::traction;
+    load.boundary = parameters.boundary;
+    load.kind = parameters.kind == LoadKind::velocity       ? Kind::velocity
+                : parameters.kind == LoadKind::displacement ? Kind::displacement
+                                                            : Kind::traction;
     for (int c = 0; c < dim; ++c)
       load.value[c] = parameters.value[c];
     load.ramp.duration = parameters.ramp;
@@ -222,7 +221,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.poissons_ratio = scene.material.poissons_ratio;
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
-  if (scene.zone.spacing > 0)
+  if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
     core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",

@@ -70,7 +70,8 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
       for (const auto &member : overlap->members)
         if (member.pad) {
           release(member.particle, state.force, zone_force_);
-          release(member.particle, state.torque, zone_torque_);
+          if (state.turns)
+            release(member.particle, state.torque, zone_torque_);
         }
   }
   if (body.far) {

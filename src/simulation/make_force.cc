@@ -29,10 +29,15 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
 dem::FractureLaw::Criterion criterion_of(const Scene &scene)
 {
   using Criterion = dem::FractureLaw::Criterion;
-  const std::string &name = scene.material.fracture.criterion;
-  return name == "maximum_tension" ? Criterion::maximum_tension
-         : name == "face_tension"  ? Criterion::face_tension
-                                   : Criterion::none;
+  switch (scene.material.fracture.criterion) {
+  case program::Criterion::maximum_tension:
+    return Criterion::maximum_tension;
+  case program::Criterion::face_tension:
+    return Criterion::face_tension;
+  case program::Criterion::none:
+    break;
+  }
+  return Criterion::none;
 }
 
 /// All that the factor c depends on, in one line.
@@ -40,12 +45,12 @@ std::string toughness_key(const Scene &scene, const dem::DemMaterial &material)
 {
   const DiscreteZone &zone = scene.zone;
   const std::string packing =
-      zone.packing == "random"
+      zone.packing == PackingKind::random
           ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
           : fmt::format("turned {}", fmt::join(zone.orientation, " "));
   return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method,
-                     scene.material.fracture.criterion, scene.dimension,
-                     scene.plane == PlaneMode::stress ? "stress" : "strain", zone.packing,
+                     word_of(scene.material.fracture.criterion), scene.dimension,
+                     scene.plane == PlaneMode::stress ? "stress" : "strain", word_of(*zone.packing),
                      material.poissons_ratio, packing);
 }
 
@@ -54,7 +59,7 @@ double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
 {
   const auto criterion = criterion_of(scene);
   return ToughnessCache().factor(toughness_key(scene, material), [&] {
-    if (scene.zone.packing == "random")
+    if (scene.zone.packing == PackingKind::random)
       return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
     const auto lattice = lattice_of<dim>(scene);
     return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);

@@ -53,7 +53,7 @@ packings::LatticeParameters<dim> lattice_of(const Scene &scene)
 {
   packings::LatticeParameters<dim> p;
   set_specimen<dim>(scene, p);
-  p.kind = packings::lattice_kind(scene.zone.packing);
+  p.kind = packings::lattice_kind(word_of(*scene.zone.packing));
   for (int c = 0; c < n_spins<dim>; ++c)
     p.orientation[c] = scene.zone.orientation[c];
   return p;
@@ -76,15 +76,18 @@ double mean_cell_volume(const Scene &scene)
   if (scene.zone.is_irregular())
     return scene.dimension == 2 ? packings::mean_cell_volume<2>(d) * thickness
                                 : packings::mean_cell_volume<3>(d);
-  switch (packings::lattice_kind(scene.zone.packing)) {
-  case packings::LatticeKind::square:
+  switch (*scene.zone.packing) {
+  case PackingKind::square:
     return d * d * thickness;
-  case packings::LatticeKind::hexagonal:
+  case PackingKind::hexagonal:
     return std::sqrt(3.) / 2 * d * d * thickness;
-  case packings::LatticeKind::simple_cubic:
+  case PackingKind::simple_cubic:
     return d * d * d;
-  case packings::LatticeKind::fcc:
+  case PackingKind::fcc:
     return d * d * d / std::sqrt(2.);
+  case PackingKind::random:
+  case PackingKind::file:
+    break;
   }
   return 0;
 }
@@ -138,7 +141,7 @@ template <int dim>
 packings::RandomPacking<dim> irregular_packing(const Scene &scene)
 {
   const auto parameters = random_packing_of<dim>(scene);
-  if (scene.zone.packing == "random")
+  if (scene.zone.packing == PackingKind::random)
     return packings::make_random_packing<dim>(parameters);
   auto seeds = read_seeds<dim>(scene);
   const std::vector<int> material = std::move(seeds.material);

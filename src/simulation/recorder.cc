@@ -100,7 +100,7 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
       return stop;
   if (!broken_time_ && step.step / ratio % break_interval == 0)
     look_for_break(body, step);
-  if (broken_time_ && scene_.time.stop_when == "specimen_broken")
+  if (broken_time_ && scene_.time.stop_when == StopWhen::specimen_broken)
     return Stop{false, fmt::format("specimen broken at {:.4g} s", *broken_time_)};
 
   const bool history = step.time >= next_history_ - 1e-9 * history_interval_;
@@ -193,7 +193,7 @@ std::optional<Stop> Recorder<dim>::report_excess(const std::string &finding,
                                                  const coupling::StepTime &step)
 {
   const std::string reason = report(finding, step);
-  if (scene_.coupling.guard == "stop")
+  if (scene_.coupling.guard == Guard::stop)
     return Stop{true, reason};
   return {};
 }

@@ -26,14 +26,15 @@ constexpr double largest_strain = 0.1;
 } // namespace
 
 template <int dim>
-RegimeControl<dim>::RegimeControl(const std::string &key, CoupledBody<dim> &body)
-    : can_turn_(body.coupler->can_turn()), automatic_(key == "automatic" && can_turn_)
+RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
+    : can_turn_(body.coupler->can_turn()),
+      automatic_(choice == RegimeChoice::automatic && can_turn_)
 {
   if (!body.far)
     return;
-  if (key == "corotated")
+  if (choice == RegimeChoice::corotated)
     set(Regime::corotated, body);
-  else if (key == "nonlinear")
+  else if (choice == RegimeChoice::nonlinear)
     set(Regime::nonlinear, body);
   history_ = name_of(regime_);
 }

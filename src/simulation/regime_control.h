@@ -13,7 +13,7 @@ template <int dim>
 class RegimeControl
 {
 public:
-  RegimeControl(const std::string &key, CoupledBody<dim> &body);
+  RegimeControl(RegimeChoice choice, CoupledBody<dim> &body);
 
   /// Between forces and kick of a step in which the far field acts: may change the regime and
   /// compute the forces again; what the energy changes by is booked in the body. Returns why the

@@ -15,10 +15,10 @@ namespace ligament::program
 {
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
-                            bool draws_pictures)
+                            bool draws_pictures, const ForceMaker<dim> &make_force)
     : scene_(scene), folder_(folder), log_(folder.log(), progress),
-      body_(make_body<dim>(scene_, log_, timers_)), regime_(scene_.coupling.regime, body_),
-      damping_(scene_.damping), clock_(clock_of()),
+      body_(make_body<dim>(scene_, log_, timers_, make_force)),
+      regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
       recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures)
 {
   if (body_.seeds)

@@ -32,7 +32,8 @@ public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
   /// scenes take less time than their pictures, which may be left out.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
-             bool draws_pictures = true);
+             bool draws_pictures = true,
+             const ForceMaker<dim> &make_force = make_many_body_force<dim>);
 
   /// A warning about the input, which log and record repeat.
   void warn(const std::string &text) { log_.warning(text); }

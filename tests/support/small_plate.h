@@ -60,8 +60,9 @@ struct SmallBody
   std::unique_ptr<core::Timers> timers = std::make_unique<core::Timers>();
   program::CoupledBody<2> body;
 
-  explicit SmallBody(const program::Scene &scene)
-      : body(program::make_body<2>(scene, *log, *timers))
+  explicit SmallBody(const program::Scene &scene,
+                     const program::ForceMaker<2> &make_force = program::make_many_body_force<2>)
+      : body(program::make_body<2>(scene, *log, *timers, make_force))
   {
   }
 

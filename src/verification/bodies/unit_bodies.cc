@@ -12,7 +12,7 @@ Scene unit_scene(int dimension, const Point &size, double poissons_ratio)
   scene.material.poissons_ratio = poissons_ratio;
   scene.material.density = 1;
   scene.zone.extent = DiscreteZone::Extent::all;
-  scene.zone.packing = dimension == 2 ? "hexagonal" : "fcc";
+  scene.zone.packing = dimension == 2 ? PackingKind::hexagonal : PackingKind::fcc;
   scene.zone.spacing = 1;
   scene.time.duration = 1;
   scene.coupling.fine_damper = 0;
@@ -38,8 +38,8 @@ void add_tractions(Scene &scene, const std::vector<int> &sides, const Strain<dim
   const int voigt_2d[2][2] = {{0, 2}, {2, 1}}, voigt_3d[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
   for (const int side : sides) {
     LoadParameters load;
-    load.boundary = side_names[side];
-    load.kind = "traction";
+    load.boundary = side;
+    load.kind = LoadKind::traction;
     load.ramp = 1;
     for (int c = 0; c < dim; ++c) {
       const int k = dim == 2 ? voigt_2d[side / 2][c] : voigt_3d[side / 2][c];

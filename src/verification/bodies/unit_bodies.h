@@ -30,9 +30,6 @@ struct UnitBody
   double c11() const { return body.force()->elastic_constants().stiffness(0, 0); }
 };
 
-/// Names of the sides of a box, numbered as in core/types.h.
-inline constexpr std::array<const char *, 6> side_names = {"left", "right", "bottom",
-                                                           "top",  "back",  "front"};
 /// Worst of the values; not a number as soon as one is.
 inline void keep_worst(double &worst, double value)
 {

@@ -168,17 +168,17 @@ double reflected_by_random_packing(const AbsorbingParameters &p)
   Point size{across, across, across};
   size[dim - 1] = course.length;
   Scene scene = unit_scene(dim, size, material().poissons_ratio);
-  scene.zone.packing = "random";
+  scene.zone.packing = PackingKind::random;
   // S waves move along the first axis.
   for (int side = 0; side < 2 * dim - 2; ++side) {
     auto &mirror = scene.loads.emplace_back();
-    mirror.boundary = side_names[side];
-    mirror.kind = "displacement";
+    mirror.boundary = side;
+    mirror.kind = LoadKind::displacement;
     mirror.value[is_p || side / 2 > 0 ? side / 2 : dim - 1] = 0;
   }
   auto &top = scene.loads.emplace_back();
-  top.boundary = side_names[2 * dim - 1];
-  top.kind = "traction";
+  top.boundary = 2 * dim - 1;
+  top.kind = LoadKind::traction;
   top.absorbing = true;
   top.absorbing_layer = p.layer * cell_size;
   UnitBody<dim> unit(scene);

@@ -32,14 +32,14 @@ Scene strip(Models models, bool is_p, double layer)
   }
   for (const int side : {0, 2, 3}) {
     LoadParameters &load = scene.loads.emplace_back();
-    load.boundary = side_names[side];
-    load.kind = side == 0 ? "velocity" : "displacement";
+    load.boundary = side;
+    load.kind = side == 0 ? LoadKind::velocity : LoadKind::displacement;
     load.value[is_p == (side == 0) ? 0 : 1] = side == 0 ? 1e-6 : 0;
   }
   scene.loads.front().ramp = 10 * cell_size;
   LoadParameters &end = scene.loads.emplace_back();
-  end.boundary = "right";
-  end.kind = "traction";
+  end.boundary = 1;
+  end.kind = LoadKind::traction;
   end.absorbing = true;
   end.absorbing_layer = layer;
   return scene;

@@ -21,8 +21,10 @@ Scene plate(std::mt19937 &random, int number)
   const Point tip = {a * std::cos(angle), a * std::sin(angle), 0};
   scene.specimen.cracks = {{{{-tip[0], -tip[1], 0}, tip}}};
   scene.material.friction = number % 3 == 0 ? 0.3 : 0;
-  scene.material.fracture = {"maximum_tension", 1e-3, {}};
-  const char *packings[] = {"hexagonal", "random", "hexagonal", "square", "random"};
+  scene.material.fracture = {Criterion::maximum_tension, 1e-3, {}};
+  constexpr PackingKind packings[] = {PackingKind::hexagonal, PackingKind::random,
+                                      PackingKind::hexagonal, PackingKind::square,
+                                      PackingKind::random};
   scene.zone.packing = packings[number % 5];
   scene.zone.orientation[0] = scene.zone.is_irregular() ? 0 : M_PI / 3 * unit(random);
   scene.zone.seed = number + 1;

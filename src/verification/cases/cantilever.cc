@@ -37,8 +37,8 @@ Scene make_scene(const Cantilever &c)
   }
   scene.far_field->levels = c.levels;
   LoadParameters &held = scene.loads.emplace_back();
-  held.boundary = "left";
-  held.kind = "displacement";
+  held.boundary = 0;
+  held.kind = LoadKind::displacement;
   held.value[0] = held.value[1] = 0;
   add_tractions<2>(scene, {1}, {0, 0, traction});
   return scene;

@@ -30,10 +30,10 @@ Scene pressed_plate(const Plate &plate)
   scene.material.youngs_modulus = 40e9;
   scene.material.density = 2600;
   scene.material.friction = friction;
-  scene.material.fracture = {"maximum_tension", {}, toughness};
+  scene.material.fracture = {Criterion::maximum_tension, {}, toughness};
   const double tip = half / std::sqrt(2.);
   scene.specimen.cracks = {{{{-tip, -tip, 0}, {tip, tip, 0}}}};
-  scene.zone.packing = plate.packing;
+  scene.zone.packing = named<PackingKind>(plate.packing);
   scene.zone.orientation[0] = plate.degrees * M_PI / 180;
   scene.zone.seed = plate.seed;
   scene.zone.spacing = 0.7e-3;

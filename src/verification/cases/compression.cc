@@ -22,7 +22,7 @@ struct Material
 
   void apply(Scene &scene) const
   {
-    scene.zone.packing = packing;
+    scene.zone.packing = named<PackingKind>(packing);
     scene.zone.size_ratio = size_ratio;
     scene.zone.orientation[0] = angle;
     if (scene.dimension == 3)
@@ -138,7 +138,7 @@ void press(const Point &size, double zone_half, int overlap_cells, const Materia
   Scene scene = unit_scene(dim, size, 0);
   scene.material.youngs_modulus = 40e9;
   scene.material.density = 2600;
-  scene.material.fracture.criterion = "maximum_tension";
+  scene.material.fracture.criterion = Criterion::maximum_tension;
   scene.material.fracture.strength = 3e6;
   scene.zone.spacing = 1 * mm;
   scene.damping.mass = 1e4;
@@ -150,8 +150,8 @@ void press(const Point &size, double zone_half, int overlap_cells, const Materia
   scene.coupling.gap_filter = 4;
   for (const bool upper : {false, true}) {
     LoadParameters load;
-    load.boundary = side_names[2 * (dim - 1) + upper];
-    load.kind = "velocity";
+    load.boundary = 2 * (dim - 1) + upper;
+    load.kind = LoadKind::velocity;
     load.value[dim - 1] = upper ? -speed : speed;
     load.velocity = load.value;
     scene.loads.push_back(load);

@@ -14,7 +14,7 @@ namespace
 Scene band(int dim, const std::string &packing)
 {
   Scene scene = dim == 2 ? unit_scene(2, {18, 132, 0}, 0.3) : unit_scene(3, {6.3, 6.7, 84}, 0.3);
-  scene.zone.packing = packing;
+  scene.zone.packing = named<PackingKind>(packing);
   scene.coupling.transition_cells = 4;
   add_far_field(scene, dim == 2 ? Point{0, 60, 0} : Point{0, 0, 42}, dim == 2 ? 4.1 : 3.1);
   Inclusion stiff;
@@ -38,7 +38,7 @@ Scene band(int dim, const std::string &packing)
 Scene mosaic()
 {
   Scene scene = unit_scene(2, {24, 24, 0}, 0.3);
-  scene.zone.packing = "random";
+  scene.zone.packing = PackingKind::random;
   Inclusion stiff;
   stiff.material = scene.material;
   stiff.material.youngs_modulus = 1000;

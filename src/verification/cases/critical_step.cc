@@ -75,7 +75,7 @@ std::vector<Result> random_packings()
   Measured equal, unequal, three;
   for (const double nu : {0., 0.22, 0.45}) {
     Scene band = unit_scene(2, {25, 94, 0}, nu);
-    band.zone.packing = "random";
+    band.zone.packing = PackingKind::random;
     add_far_field(band, {0, 34, 0}, 4.1);
     band.coupling.transition_cells = 3;
     measure<2>(band, equal);
@@ -85,7 +85,7 @@ std::vector<Result> random_packings()
   report("critical_step_random/equal_2d", equal, results);
   report("critical_step_random/ratio_3_2d", unequal, results);
   Scene band = unit_scene(3, {9.3, 8.7, 56}, 0.3);
-  band.zone.packing = "random";
+  band.zone.packing = PackingKind::random;
   add_far_field(band, {0, 0, 25}, 3.1);
   band.coupling.transition_cells = 2;
   measure<3>(band, three);

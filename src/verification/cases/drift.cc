@@ -43,7 +43,7 @@ Scene graded(const Grading &grading)
 
 Scene made_random(Scene scene)
 {
-  scene.zone.packing = "random";
+  scene.zone.packing = PackingKind::random;
   return scene;
 }
 

@@ -22,8 +22,8 @@ struct Deviation
 void hold(Scene &scene, int side, double displacement)
 {
   LoadParameters load;
-  load.boundary = side_names[side];
-  load.kind = "displacement";
+  load.boundary = side;
+  load.kind = LoadKind::displacement;
   load.ramp = 1;
   load.value[side / 2] = displacement;
   load.displacement = load.value;
@@ -118,7 +118,7 @@ std::vector<Result> lattices()
 {
   std::vector<Result> results;
   const auto choose = [](const char *packing) {
-    return [=](Scene &scene) { scene.zone.packing = packing; };
+    return [=](Scene &scene) { scene.zone.packing = named<PackingKind>(packing); };
   };
   for (const char *packing : {"square", "hexagonal"})
     add_moduli<2>(std::string("moduli/") + packing, choose(packing), 1e-12, results);
@@ -135,7 +135,7 @@ std::vector<Result> random_packings()
   std::vector<Result> results;
   const auto choose = [](int sweeps, double ratio) {
     return [=](Scene &scene) {
-      scene.zone.packing = "random";
+      scene.zone.packing = PackingKind::random;
       scene.zone.relaxation_sweeps = sweeps;
       scene.zone.size_ratio = ratio;
     };

@@ -70,7 +70,7 @@ struct Arrangement
       scene.coupling.overlap_cells = 4;
     scene.zone.orientation[0] = angle;
     if (random_ratio > 0) {
-      scene.zone.packing = "random";
+      scene.zone.packing = PackingKind::random;
       scene.zone.size_ratio = random_ratio;
     }
   }

@@ -27,7 +27,7 @@ Scene small_scene(int dimension, const std::string &regime)
   add_far_field(scene, dimension == 2 ? Point{32, 30, 0} : Point{0, 0, 25}, 3.1);
   scene.coupling.overlap_cells = dimension == 2 ? 3 : 2;
   scene.coupling.transition_cells = 2;
-  scene.coupling.regime = regime;
+  scene.coupling.regime = named<RegimeChoice>(regime);
   return scene;
 }
 
@@ -249,8 +249,8 @@ Pulled pull(Scene scene)
   const double strain = 0.05, half = scene.specimen.size[1] / 2;
   for (const bool upper : {false, true}) {
     LoadParameters load;
-    load.boundary = upper ? "top" : "bottom";
-    load.kind = "displacement";
+    load.boundary = upper ? 3 : 2;
+    load.kind = LoadKind::displacement;
     load.value = {0., (upper ? 1 : -1) * strain * half, 0.};
     load.displacement = load.value;
     load.ramp = 400;
@@ -288,7 +288,7 @@ std::vector<Result> tension()
   const Pulled pure = pull(scene);
   add_far_field(scene, {0, 40, 0}, 3.1);
   scene.coupling.transition_cells = 2;
-  scene.coupling.regime = "nonlinear";
+  scene.coupling.regime = RegimeChoice::nonlinear;
   const Pulled coupled = pull(scene);
   double largest = 0;
   for (const auto &[x, u] : coupled.motion)

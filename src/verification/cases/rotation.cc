@@ -40,7 +40,7 @@ void rotate(const std::string &packing, std::vector<Result> &results)
   for (const double nu : {0., 0.3, 0.49})
     for (int repeat = 0; repeat < (dim == 2 ? 1 : 3); ++repeat) {
       Scene scene = unit_scene(dim, size, nu);
-      scene.zone.packing = packing;
+      scene.zone.packing = named<PackingKind>(packing);
       UnitBody<dim> unit(scene);
       auto &zone = unit.body.zone->state;
       turn(zone, random);

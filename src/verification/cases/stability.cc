@@ -181,7 +181,7 @@ Scene StabilitySetting::scene(double width) const
   Scene scene = unit_scene(
       dimension, dimension == 2 ? Point{width, whole, 0} : Point{width, width + 0.1, whole},
       poissons_ratio);
-  scene.zone.packing = packing;
+  scene.zone.packing = named<PackingKind>(packing);
   add_far_field(scene, dimension == 2 ? Point{0, zone, 0} : Point{0, 0, zone}, cell_size);
   scene.time.step_fraction = step_fraction;
   scene.coupling.scheme = scheme;

@@ -38,8 +38,8 @@ Scene held(Scene scene)
 {
   for (const int side : {2, 3}) {
     LoadParameters load;
-    load.boundary = side_names[side];
-    load.kind = "velocity";
+    load.boundary = side;
+    load.kind = LoadKind::velocity;
     for (int c = 0; c < 2; ++c)
       load.value[c] = 0;
     load.velocity = load.value;

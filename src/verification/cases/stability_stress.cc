@@ -43,7 +43,7 @@ Scene thin(const std::string &packing, int overlap_cells)
   const double h = dim == 2 ? 4.1 : 3.1, zone = 2 * overlap_cells * h + 8.01;
   Scene scene =
       dim == 2 ? unit_scene(2, {17, zone + 40, 0}, 0.3) : unit_scene(3, {6.3, 6.7, zone + 36}, 0.3);
-  scene.zone.packing = packing;
+  scene.zone.packing = named<PackingKind>(packing);
   scene.coupling.overlap_cells = overlap_cells;
   scene.coupling.transition_cells = 3;
   add_far_field(scene, dim == 2 ? Point{0, zone, 0} : Point{0, 0, zone}, h);
@@ -63,7 +63,7 @@ std::vector<Result> thin_zone()
 Scene necked(const std::string &packing)
 {
   Scene scene = unit_scene(2, {21, 94, 0}, 0.3);
-  scene.zone.packing = packing;
+  scene.zone.packing = named<PackingKind>(packing);
   scene.coupling.transition_cells = 3;
   add_far_field(scene, {0, 46, 0}, 4.1);
   scene.specimen.notches.push_back({{-11, -2.2, 0}, {-0.55, 2.2, 0}});
@@ -89,12 +89,12 @@ Scene struck(bool zone_at_the_top, double impact)
     scene.zone.upper[1] = scene.specimen.size[1];
   }
   scene.coupling.transition_cells = 3;
-  scene.coupling.regime = "automatic";
+  scene.coupling.regime = RegimeChoice::automatic;
   scene.coupling.fine_damper = 8;
   scene.coupling.gap_filter = 4;
   LoadParameters load;
-  load.boundary = "top";
-  load.kind = "velocity";
+  load.boundary = 3;
+  load.kind = LoadKind::velocity;
   const double nu = 0.3, c_p = std::sqrt((1 - nu) / (1 + nu) / (1 - 2 * nu));
   load.value[1] = load.velocity[1] = -impact * c_p;
   scene.loads.push_back(load);

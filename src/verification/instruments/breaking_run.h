@@ -58,8 +58,8 @@ inline void add_pull(Scene &scene, int axis, double speed, double ramp)
 {
   for (const bool upper : {false, true}) {
     LoadParameters load;
-    load.boundary = side_names[2 * axis + upper];
-    load.kind = "velocity";
+    load.boundary = 2 * axis + upper;
+    load.kind = LoadKind::velocity;
     load.ramp = ramp;
     load.value[axis] = upper ? speed : -speed;
     load.velocity = load.value;

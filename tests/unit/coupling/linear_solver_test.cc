@@ -57,7 +57,7 @@ double residual(const LinearSolver &solver, const Matrix &matrix, int n_columns)
 constexpr double round_off = 2.2e-16;
 constexpr double bound = 9 * 10 * round_off; // ten operations deep
 
-class LinearSolverTest : public ::testing::TestWithParam<std::string>
+class LinearSolverTest : public ::testing::TestWithParam<Solver>
 {
 };
 
@@ -101,7 +101,8 @@ TEST_P(LinearSolverTest, SolvesConstrainedSystems)
   EXPECT_LT(residual(*solver, matrix, 2), 2 * bound);
 }
 
-INSTANTIATE_TEST_SUITE_P(Libraries, LinearSolverTest, ::testing::Values("eigen", "amesos"));
+INSTANTIATE_TEST_SUITE_P(Libraries, LinearSolverTest,
+                         ::testing::Values(Solver::eigen, Solver::amesos));
 
 TEST(NarrowOrder, KeepsTheNeighboursOfAStripTogether)
 {

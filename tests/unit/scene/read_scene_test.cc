@@ -53,11 +53,11 @@ TEST(ReadScene, CoupledPlate)
   EXPECT_EQ(s.far_field.value().levels, 2);
   EXPECT_EQ(s.coupling.step_ratio, 2);
   ASSERT_EQ(s.loads.size(), 2u);
-  EXPECT_EQ(s.loads[1].kind, "velocity");
+  EXPECT_EQ(s.loads[1].kind, LoadKind::velocity);
   EXPECT_FALSE(s.loads[1].value[0]);
   EXPECT_EQ(s.loads[1].value[1].value(), -0.01);
   EXPECT_EQ(s.loads[1].ramp, 0.0002);
-  EXPECT_EQ(s.time.stop_when, "specimen_broken");
+  EXPECT_EQ(s.time.stop_when, StopWhen::specimen_broken);
   EXPECT_EQ(s.output.field_interval, 1e-4);
 }
 
@@ -65,9 +65,9 @@ TEST(ReadScene, CoupledBarIn3d)
 {
   const Scene s = good(bar);
   EXPECT_EQ(s.dimension, 3);
-  EXPECT_EQ(s.zone.packing, "fcc");
+  EXPECT_EQ(s.zone.packing, PackingKind::fcc);
   EXPECT_DOUBLE_EQ(s.zone.orientation[2], std::acos(-1.0) / 4);
-  EXPECT_EQ(s.loads[1].kind, "displacement");
+  EXPECT_EQ(s.loads[1].kind, LoadKind::displacement);
   EXPECT_EQ(s.loads[1].value[2].value(), 0);
   EXPECT_EQ(s.coupling.gap_filter, 4); // a default
   EXPECT_TRUE(std::isinf(s.output.field_interval));

@@ -18,7 +18,7 @@ struct WatchedPlate
   RegimeControl<2> control;
   coupling::StepTime step{0, 0, small.body.dt};
 
-  WatchedPlate(const std::string &regime, double degrees, double strain,
+  WatchedPlate(RegimeChoice regime, double degrees, double strain,
                const std::vector<std::string> &kind = {})
       : small(small_scene(kind)), control(regime, small.body)
   {
@@ -38,7 +38,7 @@ struct WatchedPlate
 
 TEST(RegimeControl, SmallRotationsStayLinear)
 {
-  WatchedPlate plate("automatic", 0.09, 1e-4);
+  WatchedPlate plate(RegimeChoice::automatic, 0.09, 1e-4);
   EXPECT_FALSE(plate.look());
   EXPECT_EQ(plate.control.history(), "linear");
   EXPECT_EQ(plate.small.body.regime_change, 0);
@@ -48,7 +48,7 @@ TEST(RegimeControl, ChangeOfRegimeIsBooked)
 {
   for (const auto &kind : {body_kinds[0], body_kinds[2]}) { // those with a mesh
     SCOPED_TRACE(kind.name);
-    WatchedPlate plate("automatic", 0.3, 0, kind.overrides);
+    WatchedPlate plate(RegimeChoice::automatic, 0.3, 0, kind.overrides);
     const EnergyLedger before = plate.ledger();
     EXPECT_FALSE(plate.look());
     EXPECT_EQ(plate.control.history(), "linear, corotated from 0 s");
@@ -64,14 +64,14 @@ TEST(RegimeControl, ChangeOfRegimeIsBooked)
 
 TEST(RegimeControl, FiniteStrainBecomesNonlinear)
 {
-  WatchedPlate plate("automatic", 0, 0.02);
+  WatchedPlate plate(RegimeChoice::automatic, 0, 0.02);
   EXPECT_FALSE(plate.look());
   EXPECT_EQ(plate.control.history(), "linear, nonlinear from 0 s");
 }
 
 TEST(RegimeControl, RegimesAreNotTakenBack)
 {
-  WatchedPlate plate("automatic", 0.3, 0);
+  WatchedPlate plate(RegimeChoice::automatic, 0.3, 0);
   EXPECT_FALSE(plate.look());
   plate.small.deform(Eigen::Matrix2d::Zero());
   EXPECT_FALSE(plate.look());
@@ -82,7 +82,7 @@ TEST(RegimeControl, RegimesAreNotTakenBack)
 // degrees against its middle, cells (4.1 d wide) by 0.14 at least; strains stay below 0.8 %.
 TEST(RegimeControl, BendingBecomesNonlinear)
 {
-  WatchedPlate plate("automatic", 0, 0);
+  WatchedPlate plate(RegimeChoice::automatic, 0, 0);
   auto &body = plate.small.body;
   constexpr double curvature = 2.5e-4;
   const auto bend = [&](Components<2> &u, int i, double x, double y) {
@@ -105,18 +105,18 @@ TEST(RegimeControl, BendingBecomesNonlinear)
 
 TEST(RegimeControl, FixedRegimesAreKeptAndTheirLimitsReported)
 {
-  WatchedPlate linear("linear", 1, 0);
+  WatchedPlate linear(RegimeChoice::linear, 1, 0);
   const auto reason = linear.look();
   ASSERT_TRUE(reason);
   EXPECT_NE(reason->find("/coupling/regime"), std::string::npos) << *reason;
   EXPECT_FALSE(linear.look()) << "once is enough";
   EXPECT_EQ(linear.control.history(), "linear");
 
-  WatchedPlate corotated("corotated", 90, 0);
+  WatchedPlate corotated(RegimeChoice::corotated, 90, 0);
   EXPECT_FALSE(corotated.look());
   EXPECT_EQ(corotated.control.history(), "corotated");
 
-  WatchedPlate torn("nonlinear", 0, 0.12);
+  WatchedPlate torn(RegimeChoice::nonlinear, 0, 0.12);
   EXPECT_TRUE(torn.look());
 }
 } // namespace

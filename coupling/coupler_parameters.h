@@ -1,0 +1,32 @@
+// What the couplers may be told, with its defaults.
+#pragma once
+
+#include "coupling/scheme.h"
+
+#include <array>
+#include <string>
+
+namespace ligament::coupling
+{
+struct FineScaleSplitParameters
+{
+  int step_ratio = 1;     // m: the far field acts once per m steps
+  double fine_damper = 8; // c_f
+  double gap_filter = 4;  // c_g
+  bool patch_fit = true;
+  Solver solver = Solver::eigen;
+  /// Factor on the particles' share of M_c; the far field's density carries it already.
+  double coarse_mass = 1;
+};
+
+struct BridgingDomainParameters
+{
+  Scheme scheme = Scheme::acceleration;
+  double fine_damper = 8; // c_f
+  DamperForm damper_form = DamperForm::symmetrised;
+  int multiplier_cells = 1;
+  /// Normal strains (xx, yy, zz) at which constant forces cancel the ghost forces; 0: none.
+  std::array<double, 3> reference_strain = {};
+  Solver solver = Solver::eigen;
+};
+} // namespace ligament::coupling

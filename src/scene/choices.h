@@ -1,0 +1,113 @@
+// What a scene chooses by a word: enums, and their words in the order of the values.
+#pragma once
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace ligament::program
+{
+/// Arrangement of the particles.
+enum class PackingKind
+{
+  square,       // 2D
+  hexagonal,    // 2D
+  simple_cubic, // 3D
+  fcc,          // 3D
+  random,
+  file
+};
+
+/// What breaks a bond.
+enum class Criterion
+{
+  none,
+  maximum_tension,
+  face_tension
+};
+
+/// The kinematics of overlap and far field: that of the motion, or a fixed one.
+enum class RegimeChoice
+{
+  automatic,
+  linear,
+  corotated,
+  nonlinear
+};
+
+/// What happens when a run leaves the range of its models.
+enum class Guard
+{
+  stop,
+  warn
+};
+
+enum class StopWhen
+{
+  end,
+  specimen_broken
+};
+
+/// What a load prescribes.
+enum class LoadKind
+{
+  velocity,     // m/s
+  displacement, // m
+  traction      // Pa
+};
+
+inline const std::vector<std::string> &words(PackingKind)
+{
+  static const std::vector<std::string> list = {"square", "hexagonal", "simple_cubic",
+                                                "fcc",    "random",    "file"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(Criterion)
+{
+  static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(RegimeChoice)
+{
+  static const std::vector<std::string> list = {"automatic", "linear", "corotated", "nonlinear"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(Guard)
+{
+  static const std::vector<std::string> list = {"stop", "warn"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(StopWhen)
+{
+  static const std::vector<std::string> list = {"end", "specimen_broken"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(LoadKind)
+{
+  static const std::vector<std::string> list = {"velocity", "displacement", "traction"};
+  return list;
+}
+
+template <typename Enum>
+const std::string &word_of(Enum value)
+{
+  return words(value)[std::size_t(value)];
+}
+
+/// The value of a word; core::InputError when there is none.
+template <typename Enum>
+Enum named(const std::string &word)
+{
+  const auto &list = words(Enum());
+  const auto found = std::find(list.begin(), list.end(), word);
+  core::require(found != list.end(), "unknown word \"" + word + "\"");
+  return Enum(found - list.begin());
+}
+} // namespace ligament::program
