@@ -208,6 +208,7 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
   long n_reached = 0;
   sweep.n_reached = &n_reached;
   sweep.faces_too = faces_too;
+  sweep.by_particle = breaking.by_particle;
   sweep.faces_at_once = faces_at_once_ && faces_too && breaking.strength > 0;
   add_slice_forces(sweep);
   if (breaking.strength > 0)

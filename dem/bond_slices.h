@@ -73,6 +73,7 @@ struct SliceSweep
   bool faces_at_once = false; // faces of all particles are looked at together with their forces
   long *n_reached = nullptr;  // grows by the slices with a traction that reaches the limit
   bool faces_too = true;      // false: notes all particles with a traction that reaches the limit
+  bool by_particle = true;    // of BreakScreen
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };

@@ -1,6 +1,9 @@
 // When a bond breaks: the criterion and its strengths.
 #pragma once
 
+#include "dem/fracture/face_tension.h"
+#include "dem/fracture/maximum_tension.h"
+
 #include <vector>
 
 namespace ligament::dem
@@ -8,19 +11,21 @@ namespace ligament::dem
 /// theory.md section 1.6.
 struct FractureLaw
 {
-  enum class Criterion
+  /// One of dem/fracture, or any other that criterion() makes of a struct.
+  struct Criterion : CriterionRef
   {
-    none,
-    face_tension,   // the normal stress on the face
-    maximum_tension // the largest principal stress as the face carries it, eq. (D12)
+    static constexpr CriterionRef none{};
+    static constexpr CriterionRef face_tension = dem::criterion<FaceTension>();
+    static constexpr CriterionRef maximum_tension = dem::criterion<MaximumTension>();
+
+    constexpr Criterion(CriterionRef criterion = none) : CriterionRef(criterion) {}
   };
   Criterion criterion = Criterion::none;
   double strength = 0; // Pa
   /// Pa, of each material where a body has several; empty: `strength` for all. A bond between two
   /// breaks at the smaller one.
   std::vector<double> strengths = {};
-  /// m^2, thickness included: faces of another size than this bear another tension, eq. (D12b),
-  /// maximum_tension alone; 0: size doesn't matter.
+  /// m^2, thickness included: the whole face of size factors, eq. (D12b); 0: size doesn't matter.
   double whole_face = 0;
 };
 } // namespace ligament::dem

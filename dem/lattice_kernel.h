@@ -68,6 +68,8 @@ struct BreakScreen
 {
   double strength = 0; // Pa; 0: nothing breaks
   double tangent = 0;
+  /// Whether nothing breaks either that eq. (D12d) keeps below the strength.
+  bool by_particle = true;
 
   /// 1 over the cosine of the angle with that tangent.
   double per_cosine() const { return std::sqrt(1 + tangent * tangent); }

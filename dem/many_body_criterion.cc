@@ -1,49 +1,12 @@
 // Which bonds break: the criteria of theory.md section 1.6, looked at only where a bound of the
 // kernels says that they could hold.
+#include "dem/fracture/places_apart.h"
 #include "dem/many_body_force.h"
-#include "dem/principal_tension.h"
 
 #include <algorithm>
-#include <map>
 
 namespace ligament::dem
 {
-namespace
-{
-/// Places of which no two are closer than a distance.
-template <int dim>
-class PlacesApart
-{
-public:
-  explicit PlacesApart(double distance) : distance_(distance) {}
-
-  /// False, and the place is left out, when another one is too close.
-  bool add(const Vector<dim> &place)
-  {
-    const auto close = [&](const Vector<dim> &other) {
-      return (place - other).squaredNorm() < distance_ * distance_;
-    };
-    Cell cell;
-    for (int k = 0; k < int(std::pow(3, dim)); ++k) {
-      for (int c = 0, rest = k; c < dim; ++c, rest /= 3)
-        cell[c] = std::lround(std::floor(place[c] / distance_)) + rest % 3 - 1;
-      const auto found = cells_.find(cell);
-      if (found != cells_.end() && std::any_of(found->second.begin(), found->second.end(), close))
-        return false;
-    }
-    for (int c = 0; c < dim; ++c)
-      cell[c] = std::lround(std::floor(place[c] / distance_));
-    cells_[cell].push_back(place);
-    return true;
-  }
-
-private:
-  using Cell = std::array<long, dim>; // of the size `distance`
-  double distance_;
-  std::map<Cell, std::vector<Vector<dim>>> cells_;
-};
-} // namespace
-
 template <int dim>
 void ManyBodyForce<dim>::set_strength(double strength)
 {
@@ -76,8 +39,8 @@ void ManyBodyForce<dim>::find_largest_size_factor()
 template <int dim>
 double ManyBodyForce<dim>::size_factor(const Bond<dim> &b) const
 {
-  return fracture_.whole_face > 0
-             ? PrincipalTension<dim>::size_factor(b.area / fracture_.whole_face)
+  return fracture_.whole_face > 0 && fracture_.criterion != FractureLaw::Criterion::none
+             ? criterion().size_factor(b.area / fracture_.whole_face)
              : 1;
 }
 
@@ -100,9 +63,8 @@ BreakScreen ManyBodyForce<dim>::breaking_screen(bool of_table) const
       least = std::min(least, fracture_.strengths[m] * materials_.base().shear_modulus() /
                                   materials_.all()[m].shear_modulus());
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  const bool principal = fracture_.criterion == FractureLaw::Criterion::maximum_tension;
-  return {noted_share_ * least / largest_size_factor_ * (1 - round_off),
-          principal ? PrincipalTension<dim>::tangent : 0};
+  return {noted_share_ * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
+          criterion().clearing != Clearing::by_face};
 }
 
 template <int dim>
@@ -116,11 +78,8 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
   const double normal = t.traction.dot(t.normal);
   if (normal <= 0 || !edge_.may_break(b))
     return t;
-  t.utilisation = normal;
-  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
-    t.utilisation = size_factor(b) * (normal + PrincipalTension<dim>::tangent *
-                                                   (t.traction - normal * t.normal).norm());
-  t.utilisation /= strength_of(b);
+  const double shear = (t.traction - normal * t.normal).norm();
+  t.utilisation = size_factor(b) * (normal + criterion().tangent * shear) / strength_of(b);
   return t;
 }
 
@@ -128,8 +87,8 @@ BondTension<dim> ManyBodyForce<dim>::bond_tension(const BondId &id, const Bond<d
 template <int dim>
 bool ManyBodyForce<dim>::is_cleared_by_stress() const
 {
-  return fracture_.criterion == FractureLaw::Criterion::maximum_tension &&
-         (!plastic_ || plastic_->plastic().empty());
+  return fracture_.criterion != FractureLaw::Criterion::none &&
+         criterion().clearing == Clearing::by_stress && (!plastic_ || plastic_->plastic().empty());
 }
 
 template <int dim>
@@ -176,10 +135,9 @@ void ManyBodyForce<dim>::clear_by_stress(const Particles &p)
     contacts_.for_each_moment(p, add);
   };
   const LatticeArrays<dim> a = arrays(p, work_);
-  const std::vector<int> kept =
-      screen_.keep(noted, work_.own_terms,
-                   {bonds_, a, limit, per_volume, for_each_moment, PrincipalTension<dim>::tangent,
-                    PrincipalTension<dim>::cone});
+  const std::vector<int> kept = screen_.keep(noted, work_.own_terms,
+                                             {bonds_, a, limit, per_volume, for_each_moment,
+                                              criterion().tangent, PrincipalTension<dim>::cone});
   auto &rows = work_.exceeded_rows;
   std::vector<RowRange> rows_left;
   auto range = rows.begin();
@@ -289,14 +247,13 @@ std::vector<Strain<dim>> ManyBodyForce<dim>::stresses_of(const std::vector<int> 
 }
 
 template <int dim>
-void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &bonds,
-                                                const Particles &p,
-                                                const std::vector<double> &pressure,
-                                                double least) const
+void ManyBodyForce<dim>::find_tensions(std::vector<BondTension<dim>> &bonds, const Particles &p,
+                                       const std::vector<double> &pressure, double least) const
 {
   std::vector<int> few;
-  for (const auto &t : bonds)
-    few.insert(few.end(), {t.bond.i, t.bond.j});
+  if (criterion().needs_stress)
+    for (const auto &t : bonds)
+      few.insert(few.end(), {t.bond.i, t.bond.j});
   std::sort(few.begin(), few.end());
   few.erase(std::unique(few.begin(), few.end()), few.end());
   const auto stress = stresses_of(few, p, pressure);
@@ -305,15 +262,13 @@ void ManyBodyForce<dim>::find_principal_tension(std::vector<BondTension<dim>> &b
   };
   for (auto &t : bonds) {
     constexpr double round_off = 1e-12;
-    const double share = size_factor(t.bond) / strength_of(t.bond);
-    const Strain<dim> mean = (of(t.bond.i) + of(t.bond.j)) / 2;
-    t.utilisation = share * PrincipalTension<dim>::bound(mean, t.normal, t.traction);
-    if (t.utilisation < least * (1 - round_off))
-      continue;
-    const Vector<dim> e = PrincipalTension<dim>::direction(mean);
-    const double cosine = t.normal.dot(e);
-    t.utilisation =
-        std::abs(cosine) < PrincipalTension<dim>::cone ? 0 : share * t.traction.dot(e) / cosine;
+    const double size = size_factor(t.bond), strength = strength_of(t.bond);
+    LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
+    if (criterion().needs_stress)
+      face.stress = (of(t.bond.i) + of(t.bond.j)) / 2;
+    t.utilisation = size * criterion().bound(face) / strength;
+    if (t.utilisation >= least * (1 - round_off))
+      t.utilisation = size * criterion().tension(face) / strength;
   }
 }
 
@@ -329,22 +284,17 @@ std::vector<BondId> ManyBodyForce<dim>::exceeding_bonds(const Particles &p) cons
         found.end());
   };
   keep_exceeding();
-  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension) {
-    find_principal_tension(found, p, work_.pressure, 1);
-    keep_exceeding();
-  }
+  find_tensions(found, p, work_.pressure, 1);
+  keep_exceeding();
   sort_by_ids(found, p); // few are left
+  const bool all_at_once = criterion().apart == 0;
+  if (!all_at_once)
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   std::vector<BondId> exceeding;
-  if (fracture_.criterion == FractureLaw::Criterion::face_tension) {
-    for (const auto &t : found)
-      exceeding.push_back(t.id);
-    return exceeding;
-  }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
-  PlacesApart<dim> places(PrincipalTension<dim>::apart * spacing_);
+  PlacesApart<dim> places(criterion().apart * spacing_);
   for (const auto &t : found)
-    if (places.add(get(p.reference, t.bond.i) + t.bond.lever_i))
+    if (all_at_once || places.add(get(p.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);
   return exceeding;
 }
@@ -362,8 +312,7 @@ Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
                                return std::max(watch[t.bond.i], watch[t.bond.j]) != Watch::watched;
                              }),
               found.end());
-  if (fracture_.criterion == FractureLaw::Criterion::maximum_tension)
-    find_principal_tension(found, p, work_.pressure, noted_share_);
+  find_tensions(found, p, work_.pressure, noted_share_);
   for (const auto &t : found)
     if (t.utilisation >= noted_share_ && t.utilisation > most.share)
       most = {t.utilisation, Vector<dim>(get(p.reference, t.bond.i) + t.bond.lever_i)};
@@ -389,15 +338,13 @@ BondTension<dim> ManyBodyForce<dim>::weakest_bond(const Particles &p,
     });
   std::sort(bonds.begin(), bonds.end(),
             [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
-  if (fracture_.criterion == FractureLaw::Criterion::face_tension)
-    return bonds.empty() ? weakest : bonds[0];
   // Those with the largest bounds first, some at a time, until no bound is above what was found.
   constexpr std::size_t some = 32;
   for (std::size_t k = 0; k < bonds.size() && bonds[k].utilisation > weakest.utilisation; k += some)
   {
     std::vector<BondTension<dim>> now(bonds.begin() + k,
                                       bonds.begin() + std::min(k + some, bonds.size()));
-    find_principal_tension(now, p, work.pressure, 0);
+    find_tensions(now, p, work.pressure, 0);
     for (const auto &t : now)
       if (t.utilisation > weakest.utilisation)
         weakest = t;

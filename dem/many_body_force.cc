@@ -246,16 +246,16 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     work.marks.assign(plastic_->n_blocks(), 0);
     screen = {yield_traction_, work.marks.data()};
   }
-  const BreakScreen none;
-  const bool may_look_by_particle = may_break && !awake_ranges(work) && screen.traction == 0;
+  const BreakScreen none, breaking = may_break ? breaking_screen(false) : none;
+  const bool may_look_by_particle =
+      may_break && breaking.by_particle && !awake_ranges(work) && screen.traction == 0;
   const auto lattice_forces = [&](bool by_particle) {
-    return kernel_.forces(a, bonds_.segments(), may_break ? breaking_screen(false) : none, screen,
-                          rows_, work.exceeded_rows, awake_ranges(work), by_particle,
-                          !is_cleared_by_stress());
+    return kernel_.forces(a, bonds_.segments(), breaking, screen, rows_, work.exceeded_rows,
+                          awake_ranges(work), by_particle, !is_cleared_by_stress());
   };
   bool by_particle = may_look_by_particle && work.way.by_particle;
   const long n_looked = lattice_forces(by_particle);
-  if (may_break)
+  if (may_break && breaking.by_particle)
     work.way.choose(n_looked, p.n_owned);
   if (!by_particle && may_look_by_particle && work.way.by_particle) {
     // Once more is less than to look at all that was noted.

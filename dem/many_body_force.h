@@ -260,7 +260,8 @@ private:
   double strength_of(const Bond<dim> &bond) const;
   double size_factor(const Bond<dim> &bond) const;
   void find_largest_size_factor();
-  /// With the utilisation by face_tension, or a bound of that by maximum_tension, eq. (D12c).
+  const CriterionIn<dim> &criterion() const { return fracture_.criterion.template in<dim>(); }
+  /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                                 const std::vector<double> &pressure) const;
   /// Whether clear_by_stress() follows the kernels.
@@ -278,10 +279,10 @@ private:
   /// Averaged stresses (D10) in Pa of these particles, ascending.
   std::vector<Strain<dim>> stresses_of(const std::vector<int> &few, const Particles &particles,
                                        const std::vector<double> &pressure) const;
-  /// Utilisations by eq. (D12) in place of their bounds; where they stay below `least`, something
-  /// not smaller and below it may stand instead.
-  void find_principal_tension(std::vector<BondTension<dim>> &bonds, const Particles &particles,
-                              const std::vector<double> &pressure, double least) const;
+  /// Utilisations by the criterion in place of their bounds; where they stay below `least`,
+  /// something not smaller and below it may stand instead.
+  void find_tensions(std::vector<BondTension<dim>> &bonds, const Particles &particles,
+                     const std::vector<double> &pressure, double least) const;
   /// The bonds that break now, in this order.
   std::vector<BondId> exceeding_bonds(const Particles &particles) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds, double time);

@@ -18,19 +18,11 @@ struct PrincipalTension
   static constexpr double cone = dim == 2 ? 0.577 : 0.4;
   /// tan of that inclination: no tension is above sigma + tangent |tau|.
   static constexpr double tangent = dim == 2 ? 1.4156 : 2.2913;
-  /// Of two faces closer than this (units of d) one alone breaks in a step.
-  static constexpr double apart = 1.6;
 
   /// S_0 of eq. (D12b) in m^2, of unit thickness in 2D: the face of the densest lattice.
   static double whole_face(double spacing)
   {
     return dim == 2 ? spacing / std::sqrt(3.) : spacing * spacing / std::sqrt(8.);
-  }
-  /// By which a face of so many whole faces counts its tension, eq. (D12b).
-  static double size_factor(double area_ratio)
-  {
-    return dim == 2 ? std::pow(std::max(area_ratio, 0.7), 0.3)
-                    : std::pow(std::max(area_ratio, 0.5), 0.15);
   }
 
   /// What no tension is above that a traction on a face with this normal has along the largest

@@ -294,7 +294,7 @@ private:
   public:
     HWY_INLINE Look(const Slices &slices, int s, int lane)
         : sweep_(slices.sweep_), table_(slices.table_), first_lane_(s * slice_width + lane),
-          knows_stress_(!table_.per_volume.empty() && !sweep_.nearness &&
+          knows_stress_(sweep_.by_particle && !table_.per_volume.empty() && !sweep_.nearness &&
                         table_.first_slot[s + 1] - table_.first_slot[s] <= most_faces),
           strain_(hn::Set(SliceLanes(), sweep_.strain)),
           found_(hn::Lt(strain_, hn::Zero(SliceLanes()))), stress_(SliceLanes()),
