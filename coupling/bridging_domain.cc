@@ -83,13 +83,15 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
   }
   std::vector<char> is_near(zone.n_owned, 0);
-  bodies.zone->force->for_each_face(zone, [&](const particles::FaceView<dim> &face) {
-    if (overlap_.member_of_particle[face.i] >= 0) {
-      is_near[face.i] = 1;
-      if (face.j >= 0)
-        is_near[face.j] = 1;
-    }
-  });
+  const std::vector<int> members = overlap_.member_particles();
+  bodies.zone->force->for_each_face(
+      zone,
+      [&](const particles::FaceView<dim> &face) {
+        is_near[face.i] = 1;
+        if (face.j >= 0)
+          is_near[face.j] = 1;
+      },
+      &members);
   bodies.zone->compute_forces(0);
   far.compute_forces(0);
   compute_near_force(bodies, dead_nodal_);

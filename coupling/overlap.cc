@@ -102,6 +102,15 @@ double Overlap<dim>::subtracted_share(const Vector<dim> &location,
   return pad ? 1 : 1 - weight(location);
 }
 
+template <int dim>
+std::vector<int> Overlap<dim>::member_particles() const
+{
+  std::vector<int> particles;
+  for (const Member &m : members)
+    particles.push_back(m.particle);
+  return particles;
+}
+
 // Open are the particles whose cell the faces do not close (a neighbour is missing at the edge of
 // the packing; faces on the specimen's surface do close); the edge are these and their neighbours.
 template <int dim>
@@ -112,20 +121,24 @@ std::vector<char> Overlap<dim>::find_edge(const particles::Particles<dim> &parti
   std::vector<char> open(n, 0), at_edge(n, 0);
   std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
   std::vector<double> surface(n, 0.);
-  std::vector<std::vector<int>> neighbours(n);
   force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
     closure[face.i] += face.area * face.normal;
     surface[face.i] += face.area;
-    if (face.j >= 0)
-      neighbours[face.i].push_back(face.j);
   });
   // A cell that lacks a sliver of a face is open: its strain is wrong by the sliver's share.
+  std::vector<int> few;
   for (int i = 0; i < n; ++i)
     if (closure[i].norm() > 1e-12 * surface[i]) {
       open[i] = at_edge[i] = 1;
-      for (const int j : neighbours[i])
-        at_edge[j] = 1;
+      few.push_back(i);
     }
+  force.for_each_face(
+      particles,
+      [&](const particles::FaceView<dim> &face) {
+        if (face.j >= 0)
+          at_edge[face.j] = 1;
+      },
+      &few);
   for (int i = 0; i < n; ++i)
     if (at_edge[i])
       edge.push_back(i);

@@ -95,6 +95,8 @@ public:
   const OverlapParameters<dim> parameters;
 
   int n_nodes() const { return int(near_nodes.size()); }
+  /// Ascending.
+  std::vector<int> member_particles() const;
 
   /// Vector from one particle to another or to the nearest of its periodic images, in m.
   Vector<dim> offset(const Vector<dim> &from, const Vector<dim> &to) const;

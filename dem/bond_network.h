@@ -72,6 +72,11 @@ public:
   template <typename Visit>
   void for_each_interface(Visit &&visit) const;
 
+  /// The same for the bonds of several particles (ascending; null: all), each once, in the same
+  /// order.
+  template <typename Visit>
+  void for_each_bond_of_some(const std::vector<int> *particles, Visit &&visit) const;
+
   /// The same for the bonds of one particle: all, and those of the table.
   template <typename Visit>
   void for_each_bond_of(int particle, Visit &&visit) const;
@@ -136,6 +141,26 @@ void BondNetwork<dim>::for_each_interface(Visit &&visit) const
   for (const int b : between_materials_)
     if (intact_[b])
       visit(BondId{b, -1}, irregular_[b]);
+}
+
+template <int dim>
+template <typename Visit>
+void BondNetwork<dim>::for_each_bond_of_some(const std::vector<int> *particles, Visit &&visit) const
+{
+  if (!particles) {
+    for_each_bond(visit);
+    return;
+  }
+  using Place = std::array<int, 3>; // lattice, table, between materials; index; direction
+  std::vector<Place> places;
+  for (const int i : *particles)
+    for_each_bond_of(i, [&](const BondId &id, const Bond<dim> &b) {
+      places.push_back({id.direction >= 0 ? 0 : b.joins_materials ? 2 : 1, id.index, id.direction});
+    });
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  for (const auto &[kind, index, direction] : places)
+    visit(BondId{index, direction}, bond({index, direction}));
 }
 
 template <int dim>

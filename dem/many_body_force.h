@@ -60,9 +60,9 @@ public:
   particles::ElasticConstants<dim> elastic_constants() const override;
 
   /// Without the bonds between materials and the volumes that they enter.
-  void
-  add_tangent(const Particles &particles,
-              const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
+  void add_tangent(const Particles &particles,
+                   const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
+                   const std::vector<int> *of = nullptr) const override;
 
   void set_energy_weights(const std::vector<double> &weights) override;
 
@@ -71,9 +71,9 @@ public:
   /// Which faces never break, and the pressures of cells that lack faces.
   const EdgeCells<dim> &edge_cells() const { return edge_; }
 
-  void
-  for_each_face(const Particles &particles,
-                const std::function<void(const particles::FaceView<dim> &)> &visit) const override;
+  void for_each_face(const Particles &particles,
+                     const std::function<void(const particles::FaceView<dim> &)> &visit,
+                     const std::vector<int> *of = nullptr) const override;
 
   /// Of the bonds that are intact now.
   std::unique_ptr<particles::PartialForce<dim>>

@@ -4,13 +4,39 @@
 #include "dem/partial_many_body.h"
 #include "dem/surface_law.h"
 
+#include <algorithm>
+#include <map>
+
 namespace ligament::dem
 {
+namespace
+{
+/// Whether a particle is among some, or all.
+class Asked
+{
+public:
+  Asked(const std::vector<int> *of, int n_particles)
+  {
+    if (!of)
+      return;
+    is_asked_.assign(n_particles, 0);
+    for (const int i : *of)
+      is_asked_[i] = 1;
+  }
+  bool has(int i) const { return is_asked_.empty() || is_asked_[i]; }
+
+private:
+  std::vector<char> is_asked_; // empty: all
+};
+} // namespace
+
 template <int dim>
 void ManyBodyForce<dim>::add_tangent(
     const Particles &particles,
-    const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const
+    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
+    const std::vector<int> *of) const
 {
+  const Asked asked(of, bonds_.n_particles());
   using Term = particles::QuadraticTerm<dim>;
   constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
   const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
@@ -18,7 +44,7 @@ void ManyBodyForce<dim>::add_tangent(
   };
 
   Term term;
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
     if (b.joins_materials)
       return;
     term.kind = Term::Kind::bond;
@@ -36,6 +62,8 @@ void ManyBodyForce<dim>::add_tangent(
   });
 
   for (const auto &wall : surface_.walls()) {
+    if (!asked.has(wall.i))
+      continue;
     term.kind = Term::Kind::wall;
     term.location = place(wall.i, wall.lever);
     term.members = {wall.i};
@@ -46,12 +74,12 @@ void ManyBodyForce<dim>::add_tangent(
 
   if (materials_.has_no_dilatation())
     return;
-  std::vector<std::vector<int>> walls_of(bonds_.n_particles());
-  for (std::size_t w = 0; w < surface_.walls().size(); ++w)
-    walls_of[surface_.walls()[w].i].push_back(int(w));
-  for (int i = 0; i < bonds_.n_particles(); ++i) {
+  std::multimap<int, const WallFace<dim> *> walls_of;
+  for (const auto &wall : surface_.walls())
+    walls_of.insert({wall.i, &wall});
+  const auto add_volume = [&](int i) {
     if (interfaces_.is_member(i))
-      continue;
+      return;
     term.kind = Term::Kind::volumetric;
     term.location = place(i, Vector<dim>::Zero());
     term.members = {i};
@@ -66,8 +94,9 @@ void ManyBodyForce<dim>::add_tangent(
       term.rows.template middleCols<dofs>(0) += weight * opening_rows<dim>(own, -1);
       term.rows.template middleCols<dofs>(member++ * dofs) += weight * opening_rows<dim>(other, 1);
     });
-    for (const int w : walls_of[i]) {
-      const auto &wall = surface_.walls()[w];
+    const auto [first, last] = walls_of.equal_range(i);
+    for (auto w = first; w != last; ++w) {
+      const WallFace<dim> &wall = *w->second;
       const auto weight =
           (law_of(wall).area_r / particles.volume[i] * pressed_along(wall).transpose()).eval();
       term.rows.template middleCols<dofs>(0) += weight * opening_rows<dim>(wall.lever, -1);
@@ -75,26 +104,43 @@ void ManyBodyForce<dim>::add_tangent(
     term.stiffness.setConstant(1,
                                lambda_per_volume_[i] * particles.volume[i] * particles.volume[i]);
     add(term);
+  };
+  if (!of) {
+    for (int i = 0; i < bonds_.n_particles(); ++i)
+      add_volume(i);
+    return;
   }
+  std::vector<int> entered = *of; // neighbours are in the volumes of each other
+  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
+    entered.insert(entered.end(), {b.i, b.j});
+  });
+  std::sort(entered.begin(), entered.end());
+  entered.erase(std::unique(entered.begin(), entered.end()), entered.end());
+  for (const int i : entered)
+    add_volume(i);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::for_each_face(
-    const Particles &particles,
-    const std::function<void(const particles::FaceView<dim> &)> &visit) const
+    const Particles &particles, const std::function<void(const particles::FaceView<dim> &)> &visit,
+    const std::vector<int> *of) const
 {
+  const Asked asked(of, bonds_.n_particles());
   const auto both_sides = [&](const Bond<dim> &b, bool bonded) {
     const Vector<dim> centroid = get(particles.reference, b.i) + b.lever_i;
-    visit({b.i, b.j, b.normal, b.area, centroid, bonded});
-    visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
+    if (asked.has(b.i))
+      visit({b.i, b.j, b.normal, b.area, centroid, bonded});
+    if (asked.has(b.j))
+      visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
   };
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) { both_sides(b, true); });
+  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) { both_sides(b, true); });
   for (const auto &contact : contacts_.all())
     if (contact.from_face)
       both_sides(contact.face, false);
   for (const auto &face : boundary_faces_)
-    visit({face.i, -1, face.normal, face.area,
-           Vector<dim>(get(particles.reference, face.i) + face.lever), false});
+    if (asked.has(face.i))
+      visit({face.i, -1, face.normal, face.area,
+             Vector<dim>(get(particles.reference, face.i) + face.lever), false});
 }
 
 template <int dim>
@@ -116,7 +162,9 @@ ManyBodyForce<dim>::part(const Particles &particles, const std::vector<int> &mem
       lambda_per_volume[k] = lambda_per_volume_[i];
     }
   std::vector<typename PartialManyBody<dim>::SharedBond> bonds;
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
+  std::vector<int> ascending = members;
+  std::sort(ascending.begin(), ascending.end());
+  bonds_.for_each_bond_of_some(&ascending, [&](BondId, const Bond<dim> &b) {
     if (index[b.i] < 0 || index[b.j] < 0)
       return;
     Bond<dim> renumbered = b;
@@ -172,16 +220,22 @@ double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::ve
 }
 
 // The virtual members are instantiated here, the rest of the class in its own file.
-template void ManyBodyForce<2>::add_tangent(
-    const Particles &, const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
-template void ManyBodyForce<3>::add_tangent(
-    const Particles &, const std::function<void(const particles::QuadraticTerm<3> &)> &) const;
+template void
+ManyBodyForce<2>::add_tangent(const Particles &,
+                              const std::function<void(const particles::QuadraticTerm<2> &)> &,
+                              const std::vector<int> *) const;
+template void
+ManyBodyForce<3>::add_tangent(const Particles &,
+                              const std::function<void(const particles::QuadraticTerm<3> &)> &,
+                              const std::vector<int> *) const;
 template void
 ManyBodyForce<2>::for_each_face(const Particles &,
-                                const std::function<void(const particles::FaceView<2> &)> &) const;
+                                const std::function<void(const particles::FaceView<2> &)> &,
+                                const std::vector<int> *) const;
 template void
 ManyBodyForce<3>::for_each_face(const Particles &,
-                                const std::function<void(const particles::FaceView<3> &)> &) const;
+                                const std::function<void(const particles::FaceView<3> &)> &,
+                                const std::vector<int> *) const;
 template std::unique_ptr<particles::PartialForce<2>>
 ManyBodyForce<2>::part(const Particles &, const std::vector<int> &,
                        const particles::ParticleForce<2>::TermShare &) const;

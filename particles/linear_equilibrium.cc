@@ -11,18 +11,17 @@ void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim>
                        const std::vector<char> &is_free, Eigen::VectorXd &motion)
 {
   constexpr int dofs = n_particle_dofs<dim>;
-  std::vector<int> unknown(is_free.size(), -1);
-  int n_unknown = 0;
+  std::vector<int> unknown(is_free.size(), -1), free;
   for (std::size_t i = 0; i < is_free.size(); ++i)
-    if (is_free[i])
-      unknown[i] = n_unknown++;
+    if (is_free[i]) {
+      unknown[i] = int(free.size());
+      free.push_back(int(i));
+    }
+  const int n_unknown = int(free.size());
 
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
-  force.add_tangent(particles, [&](const QuadraticTerm<dim> &term) {
-    if (std::none_of(term.members.begin(), term.members.end(),
-                     [&](int i) { return unknown[i] >= 0; }))
-      return;
+  const auto add_term = [&](const QuadraticTerm<dim> &term) {
     const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
     for (std::size_t a = 0; a < term.members.size(); ++a) {
       const int row = unknown[term.members[a]];
@@ -39,7 +38,8 @@ void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim>
               entries.emplace_back(dofs * row + r, dofs * column + c, block(r, c));
       }
     }
-  });
+  };
+  force.add_tangent(particles, add_term, &free);
   Eigen::SparseMatrix<double> matrix(right.size(), right.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);

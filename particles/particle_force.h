@@ -111,9 +111,11 @@ public:
   /// and energy stay as they are.
   virtual void set_coupled_edge(const Particles<dim> &, CoupledEdge<dim>) {}
 
-  /// Every quadratic term of the linearised energy of the present bonds, once.
+  /// Every quadratic term of the linearised energy of the present bonds that one of these particles
+  /// (ascending; null: all) enters, once, in an order that does not depend on who is asked for.
   virtual void add_tangent(const Particles<dim> &particles,
-                           const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
+                           const std::function<void(const QuadraticTerm<dim> &)> &add,
+                           const std::vector<int> *of = nullptr) const = 0;
 
   /// What the force remembers beyond the particles' motion, at the time of the present positions
   /// and before compute(). load() follows the construction of the same body and the load of the
@@ -132,9 +134,11 @@ public:
                                                   const std::vector<int> &members,
                                                   const TermShare &share) const;
 
-  /// Every face of every cell, once per side (i, j), then the faces on the surface (j = -1).
+  /// Every face of the cells of these particles (ascending; null: all), once per side (i, j), then
+  /// those on the surface (j = -1); in an order that does not depend on who is asked for.
   virtual void for_each_face(const Particles<dim> &particles,
-                             const std::function<void(const FaceView<dim> &)> &visit) const = 0;
+                             const std::function<void(const FaceView<dim> &)> &visit,
+                             const std::vector<int> *of = nullptr) const = 0;
 };
 
 template <int dim>

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace ligament::coupling
 {
@@ -251,18 +252,30 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
                                                         const particles::Particles<dim> &particles,
                                                         const particles::ParticleForce<dim> &force)
 {
-  const int n_particles = int(overlap.member_of_particle.size());
-  std::vector<std::vector<Vector<dim>>> on_surface(n_particles), felt(n_particles);
-  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
+  using Face = particles::FaceView<dim>;
+  const std::vector<int> members = overlap.member_particles();
+  std::vector<int> near_members = members; // and their neighbours
+  const auto add_neighbour = [&](const Face &face) {
+    if (face.j >= 0)
+      near_members.push_back(face.j);
+  };
+  force.for_each_face(particles, add_neighbour, &members);
+  std::sort(near_members.begin(), near_members.end());
+  near_members.erase(std::unique(near_members.begin(), near_members.end()), near_members.end());
+
+  std::unordered_map<int, std::vector<Vector<dim>>> on_surface;
+  const auto add_surface = [&](const Face &face) {
     if (face.j < 0)
       add_normal<dim>(on_surface[face.i], face.normal);
-  });
-  felt = on_surface;
-  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
-    if (face.j >= 0)
-      for (const auto &normal : on_surface[face.j])
+  };
+  force.for_each_face(particles, add_surface, &near_members);
+  auto felt = on_surface;
+  const auto feel = [&](const Face &face) {
+    if (const auto found = on_surface.find(face.j); found != on_surface.end())
+      for (const auto &normal : found->second)
         add_normal<dim>(felt[face.i], normal);
-  });
+  };
+  force.for_each_face(particles, feel, &members);
   std::vector<std::vector<Vector<dim>>> normals(overlap.n_nodes());
   for (const auto &m : overlap.members)
     for (const auto &normal : felt[m.particle]) {
@@ -378,8 +391,10 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   Assembly<dim> assembly(overlap, particles, force, body, coarse_mass);
   assembly.add_cells();
   assembly.add_masses();
-  force.add_tangent(particles,
-                    [&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); });
+  const std::vector<int> members = overlap.member_particles();
+  force.add_tangent(
+      particles, [&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); },
+      &members);
 
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;
@@ -397,12 +412,13 @@ BlendedOperators<dim>
 make_cell_operators(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force, const fem::Body<dim> &body)
 {
-  force.add_tangent(particles, [&](const particles::QuadraticTerm<dim> &term) {
-    for (const int i : term.members)
-      require(overlap.member_of_particle[i] < 0 ||
-                  term.kind != particles::QuadraticTerm<dim>::Kind::wall,
-              loaded_side);
-  });
+  const std::vector<int> members = overlap.member_particles();
+  force.add_tangent(
+      particles,
+      [&](const particles::QuadraticTerm<dim> &term) {
+        require(term.kind != particles::QuadraticTerm<dim>::Kind::wall, loaded_side);
+      },
+      &members);
   Assembly<dim> assembly(overlap, particles, force, body, 1);
   assembly.add_cells();
   const int n = overlap.n_nodes();

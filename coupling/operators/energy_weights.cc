@@ -13,19 +13,22 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
 {
   const int n = particles.n_owned;
   constexpr double centroid = dim / (dim + 1.); // of a pyramid, from its apex
-  // Sums over pyramids of volume times 1 - a: particles beyond the overlap get exactly 0.
+  // Sums over pyramids of volume times 1 - a; particles beyond the overlap keep exactly 0.
   std::vector<double> rest(n, 0.), volume(n, 0.);
   std::vector<Vector<dim>> open(n, Vector<dim>::Zero()); // minus the area vector of all faces
-  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
-    const int i = face.i;
-    const Vector<dim> x = get(particles.reference, i);
-    const Vector<dim> lever = overlap.offset(x, face.centroid);
-    const double pyramid = face.area * lever.dot(face.normal) / dim;
-    volume[i] += pyramid;
-    open[i] -= face.area * face.normal;
-    if (overlap.member_of_particle[i] >= 0)
-      rest[i] += pyramid * (1 - overlap.weight(x + centroid * lever));
-  });
+  const std::vector<int> members = overlap.member_particles();
+  force.for_each_face(
+      particles,
+      [&](const particles::FaceView<dim> &face) {
+        const int i = face.i;
+        const Vector<dim> x = get(particles.reference, i);
+        const Vector<dim> lever = overlap.offset(x, face.centroid);
+        const double pyramid = face.area * lever.dot(face.normal) / dim;
+        volume[i] += pyramid;
+        open[i] -= face.area * face.normal;
+        rest[i] += pyramid * (1 - overlap.weight(x + centroid * lever));
+      },
+      &members);
   std::vector<double> weights(n, 1.);
   for (const auto &m : overlap.members) {
     const int i = m.particle;

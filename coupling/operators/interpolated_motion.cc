@@ -40,13 +40,17 @@ std::vector<InterpolatedMotion<dim>> interpolate_motions(const Overlap<dim> &ove
   using Matrix = Eigen::Matrix<double, dim, dim>;
   const int n_members = int(overlap.members.size());
   std::vector<std::vector<int>> neighbours(n_members);
-  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
-    if (face.j < 0 || !face.bonded)
-      return;
-    const int i = overlap.member_of_particle[face.i], j = overlap.member_of_particle[face.j];
-    if (i >= 0 && j >= 0)
-      neighbours[i].push_back(j);
-  });
+  const std::vector<int> members = overlap.member_particles();
+  force.for_each_face(
+      particles,
+      [&](const particles::FaceView<dim> &face) {
+        if (face.j < 0 || !face.bonded)
+          return;
+        const int i = overlap.member_of_particle[face.i], j = overlap.member_of_particle[face.j];
+        if (j >= 0)
+          neighbours[i].push_back(j);
+      },
+      &members);
   std::vector<InterpolatedMotion<dim>> motions(n_members);
   for (int i = 0; i < n_members; ++i) {
     const auto &m = overlap.members[i];

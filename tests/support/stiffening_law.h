@@ -47,17 +47,17 @@ public:
   {
     law_->set_energy_weights(weights);
   }
-  void
-  add_tangent(const Particles &p,
-              const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override
+  void add_tangent(const Particles &p,
+                   const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
+                   const std::vector<int> *of = nullptr) const override
   {
-    law_->add_tangent(p, add);
+    law_->add_tangent(p, add, of);
   }
-  void
-  for_each_face(const Particles &p,
-                const std::function<void(const particles::FaceView<dim> &)> &visit) const override
+  void for_each_face(const Particles &p,
+                     const std::function<void(const particles::FaceView<dim> &)> &visit,
+                     const std::vector<int> *of = nullptr) const override
   {
-    law_->for_each_face(p, visit);
+    law_->for_each_face(p, visit, of);
   }
 
   std::unique_ptr<particles::PartialForce<dim>>

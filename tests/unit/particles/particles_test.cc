@@ -29,12 +29,12 @@ struct GivenForce : ParticleForce<dim>
   double stable_step(const Particles<dim> &) const override { return 1; }
   ElasticConstants<dim> elastic_constants() const override { return {}; }
   void set_energy_weights(const std::vector<double> &) override {}
-  void add_tangent(const Particles<dim> &,
-                   const std::function<void(const QuadraticTerm<dim> &)> &) const override
+  void add_tangent(const Particles<dim> &, const std::function<void(const QuadraticTerm<dim> &)> &,
+                   const std::vector<int> *) const override
   {
   }
-  void for_each_face(const Particles<dim> &,
-                     const std::function<void(const FaceView<dim> &)> &) const override
+  void for_each_face(const Particles<dim> &, const std::function<void(const FaceView<dim> &)> &,
+                     const std::vector<int> *) const override
   {
   }
 };
