@@ -20,7 +20,10 @@ void for_each_field(Manifest &m, Visit &&visit)
   visit("step", m.step);
   visit("time", m.time);
   visit("dt", m.dt);
+  visit("started", m.started);
+  visit("setup_seconds", m.setup_seconds);
   visit("wall_seconds", m.wall_seconds);
+  visit("warnings", m.warnings);
   visit("version", m.version);
   visit("commit", m.commit);
   visit("instructions", m.instructions);
@@ -45,6 +48,9 @@ std::string manifest_text(const CheckpointManifest &manifest)
   Json json;
   json["format"] = format;
   for_each_field(manifest, [&](const char *name, const auto &value) { json[name] = value; });
+  Json &timing = json["timing"] = Json::array();
+  for (const core::Timers::Row &row : manifest.timing)
+    timing.push_back({{"name", row.name}, {"seconds", row.seconds}, {"calls", row.calls}});
   Json &states = json["states"] = Json::object();
   for (const auto &[name, sum] : manifest.states)
     states[name] = {{"bytes", sum.bytes}, {"checksum", sum.checksum}};
@@ -67,6 +73,9 @@ CheckpointManifest parse_manifest(const std::string &text)
     for_each_field(manifest, [&](const char *name, auto &value) {
       value = json.at(name).get<std::decay_t<decltype(value)>>();
     });
+    for (const Json &row : json.at("timing"))
+      manifest.timing.push_back({row.at("name").get<std::string>(), row.at("seconds").get<double>(),
+                                 row.at("calls").get<std::int64_t>()});
     for (const auto &[name, sum] : json.at("states").items())
       manifest.states[name] = {sum.at("bytes").get<std::int64_t>(),
                                sum.at("checksum").get<std::int64_t>()};

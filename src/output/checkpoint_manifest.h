@@ -3,12 +3,14 @@
 #pragma once
 
 #include "core/state_file.h"
+#include "core/timers.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace ligament::program
 {
@@ -16,9 +18,14 @@ struct CheckpointManifest
 {
   std::int64_t number = 0; // of the checkpoint, counted up in a run
   std::int64_t step = 0;
-  double time = 0;         // s
-  double dt = 0;           // s
-  double wall_seconds = 0; // of the time loop so far
+  double time = 0; // s
+  double dt = 0;   // s
+
+  // What the run did so far, for its record.
+  std::string started; // date and time
+  double setup_seconds = 0, wall_seconds = 0;
+  std::vector<core::Timers::Row> timing; // of both
+  std::vector<std::string> warnings;
 
   // The program: another one computes other last bits.
   std::string version, commit;
