@@ -41,6 +41,49 @@ void Dashpots<dim>::prepare(double dt)
   dt_ = dt;
 }
 
+template <int dim>
+std::map<std::array<std::int64_t, 3>, std::size_t> Dashpots<dim>::numbers(const Names &names) const
+{
+  std::map<std::array<std::int64_t, 3>, std::size_t> numbers;
+  std::size_t begin = 0;
+  for (const Place &place : places_) {
+    for (std::size_t k = begin; k < place.end; ++k)
+      numbers[{names.name(place.index), place.component, std::int64_t(k - begin)}] = k;
+    begin = place.end;
+  }
+  return numbers;
+}
+
+template <int dim>
+void Dashpots<dim>::save(State &state, const std::string &name, const Names &names) const
+{
+  std::vector<std::int64_t> keys;
+  std::vector<double> memory;
+  for (const auto &[key, k] : numbers(names)) {
+    keys.insert(keys.end(), key.begin(), key.end());
+    memory.push_back(memory_[k]);
+  }
+  Table table(std::move(keys), 3);
+  table.add("memory", memory);
+  state[name] = std::move(table);
+  save_value(state, name + "_energy", "energy", energy_);
+}
+
+template <int dim>
+void Dashpots<dim>::load(const State &state, const std::string &name, const Names &names)
+{
+  const Table &rows = table(state, name);
+  const std::vector<double> memory = rows.reals("memory");
+  const auto all = numbers(names);
+  for (std::size_t r = 0; r < rows.n_rows(); ++r) {
+    const auto found =
+        all.find({rows.keys()[3 * r], rows.keys()[3 * r + 1], rows.keys()[3 * r + 2]});
+    if (found != all.end())
+      memory_[found->second] = memory[r];
+  }
+  energy_ = load_real(state, name + "_energy", "energy");
+}
+
 double layer_rate(double depth, double width, double speed)
 {
   constexpr double strength = 6;

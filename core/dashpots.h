@@ -1,6 +1,7 @@
 // Dashpots between a body and the ground: how a side of the specimen lets waves out.
 #pragma once
 
+#include "core/names.h"
 #include "core/types.h"
 
 #include <map>
@@ -49,6 +50,11 @@ public:
   /// Taken so far, what their memories keep included, in J.
   double energy() const { return energy_; }
 
+  /// Memories and energy as tables <name> and <name>_energy; rows are called by the name of the
+  /// particle or node, the component and the number of the dashpot there.
+  void save(State &state, const std::string &name, const Names &names) const;
+  void load(const State &state, const std::string &name, const Names &names);
+
 private:
   struct Place
   {
@@ -57,6 +63,8 @@ private:
   };
 
   void prepare(double dt);
+  /// The name of every dashpot, with its number.
+  std::map<std::array<std::int64_t, 3>, std::size_t> numbers(const Names &names) const;
 
   std::vector<Place> places_;
   std::vector<Dashpot> dashpots_;

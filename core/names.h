@@ -1,8 +1,9 @@
 // Names of particles and nodes that outlive every numbering: from an index to its name and back.
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include "core/state.h"
+
+#include <array>
 
 namespace ligament::core
 {
@@ -28,6 +29,22 @@ public:
   template <typename T, typename U>
   void put(const std::vector<std::int64_t> &keys, const std::vector<T> &from,
            std::vector<U> &values) const;
+
+  /// A table of fields of all that have names, one column per component: <column>_0, _1, ...
+  template <std::size_t n>
+  void save(Table &table, const std::string &column,
+            const std::array<std::vector<double>, n> &values) const
+  {
+    for (std::size_t c = 0; c < n; ++c)
+      table.add(column + "_" + std::to_string(c), sort<double>(values[c]));
+  }
+  template <std::size_t n>
+  void load(const Table &table, const std::string &column,
+            std::array<std::vector<double>, n> &values) const
+  {
+    for (std::size_t c = 0; c < n; ++c)
+      put(table.keys(), table.reals(column + "_" + std::to_string(c)), values[c]);
+  }
 
 private:
   std::vector<std::int64_t> names_, sorted_;

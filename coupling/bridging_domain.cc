@@ -131,14 +131,19 @@ double BridgingDomain<dim>::near_stable_step() const
 }
 
 template <int dim>
-void BridgingDomain<dim>::take_velocities(Bodies<dim> &bodies)
+void BridgingDomain<dim>::read_near_nodes(const fem::FemSolver<dim> &far)
 {
-  const auto &far = *bodies.far;
   for (int i = 0; i < overlap_.n_nodes(); ++i)
     for (int c = 0; c < dim; ++c) {
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
+}
+
+template <int dim>
+void BridgingDomain<dim>::take_velocities(Bodies<dim> &bodies)
+{
+  read_near_nodes(*bodies.far);
   if (!corrects_at_whole_steps()) // these carry any
     project(bodies);
 }
@@ -393,6 +398,19 @@ CoupledEnergy BridgingDomain<dim>::energy(const Bodies<dim> &bodies, const StepT
     for (std::size_t i = 0; i < dead_torque_[c].size(); ++i)
       e.blended -= dead_torque_[c][i] * (dim == 2 ? rotation[c][i] : 2 * rotation[c + 1][i]);
   return e;
+}
+
+template <int dim>
+void BridgingDomain<dim>::save(core::State &state, const Bodies<dim> &) const
+{
+  core::save_value(state, "bridging_domain", "damper_energy", fine_damper_energy_);
+}
+
+template <int dim>
+void BridgingDomain<dim>::load(const core::State &state, Bodies<dim> &bodies)
+{
+  read_near_nodes(*bodies.far);
+  fine_damper_energy_ = core::load_real(state, "bridging_domain", "damper_energy");
 }
 
 template class BridgingDomain<2>;

@@ -40,6 +40,8 @@ public:
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 
   void take_velocities(Bodies<dim> &bodies) override;
+  void save(core::State &state, const Bodies<dim> &bodies) const override;
+  void load(const core::State &state, Bodies<dim> &bodies) override;
   const Overlap<dim> *overlap() const override { return &overlap_; }
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
 
@@ -49,6 +51,8 @@ public:
 
 private:
   void find_dead_load(Bodies<dim> &bodies);
+  /// U and V as the far field has them.
+  void read_near_nodes(const fem::FemSolver<dim> &far);
   void read_velocities(const particles::Particles<dim> &zone, Components<dim> &v) const;
   void write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const;
   void write_near_velocities(fem::FemSolver<dim> &far) const;

@@ -76,6 +76,12 @@ public:
   /// motion.
   virtual void take_velocities(Bodies<dim> &) {}
 
+  /// What the coupler remembers beyond the halves' own states; between drift and compute_forces of
+  /// a step in which the far field acts. load() follows the loads of the halves into a body that
+  /// was built in the same way.
+  virtual void save(core::State &, const Bodies<dim> &) const {}
+  virtual void load(const core::State &, Bodies<dim> &) {}
+
   /// Null when the halves don't overlap.
   virtual const Overlap<dim> *overlap() const { return nullptr; }
   /// Scalar mass of the overlap's near nodes including the far field's share, kg.
@@ -87,7 +93,8 @@ protected:
 };
 
 /// Energy in J that multiplying velocities by `factor` takes: `still` is 1/2 v M v and `moving`
-/// 1/2 v M v + 1/2 dt v f of these velocities before kick(dt), dt < 0 after it (theory.md eq. (E3)).
+/// 1/2 v M v + 1/2 dt v f of these velocities before kick(dt), dt < 0 after it (theory.md eq.
+/// (E3)).
 inline double scaling_loss(double still, double moving, double factor)
 {
   return (1 - factor * factor) * still + (1 - factor) * (moving - still);

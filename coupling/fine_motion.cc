@@ -235,6 +235,46 @@ void FineMotion<dim>::turn_pads(const Nodal<dim> &u, particles::Particles<dim> &
   }
 }
 
+template <int dim>
+void FineMotion<dim>::save(core::State &state, const particles::Particles<dim> &particles) const
+{
+  std::map<std::int64_t, std::array<double, dim>> rows;
+  for (std::size_t k = 0; k < lanes_.slots.size(); ++k)
+    for (int l = 0; l < lanes_.n_members[k]; ++l)
+      for (int c = 0; c < dim; ++c)
+        rows[particles.global_id[lanes_.slots[k].particle[l]]][c] = motion_[k * dim + c].value[l];
+  std::vector<std::int64_t> keys;
+  Components<dim> motion;
+  for (const auto &[key, w] : rows) {
+    keys.push_back(key);
+    for (int c = 0; c < dim; ++c)
+      motion[c].push_back(w[c]);
+  }
+  core::Table table(std::move(keys));
+  for (int c = 0; c < dim; ++c)
+    table.add("velocity_" + std::to_string(c), motion[c]);
+  state["fluctuation"] = std::move(table);
+  core::save_value(state, "fine_motion", "damper_energy", damper_energy_);
+}
+
+template <int dim>
+void FineMotion<dim>::load(const core::State &state, const particles::Particles<dim> &particles)
+{
+  const core::Table &table = core::table(state, "fluctuation");
+  std::map<std::int64_t, std::size_t> rows;
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    rows[table.keys()[r]] = r;
+  for (int c = 0; c < dim; ++c) {
+    const auto motion = table.reals("velocity_" + std::to_string(c));
+    for (std::size_t k = 0; k < lanes_.slots.size(); ++k)
+      for (int l = 0; l < lanes_.n_members[k]; ++l) {
+        const auto row = rows.find(particles.global_id[lanes_.slots[k].particle[l]]);
+        motion_[k * dim + c].value[l] = row == rows.end() ? 0 : motion[row->second];
+      }
+  }
+  damper_energy_ = core::load_real(state, "fine_motion", "damper_energy");
+}
+
 template class FineMotion<2>;
 template class FineMotion<3>;
 } // namespace ligament::coupling

@@ -37,6 +37,11 @@ public:
 
   void scale(double factor);
 
+  /// w, as the table "fluctuation", and what the damper has taken.
+  void save(core::State &state, const particles::Particles<dim> &particles) const;
+  /// Velocities of the particles are not touched.
+  void load(const core::State &state, const particles::Particles<dim> &particles);
+
   /// What the damper has taken so far, in J, theory.md eq. (C20).
   double damper_energy() const { return damper_energy_; }
 

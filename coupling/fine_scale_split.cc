@@ -65,14 +65,19 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
 }
 
 template <int dim>
-void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
+void FineScaleSplit<dim>::read_near_nodes(const fem::FemSolver<dim> &far)
 {
-  const auto &far = *bodies.far;
   for (int i = 0; i < overlap_.n_nodes(); ++i)
     for (int c = 0; c < dim; ++c) {
       displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
       velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
     }
+}
+
+template <int dim>
+void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
+{
+  read_near_nodes(*bodies.far);
   if (regime_ != Regime::linear)
     fine_.turn_pads(displacement_, bodies.zone->state);
   fine_.take_velocities(velocity_, bodies.zone->state);
@@ -85,16 +90,21 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
   if (regime == regime_)
     return;
   core::require(regime != Regime::linear, "an overlap that turns cannot be linear again");
-  auto &zone = bodies.zone->state;
+  make_coarse_energy(regime, bodies);
+  fine_.turn_pads(displacement_, bodies.zone->state);
+  bodies.far->set_corotated(true);
+  write_velocities(bodies);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &bodies)
+{
   if (regime == Regime::corotated)
     coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_);
   else
     coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
-        overlap_, parts_, zone, *bodies.zone->force, bodies.far->body(), correction_);
+        overlap_, parts_, bodies.zone->state, *bodies.zone->force, bodies.far->body(), correction_);
   regime_ = regime;
-  fine_.turn_pads(displacement_, zone);
-  bodies.far->set_corotated(true);
-  write_velocities(bodies);
 }
 
 template <int dim>
@@ -398,6 +408,41 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   e.impulses = impulse_energy(bodies, near, step.dt);
   e.kinetic_discrete = fine_kinetic(bodies, step.dt);
   return e;
+}
+
+template <int dim>
+void FineScaleSplit<dim>::save(core::State &state, const Bodies<dim> &bodies) const
+{
+  fine_.save(state, bodies.zone->state);
+  core::save_value(state, "split", "regime", std::int64_t(regime_));
+  core::save_value(state, "split", "gap_filter_energy", gap_filter_energy_);
+  core::save_value(state, "split", "rests", std::int64_t(rests_));
+  core::save_value(state, "split", "far_rests", std::int64_t(far_rests_));
+  core::save_value(state, "split", "kicks", std::int64_t(kicks_));
+  core::save_value(state, "split", "rested", std::int64_t(rested_));
+  core::save_value(state, "split", "far_rested", std::int64_t(far_rested_));
+}
+
+// Velocities and orientations of the members are those of the particles' state: nothing is written
+// to them, lest they change in the last bit.
+template <int dim>
+void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
+{
+  auto &zone = bodies.zone->state;
+  const auto regime = Regime(core::load_integer(state, "split", "regime"));
+  if (regime != regime_)
+    make_coarse_energy(regime, bodies);
+  read_near_nodes(*bodies.far);
+  fine_.load(state, zone);
+  if (regime_ != Regime::linear)
+    fine_.turn_pads(displacement_, zone);
+  gap_filter_energy_ = core::load_real(state, "split", "gap_filter_energy");
+  const auto load = [&](const char *column) { return core::load_integer(state, "split", column); };
+  rests_ = load("rests");
+  far_rests_ = load("far_rests");
+  kicks_ = load("kicks");
+  rested_ = load("rested");
+  far_rested_ = load("far_rested");
 }
 
 template class FineScaleSplit<2>;

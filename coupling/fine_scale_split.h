@@ -52,6 +52,9 @@ public:
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
   int step_ratio() const override { return parameters_.step_ratio; }
 
+  void save(core::State &state, const Bodies<dim> &bodies) const override;
+  void load(const core::State &state, Bodies<dim> &bodies) override;
+
   /// Splits the velocities into V and w.
   void take_velocities(Bodies<dim> &bodies) override;
 
@@ -95,6 +98,9 @@ private:
   /// What mass damping of all velocities by the factor, before the kick and after it, takes of
   /// (E5), in J: eq. (E5b). After the kick.
   double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
+  void make_coarse_energy(Regime regime, const Bodies<dim> &bodies);
+  /// U and V as the far field has them.
+  void read_near_nodes(const fem::FemSolver<dim> &far);
   void write_velocities(Bodies<dim> &bodies);
   void write_far_velocities(fem::FemSolver<dim> &far) const;
   /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far

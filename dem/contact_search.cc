@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -29,6 +30,7 @@ void ContactSearch<dim>::add_surface_particle(int i)
     return;
   on_surface_[i] = 1;
   surface_.push_back(i);
+  due_ = true;
 }
 
 template <int dim>
@@ -39,11 +41,9 @@ double ContactSearch<dim>::rest_distance(const Particles &p, int i, int j) const
 }
 
 template <int dim>
-bool ContactSearch<dim>::due(const Particles &p) const
+bool ContactSearch<dim>::has_moved(const Particles &p) const
 {
-  if (searched_at_.size() != surface_.size())
-    return true;
-  for (std::size_t s = 0; s < surface_.size(); ++s)
+  for (std::size_t s = 0; s < searched_at_.size(); ++s)
     if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin_ * skin_)
       return true;
   return false;
@@ -53,8 +53,11 @@ template <int dim>
 void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bonds,
                                 Contacts<dim> &contacts)
 {
-  if (!due(p))
+  if (!due_) {
+    due_ = has_moved(p);
     return;
+  }
+  due_ = false;
   searched_at_.clear();
   for (const int i : surface_)
     searched_at_.push_back(get(p.displacement, i));
@@ -118,12 +121,63 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
   for (const auto &[i, j] : found) {
     if (known.count(key(i, j)))
       continue;
-    const Vector<dim> between = position(j) - position(i), n = between.normalized();
-    const double distance = std::min(rest_distance(p, i, j), between.norm()),
-                 size = (diameter(i) + diameter(j)) / 2;
-    const Vector<dim> lever = distance * diameter(i) / (2 * size) * n;
-    const double area = face_area_ * std::pow(size / spacing_, dim - 1);
-    contacts.add({i, j, n, lever, lever - distance * n, area, distance, 0, 0}, false);
+    const double apart = (position(j) - position(i)).norm();
+    contacts.add(face_between(i, j, std::min(rest_distance(p, i, j), apart)), false);
+  }
+}
+
+template <int dim>
+Bond<dim> ContactSearch<dim>::face_between(int i, int j, double distance) const
+{
+  const double size = (diameter(i) + diameter(j)) / 2;
+  const Vector<dim> n = Vector<dim>::Unit(0), lever = distance * diameter(i) / (2 * size) * n;
+  return {
+      i,        j, n, lever, lever - distance * n, face_area_ * std::pow(size / spacing_, dim - 1),
+      distance, 0, 0};
+}
+
+template <int dim>
+void ContactSearch<dim>::save(core::State &state, const core::Names &names) const
+{
+  std::map<std::int64_t, Vector<dim>> places;
+  for (std::size_t s = 0; s < searched_at_.size(); ++s)
+    places[names.name(surface_[s])] = searched_at_[s];
+  std::vector<std::int64_t> keys;
+  Components<dim> displacement;
+  for (const auto &[name, place] : places) {
+    keys.push_back(name);
+    for (int c = 0; c < dim; ++c)
+      displacement[c].push_back(place[c]);
+  }
+  core::Table table(std::move(keys));
+  for (int c = 0; c < dim; ++c)
+    table.add("displacement_" + std::to_string(c), displacement[c]);
+  state["searched"] = std::move(table);
+  core::save_value(state, "search", "due", std::int64_t(due_));
+}
+
+// Particles that came to the surface after the last search are the last ones in the list, and a
+// search is due then.
+template <int dim>
+void ContactSearch<dim>::load(const core::State &state, const core::Names &names)
+{
+  const core::Table &table = core::table(state, "searched");
+  std::map<int, Vector<dim>> places;
+  for (int c = 0; c < dim; ++c) {
+    const auto values = table.reals("displacement_" + std::to_string(c));
+    for (std::size_t r = 0; r < table.n_rows(); ++r)
+      if (const int i = names.index(table.keys()[r]); i >= 0)
+        places[i][c] = values[r];
+  }
+  searched_at_.clear();
+  due_ = core::load_integer(state, "search", "due") != 0;
+  for (const int i : surface_) {
+    const auto place = places.find(i);
+    if (place == places.end()) {
+      due_ = due_ || !places.empty();
+      break;
+    }
+    searched_at_.push_back(place->second);
   }
 }
 

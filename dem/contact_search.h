@@ -22,13 +22,23 @@ public:
   void add_surface_particle(int i);
 
   /// Adds contacts between surface particles nearer than their distance + 2 skin that share neither
-  /// bond nor contact, once a surface particle has moved by the skin of d/4 since the last search;
-  /// drops those found before that went apart. The order depends on global ids alone. Particles
-  /// across the same initial cut meet in its joints only, which go on from particle to particle.
+  /// bond nor contact, in the call after the one that saw a surface particle moved by the skin of
+  /// d/4 since the last search; drops those found before that went apart. The order depends on
+  /// global ids alone. Particles across the same initial cut meet in its joints only, which go on
+  /// from particle to particle.
   void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
+  /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
+  /// proportion to the diameters; its normal is not known.
+  Bond<dim> face_between(int i, int j, double distance) const;
+
+  /// Where the surface particles were at the last search, as the table "searched".
+  void save(core::State &state, const core::Names &names) const;
+  /// The surface particles are there already.
+  void load(const core::State &state, const core::Names &names);
+
 private:
-  bool due(const Particles &particles) const;
+  bool has_moved(const Particles &particles) const;
   double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
   /// Centre distance at which two particles touch.
   double rest_distance(const Particles &particles, int i, int j) const;
@@ -38,6 +48,7 @@ private:
   std::vector<double> diameter_;
   std::vector<bool> on_surface_;
   std::vector<int> surface_;             // particles on surfaces
-  std::vector<Vector<dim>> searched_at_; // their displacements at the last search
+  std::vector<Vector<dim>> searched_at_; // of the first of them, displacements at the last search
+  bool due_ = true;
 };
 } // namespace ligament::dem

@@ -91,24 +91,44 @@ double correcting_force(double error, double moved, const Outlook &next, double 
 } // namespace
 
 template <int dim>
-void Contacts<dim>::add(const Bond<dim> &face, bool from_face)
+Contact<dim> &Contacts<dim>::insert(Contact<dim> c)
 {
-  Contact<dim> c{face, from_face, 0, 0, 0};
+  if (contacts_.empty() || contacts_.back().name < c.name)
+    return contacts_.emplace_back(std::move(c));
+  const auto place = std::lower_bound(
+      contacts_.begin(), contacts_.end(), c,
+      [](const Contact<dim> &a, const Contact<dim> &b) { return a.name < b.name; });
+  return *contacts_.insert(place, std::move(c));
+}
+
+template <int dim>
+Contact<dim> &Contacts<dim>::add(const Bond<dim> &face, bool from_face)
+{
+  return insert(make(face, from_face));
+}
+
+template <int dim>
+Contact<dim> Contacts<dim>::make(const Bond<dim> &face, bool from_face) const
+{
+  const auto [first, second] = std::minmax({ids_[face.i], ids_[face.j]});
+  Contact<dim> c{{first, second, 0}, face, from_face, 0, 0, 0};
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
   c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
                               materials_.of(face.j).shear_modulus(), c.share_i);
   c.friction = materials_.friction(face.i, face.j);
-  contacts_.push_back(c);
+  return c;
 }
 
 template <int dim>
 void Contacts<dim>::add_joint(const Bond<dim> &face, int cut, const Vector<dim> &cut_normal,
                               const Vector<dim> &centre_j)
 {
-  add(face, true);
-  contacts_.back().home = centre_j;
-  contacts_.back().cut = cut;
-  contacts_.back().cut_normal = std::copysign(1, cut_normal.dot(face.normal)) * cut_normal;
+  Contact<dim> c = make(face, true);
+  c.name[2] = cut + 1;
+  c.home = centre_j;
+  c.cut = cut;
+  c.cut_normal = std::copysign(1, cut_normal.dot(face.normal)) * cut_normal;
+  insert(std::move(c));
 }
 
 // Of a joint, 2 G S/r0 is 2 G A/h: A = S n.N the face's area projected on the cut, h = r0 n.N the

@@ -4,6 +4,8 @@
 #include "dem/bond.h"
 #include "dem/materials.h"
 
+#include <array>
+#include <functional>
 #include <optional>
 
 namespace ligament::dem
@@ -12,6 +14,9 @@ namespace ligament::dem
 template <int dim>
 struct Contact
 {
+  /// Ids of the two particles that it began with, the smaller one first; of a joint the number of
+  /// its cut and 1.
+  std::array<std::int64_t, 3> name;
   Bond<dim> face;       // reference geometry of the face, if it had one
   bool from_face;       // was a face of the packing; false: found by the search, or passed on
   double share_i;       // q_i / r0: the contact point lies at share_i r from i
@@ -26,12 +31,12 @@ struct Contact
   Vector<dim> slip = Vector<dim>::Zero(); // m
   Vector<dim> last_between = Vector<dim>::Zero(), last_lever = last_between,
               last_normal = last_between;
-  Turn<dim> last_turn_i, last_turn_j;
+  Turn<dim> last_turn_i = {}, last_turn_j = {};
   double last_angle_i = 0, last_angle_j = 0; // 2D
   bool known = false;
   // Opening and closing: theory.md eq. (E10).
-  std::optional<double> last_overlap; // m
-  double correction = 0;              // N, added to the pressure in the step of the change
+  std::optional<double> last_overlap = {}; // m
+  double correction = 0;                   // N, added to the pressure in the step of the change
 
   bool is_joint() const { return cut >= 0; }
 };
@@ -42,9 +47,16 @@ class Contacts
 public:
   using Particles = particles::Particles<dim>;
 
-  explicit Contacts(const Materials &materials) : materials_(materials) {}
+  /// `ids` of the particles; empty: their indices. Contacts are in the order of their names.
+  explicit Contacts(const Materials &materials, const std::vector<std::int64_t> &ids = {},
+                    int n_particles = 0)
+      : materials_(materials),
+        ids_(ids.empty() ? particles::GlobalIds(n_particles) : particles::GlobalIds(ids))
+  {
+  }
 
-  void add(const Bond<dim> &face, bool from_face);
+  /// Valid until the next one comes.
+  Contact<dim> &add(const Bond<dim> &face, bool from_face);
 
   /// A face of initial cut number `cut`, whose unit normal is given (either sense); centre of j in
   /// the reference (m).
@@ -90,6 +102,13 @@ public:
   /// counts as frictional work.
   void pass_on(std::size_t k, int j, const Particles &particles);
 
+  /// What contacts remember, as the table "contacts", and the energies that they took.
+  void save(core::State &state, const core::Names &names) const;
+  /// Those of faces are there already; make_face(i, j, distance) is the face of one that a search
+  /// found. Contacts of particles with rows that have none themselves have ended.
+  void load(const core::State &state, const core::Names &names,
+            const std::function<Bond<dim>(int, int, double)> &make_face);
+
 private:
   struct State
   {
@@ -103,8 +122,11 @@ private:
   void add_force(const Contact<dim> &contact, const State &state, const Vector<dim> &force,
                  Particles &particles) const;
   void correct_step(Contact<dim> &contact, const State &state, double dt, const Particles &p);
+  Contact<dim> &insert(Contact<dim> contact);
+  Contact<dim> make(const Bond<dim> &face, bool from_face) const;
 
   Materials materials_;
+  particles::GlobalIds ids_;
   std::vector<Contact<dim>> contacts_;
   double frictional_work_ = 0, step_error_ = 0;
 };

@@ -31,7 +31,7 @@ ManyBodyForce<dim>::ManyBodyForce(packings::Packing<dim> packing, const Material
       kernel_(bonds_.directions(), bonds_.segments(), packing.size(),
               materials.base().shear_modulus(), !materials.has_no_dilatation()),
       slices_(bonds_, materials.base().shear_modulus(), false), interfaces_(bonds_),
-      surface_(packing, materials, std::move(loads)), contacts_(materials),
+      surface_(packing, materials, std::move(loads)), contacts_(materials, packing.global_id, packing.size()),
       search_(packing, mean_face_area(packing)), lambda_per_volume_(packing.size())
 {
   materials_.base().check();
@@ -274,6 +274,20 @@ void ManyBodyForce<dim>::elastic_forces(Particles &p, SurfaceLoads<dim> &surface
     clear_forces_at_rest(p);
 }
 
+// What is seen in one step acts in the next: a body in parts can agree on it meanwhile.
+template <int dim>
+void ManyBodyForce<dim>::look_for_contacts(const Particles &p)
+{
+  if (looked_at_ == time_)
+    return;
+  looked_at_ = time_;
+  searching_ = searching_ || has_slid_;
+  if (searching_)
+    search_.update(p, bonds_, contacts_);
+  else
+    has_slid_ = contacts_.has_slid(p, spacing_ / 4);
+}
+
 template <int dim>
 void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
@@ -292,9 +306,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     flow(p);
   }
   if (!contacts_.all().empty()) {
-    searching_ = searching_ || contacts_.has_slid(p, spacing_ / 4);
-    if (searching_)
-      search_.update(p, bonds_, contacts_);
+    look_for_contacts(p);
     if (searching_ && rest_ && !rest_->all_awake())
       wake_contacts();
     add_contact_forces(p);

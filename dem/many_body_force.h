@@ -108,6 +108,12 @@ public:
   part(const Particles &particles, const std::vector<int> &members,
        const typename particles::ParticleForce<dim>::TermShare &share) const override;
 
+  void save(core::State &state, const core::Names &names,
+            const Particles &particles) const override;
+  /// Laws of flow come before it. Bonds of particles that this body lacks are passed over.
+  void load(const core::State &state, const core::Names &names,
+            const Particles &particles) override;
+
   /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10);
   /// of the body before its energy was weighted.
   void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const;
@@ -224,6 +230,8 @@ private:
   void wake_contacts();
   /// Of particles that are not awake but that bonds or contacts of awake ones have pulled.
   void clear_forces_at_rest(Particles &particles) const;
+  /// Once at every new time.
+  void look_for_contacts(const Particles &particles);
   /// Of contacts; what a threshold holds at rest stays without forces.
   void add_contact_forces(Particles &particles);
 
@@ -307,6 +315,16 @@ private:
   {
     return interfaces_.is_member(bond.i) || interfaces_.is_member(bond.j);
   }
+  /// The bond no longer carries, nor does it enter the volumes: what follows from which are left.
+  void drop_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
+  /// Lists it, with a contact in its place.
+  Contact<dim> &note_broken(const Bond<dim> &bond, const Particles &particles, double time,
+                            double energy);
+  void save_broken(core::State &state) const;
+  void replay_broken(const core::State &state, const core::Names &names,
+                     const Particles &particles);
+  void save_jumps(core::State &state, const core::Names &names) const;
+  void load_jumps(const core::State &state, const core::Names &names);
   /// The bond no longer carries; pressures follow. Returns the energy after in J, as local_energy
   /// counts it.
   double remove_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
@@ -330,8 +348,8 @@ private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   EdgeCells<dim> edge_;
-  bool searching_ = false;
-  double largest_lever_share_ = 0; // of all particles: sum of S |a| / V over the bonds
+  bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
+  double largest_lever_share_ = 0;            // of all particles: sum of S |a| / V over the bonds
   // Particles whose pressure has parts beside the lattice's, ascending.
   std::vector<int> other_particles_;
   std::map<int, double> wall_share_;      // sum of S q / V over faces held along their normal
@@ -355,8 +373,8 @@ private:
   double pressure_share_ = 0;       // and whose pressure (plane strain) is below this share of it
   std::optional<double> flowed_at_; // s
   double plastic_dissipation_ = 0;
-  double largest_size_factor_ = 1;  // of the bonds
-  std::optional<double> broken_at_; // s
+  double largest_size_factor_ = 1;              // of the bonds
+  std::optional<double> broken_at_, looked_at_; // s
   double fracture_energy_ = 0, breaking_step_error_ = 0;
   double time_ = 0, last_time_ = 0;
 };

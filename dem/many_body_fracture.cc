@@ -26,6 +26,34 @@ double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) 
   return sum;
 }
 
+template <int dim>
+void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
+{
+  bonds_.remove(id);
+  screen_.remove(b);
+  if (b.joins_materials)
+    interfaces_.remove(id.index);
+  else if (id.direction < 0)
+    slices_.remove(id.index);
+  for (const int i : {b.i, b.j}) {
+    if (plastic_ && plastic_->is_plastic(i))
+      update_flowed_volume(i, p.volume[i]);
+    if (lambda_per_volume_[i] != 0)
+      update_volumetric_stiffness(i, p.volume[i]);
+  }
+}
+
+template <int dim>
+Contact<dim> &ManyBodyForce<dim>::note_broken(const Bond<dim> &b, const Particles &p, double time,
+                                              double energy)
+{
+  search_.add_surface_particle(b.i);
+  search_.add_surface_particle(b.j);
+  broken_.push_back({b.i, b.j, p.global_id[b.i], p.global_id[b.j], time,
+                     Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, energy});
+  return contacts_.add(b, true);
+}
+
 // The volumes lose the share of this face; the other faces keep theirs.
 template <int dim>
 double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
@@ -41,22 +69,13 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   if (plastic_)
     for (auto &[i, share] : shares)
       share -= flowed_volume(b, i);
-  bonds_.remove(id);
-  screen_.remove(b);
-  if (b.joins_materials)
-    interfaces_.remove(id.index);
-  else if (id.direction < 0)
-    slices_.remove(id.index);
-  if (plastic_)
-    for (const int i : {b.i, b.j})
-      if (plastic_->is_plastic(i))
-        update_flowed_volume(i, p.volume[i]);
   for (const auto &[i, share] : shares)
-    if (lambda_per_volume_[i] != 0) {
-      const double rest = pressure[i] / lambda_per_volume_[i] - share;
-      update_volumetric_stiffness(i, p.volume[i]);
-      pressure[i] = lambda_per_volume_[i] * rest;
-    }
+    if (lambda_per_volume_[i] != 0)
+      pressure[i] = pressure[i] / lambda_per_volume_[i] - share; // theta_i V_i for a moment
+  drop_bond(id, b, p);
+  for (const auto &[i, share] : shares)
+    if (lambda_per_volume_[i] != 0)
+      pressure[i] *= lambda_per_volume_[i];
   if (at_interface)
     interfaces_.add_own_part(p, lambda_per_volume_, pressure);
   return local_energy(b, p) - (b.joins_materials ? 0 : bond_energy(b, motion(b, p), p));
@@ -71,13 +90,9 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     const Bond<dim> b = bonds_.bond(id);
     double released = local_energy(b, p);
     released -= remove_bond(id, b, p);
-    contacts_.add(b, true);
-    released -= contacts_.compression_energy(contacts_.all().back(), p);
-    search_.add_surface_particle(b.i);
-    search_.add_surface_particle(b.j);
+    released -= contacts_.compression_energy(note_broken(b, p, time, 0), p);
+    broken_.back().energy = released;
     fracture_energy_ += released;
-    broken_.push_back({b.i, b.j, p.global_id[b.i], p.global_id[b.j], time,
-                       Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, released});
   }
   searching_ = true;
   const auto noted_rows = work_.exceeded_rows; // what utilisation() looks at
@@ -111,6 +126,12 @@ double ManyBodyForce<dim>::quarter_work_of_jumps(const Particles &p) const
   return 0.25 * (time_ - last_time_) * power;
 }
 
+template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);
+template void ManyBodyForce<3>::drop_bond(const BondId &, const Bond<3> &, const Particles &);
+template Contact<2> &ManyBodyForce<2>::note_broken(const Bond<2> &, const Particles &, double,
+                                                   double);
+template Contact<3> &ManyBodyForce<3>::note_broken(const Bond<3> &, const Particles &, double,
+                                                   double);
 template double ManyBodyForce<2>::bond_energy(const Bond<2> &, const BondMotion<2> &,
                                               const Particles &) const;
 template double ManyBodyForce<3>::bond_energy(const Bond<3> &, const BondMotion<3> &,

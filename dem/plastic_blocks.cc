@@ -8,6 +8,7 @@ namespace
 {
 constexpr int block = TractionScreen::block;
 constexpr int n_numbers = 8;
+constexpr int n_saved = 7; // strain and history
 } // namespace
 
 template <int dim>
@@ -116,6 +117,37 @@ void PlasticBlocks<dim>::add(int i, const Tensor &increment)
   plastic_[i / block] = 1;
   for (int c = 0; c < 6; ++c)
     number(c)[i] += increment[c];
+}
+
+template <int dim>
+void PlasticBlocks<dim>::save(core::State &state, const core::Names &names) const
+{
+  std::vector<std::int64_t> keys;
+  std::array<std::vector<double>, n_saved> values;
+  for (const int i : names.ascending())
+    if (is_plastic(i)) {
+      keys.push_back(names.name(i));
+      for (int k = 0; k < n_saved; ++k)
+        values[k].push_back(number(k)[i]);
+    }
+  core::Table table(std::move(keys));
+  for (int k = 0; k < n_saved; ++k)
+    table.add("number_" + std::to_string(k), values[k]);
+  state["plastic"] = std::move(table);
+}
+
+template <int dim>
+void PlasticBlocks<dim>::load(const core::State &state, const core::Names &names)
+{
+  const core::Table &table = core::table(state, "plastic");
+  for (int k = 0; k < n_saved; ++k) {
+    const auto values = table.reals("number_" + std::to_string(k));
+    for (std::size_t r = 0; r < table.n_rows(); ++r)
+      if (const int i = names.index(table.keys()[r]); i >= 0) {
+        plastic_[i / block] = 1;
+        number(k)[i] = values[r];
+      }
+  }
 }
 
 template class PlasticBlocks<2>;

@@ -59,6 +59,11 @@ public:
   /// The law's number of each particle.
   double *history() { return number(6); }
 
+  /// Strain and history of the particles in blocks that have yielded, as the table "plastic".
+  void save(core::State &state, const core::Names &names) const;
+  /// Flowed volumes are the caller's.
+  void load(const core::State &state, const core::Names &names);
+
 private:
   std::vector<RowRange> with_neighbours(const std::vector<std::uint8_t> &blocks) const;
   double *number(int k) { return numbers_.data() + k * long(n_); }

@@ -185,6 +185,91 @@ void SurfaceLoads<dim>::book_work(const particles::Particles<dim> &particles,
   old_gradient_ = std::move(gradient);
 }
 
+template <int dim>
+std::map<std::array<std::int64_t, 2>, std::size_t>
+SurfaceLoads<dim>::face_names(const core::Names &names) const
+{
+  std::map<int, std::int64_t> n_of;
+  std::map<std::array<std::int64_t, 2>, std::size_t> faces;
+  for (std::size_t f = 0; f < tractions_.size(); ++f)
+    faces[{names.name(tractions_[f].i), n_of[tractions_[f].i]++}] = f;
+  return faces;
+}
+
+template <int dim>
+void SurfaceLoads<dim>::save(core::State &state, const core::Names &names) const
+{
+  core::save_value(state, "surface", "work", work_);
+  core::save_value(state, "surface", "booked", std::int64_t(booked_));
+  if (!booked_)
+    return;
+  const auto add = [](core::Table &table, const std::string &name,
+                      const std::vector<Vector<dim>> &rows) {
+    for (int c = 0; c < dim; ++c) {
+      std::vector<double> values;
+      for (const auto &v : rows)
+        values.push_back(v[c]);
+      table.add(name + "_" + std::to_string(c), values);
+    }
+  };
+  std::vector<std::int64_t> numbers, keys;
+  for (std::size_t l = 0; l < loads_.size(); ++l)
+    numbers.push_back(std::int64_t(l));
+  core::Table loads(std::move(numbers));
+  add(loads, "displacement", old_displacement_);
+  add(loads, "traction", old_traction_);
+  add(loads, "reaction", old_reaction_);
+  state["loads"] = std::move(loads);
+  std::vector<Vector<dim>> place, gradient;
+  for (const auto &[key, f] : face_names(names)) {
+    keys.insert(keys.end(), key.begin(), key.end());
+    place.push_back(old_place_[f]);
+    gradient.push_back(old_gradient_[f]);
+  }
+  core::Table faces(std::move(keys), 2);
+  add(faces, "place", place);
+  add(faces, "gradient", gradient);
+  state["loaded_faces"] = std::move(faces);
+}
+
+template <int dim>
+void SurfaceLoads<dim>::load(const core::State &state, const core::Names &names)
+{
+  work_ = core::load_real(state, "surface", "work");
+  booked_ = core::load_integer(state, "surface", "booked") != 0;
+  if (!booked_)
+    return;
+  const auto row = [](const core::Table &table, const std::string &name, std::size_t r) {
+    Vector<dim> v;
+    for (int c = 0; c < dim; ++c)
+      v[c] = table.reals(name + "_" + std::to_string(c))[r];
+    return v;
+  };
+  const core::Table &loads = core::table(state, "loads");
+  core::require(loads.n_rows() == loads_.size(), "the state is of another number of loads");
+  old_displacement_ = old_traction_ = old_reaction_ =
+      std::vector<Vector<dim>>(loads_.size(), Vector<dim>::Zero());
+  for (std::size_t l = 0; l < loads_.size(); ++l) {
+    old_displacement_[l] = row(loads, "displacement", l);
+    old_traction_[l] = row(loads, "traction", l);
+    old_reaction_[l] = row(loads, "reaction", l);
+  }
+  const core::Table &faces = core::table(state, "loaded_faces");
+  const auto names_of = face_names(names);
+  old_place_ = old_gradient_ = std::vector<Vector<dim>>(tractions_.size(), Vector<dim>::Zero());
+  for (int c = 0; c < dim; ++c) {
+    const auto place = faces.reals("place_" + std::to_string(c));
+    const auto gradient = faces.reals("gradient_" + std::to_string(c));
+    for (std::size_t r = 0; r < faces.n_rows(); ++r)
+      if (const auto f = names_of.find({faces.keys()[2 * r], faces.keys()[2 * r + 1]});
+          f != names_of.end())
+      {
+        old_place_[f->second][c] = place[r];
+        old_gradient_[f->second][c] = gradient[r];
+      }
+  }
+}
+
 template class SurfaceLoads<2>;
 template class SurfaceLoads<3>;
 } // namespace ligament::dem

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 
 namespace ligament::dem
 {
@@ -86,6 +87,10 @@ public:
   double external_work() const { return work_; }
   void reset_work() { work_ = 0; }
 
+  /// What the next work is booked against, as the tables "loads" and "loaded_faces".
+  void save(core::State &state, const core::Names &names) const;
+  void load(const core::State &state, const core::Names &names);
+
   const std::vector<WallFace<dim>> &walls() const { return walls_; }
   /// Particles of all loaded faces, some perhaps twice.
   std::vector<int> particles() const;
@@ -95,6 +100,9 @@ public:
 private:
   Vector<dim> relative(const WallFace<dim> &wall, const particles::Particles<dim> &p) const;
   Vector<dim> traction(const TractionFace<dim> &face) const;
+
+  /// Faces under tractions by the name of their particle and their number there.
+  std::map<std::array<std::int64_t, 2>, std::size_t> face_names(const core::Names &names) const;
 
   std::vector<core::BoundaryLoad<dim>> loads_;
   std::vector<WallFace<dim>> walls_;

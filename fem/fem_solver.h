@@ -24,6 +24,12 @@ struct Body
   double thickness = 1;     // m, 2D
 };
 
+/// Names of the nodes of a mesh of a specimen (m), by their places alone: what zone the mesh leaves
+/// out does not change them. Throws core::InputError where two nodes are nearer than a millionth of
+/// the specimen.
+template <int dim>
+core::Names node_names(const Mesh<dim> &mesh, const Vector<dim> &lower, const Vector<dim> &upper);
+
 /// Nodes carry displacement (at n) and velocity (at n + 1/2). Hanging nodes are interpolated from
 /// their masters, held components follow their load exactly. Where two loads hold the same
 /// component of a node, the first in the list does.
@@ -127,6 +133,12 @@ public:
   /// forces. Index as in the list given to the constructor.
   Vector<dim> reaction(int load) const;
 
+  /// Motion, absorbing sides and what the next work is booked against, between drift and
+  /// compute_forces, as the tables "nodes", "held", "far_dashpots" and "far_field". Names of nodes:
+  /// node_names(). Nodes without rows stay as they are.
+  void save(core::State &state, const core::Names &names) const;
+  void load(const core::State &state, const core::Names &names);
+
   const Mesh<dim> &mesh() const { return mesh_; }
   const Body<dim> &body() const { return body_; }
   bool is_released_node(int node) const { return released_node_[node]; }
@@ -158,6 +170,11 @@ private:
   double support_force(const LoadedComponent &h, double time) const; // on the body, in N
   double held_drag(double dt) const; // J, taken from held components in the last kick
   void book_work();
+
+  /// visit(key, component of a node) for every one on which a load acts, key its name, component
+  /// and 0 where it is held, 1 + the number of the load else.
+  template <typename Solver, typename Visit>
+  static void for_each_loaded(Solver &solver, const core::Names &names, Visit &&visit);
 
   Mesh<dim> mesh_;
   Body<dim> body_;

@@ -113,6 +113,12 @@ public:
   virtual void add_tangent(const Particles<dim> &particles,
                            const std::function<void(const QuadraticTerm<dim> &)> &add) const = 0;
 
+  /// What the force remembers beyond the particles' motion, at the time of the present positions
+  /// and before compute(). load() follows the construction of the same body and the load of the
+  /// particles; then compute() gives the same bits.
+  virtual void save(core::State &, const core::Names &, const Particles<dim> &) const {}
+  virtual void load(const core::State &, const core::Names &, const Particles<dim> &) {}
+
   /// Share of the energy of a term at `location` (m, reference) that `particles` enter.
   using TermShare =
       std::function<double(const Vector<dim> &location, const std::vector<int> &particles)>;

@@ -29,6 +29,28 @@ void ParticleSolver<dim>::let_rest(const RestLimits &limits)
 }
 
 template <int dim>
+void ParticleSolver<dim>::save(core::State &all) const
+{
+  const core::Names names = state.names();
+  state.save(all, names);
+  force->save(all, names, state);
+  dashpots.save(all, "particle_dashpots", names);
+  if (rest_)
+    rest_->save(all, names);
+}
+
+template <int dim>
+void ParticleSolver<dim>::load(const core::State &all)
+{
+  const core::Names names = state.names();
+  state.load(all, names);
+  force->load(all, names, state);
+  dashpots.load(all, "particle_dashpots", names);
+  if (rest_ && all.count("blocks"))
+    rest_->load(all, names);
+}
+
+template <int dim>
 template <typename Visit>
 void ParticleSolver<dim>::for_each_awake(Visit &&visit) const
 {
@@ -150,8 +172,8 @@ double ParticleSolver<dim>::damp_velocities(double factor, double dt)
     twice_energy +=
         damp(state.velocity[c], state.force[c], state.mass, state.n_owned, factor, power);
   for (int c = 0; c < n_spins<dim>; ++c)
-    twice_energy += state.gyration * damp(state.spin[c], state.torque[c], state.mass,
-                                          state.n_owned, factor, power);
+    twice_energy += state.gyration *
+                    damp(state.spin[c], state.torque[c], state.mass, state.n_owned, factor, power);
   return (1 - factor) / 2 * ((1 + factor) * twice_energy + dt * power);
 }
 

@@ -47,6 +47,11 @@ public:
   /// Null: all particles take every step.
   const RestBlocks<dim> *rest() const { return rest_.get(); }
 
+  /// Particles, force, absorbing sides and what rests; between drift and compute_forces.
+  void save(core::State &state) const;
+  /// Into a body that was built in the same way. let_rest() comes before it where it was called.
+  void load(const core::State &state);
+
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
   core::Dashpots<dim> dashpots; // of absorbing sides

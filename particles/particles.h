@@ -1,6 +1,7 @@
 // The state of all particles, whatever force moves them: public parallel arrays.
 #pragma once
 
+#include "core/names.h"
 #include "core/types.h"
 #include "particles/global_ids.h"
 
@@ -41,6 +42,13 @@ struct Particles
   template <typename Visit>
   void for_each_array(Visit &&visit);
 
+  /// The names of all particles.
+  core::Names names() const { return core::Names(global_id.list()); }
+
+  /// The motion as the table "particles". What has no row stays as it is.
+  void save(core::State &state, const core::Names &names) const;
+  void load(const core::State &state, const core::Names &names);
+
   /// n owned particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
   void resize(int n);
 };
@@ -62,6 +70,27 @@ void Particles<dim>::for_each_array(Visit &&visit)
   components("torque", torque);
   visit("volume", volume);
   visit("mass", mass);
+}
+
+template <int dim>
+void Particles<dim>::save(core::State &state, const core::Names &names) const
+{
+  core::Table table(names.sorted());
+  names.save(table, "displacement", displacement);
+  names.save(table, "rotation", rotation);
+  names.save(table, "velocity", velocity);
+  names.save(table, "spin", spin);
+  state["particles"] = std::move(table);
+}
+
+template <int dim>
+void Particles<dim>::load(const core::State &state, const core::Names &names)
+{
+  const core::Table &table = core::table(state, "particles");
+  names.load(table, "displacement", displacement);
+  names.load(table, "rotation", rotation);
+  names.load(table, "velocity", velocity);
+  names.load(table, "spin", spin);
 }
 
 template <int dim>

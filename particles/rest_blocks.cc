@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ligament::particles
 {
@@ -169,6 +170,41 @@ void RestBlocks<dim>::update_ranges()
   for (int b = 0; b < n_blocks(); ++b)
     if (nearness_[b] >= awake && nearness_[b] < moving)
       rim_.push_back(b);
+}
+
+template <int dim>
+void RestBlocks<dim>::save(core::State &state, const core::Names &names) const
+{
+  std::map<std::int64_t, std::int64_t> nearness;
+  for (int b = 0; b < n_blocks(); ++b)
+    nearness[names.name(begin_[b])] = nearness_[b];
+  std::vector<std::int64_t> keys, values;
+  for (const auto &[key, value] : nearness) {
+    keys.push_back(key);
+    values.push_back(value);
+  }
+  core::Table table(std::move(keys));
+  table.add("nearness", values);
+  state["blocks"] = std::move(table);
+  core::save_value(state, "rest", "steps", steps_);
+  core::save_value(state, "rest", "particle_steps", particle_steps_);
+}
+
+template <int dim>
+void RestBlocks<dim>::load(const core::State &state, const core::Names &names)
+{
+  const core::Table &table = core::table(state, "blocks");
+  const auto nearness = table.integers("nearness");
+  std::fill(nearness_.begin(), nearness_.end(), 0);
+  for (std::size_t r = 0; r < table.n_rows(); ++r) {
+    const int i = names.index(table.keys()[r]);
+    if (i >= 0 && nearness[r] == moving)
+      raise(block_of(i), moving);
+  }
+  steps_ = core::load_real(state, "rest", "steps");
+  particle_steps_ = core::load_real(state, "rest", "particle_steps");
+  ++version_;
+  update_ranges();
 }
 
 template <int dim>

@@ -71,6 +71,11 @@ public:
   /// Grows when the ranges do.
   long version() const { return version_; }
 
+  /// Which blocks move, called by their first particles, as the table "blocks", and the counts of
+  /// steps. Blocks that this body has more rest until something wakes them.
+  void save(core::State &state, const core::Names &names) const;
+  void load(const core::State &state, const core::Names &names);
+
   /// Share of the particle-steps so far that were left out.
   double share_at_rest() const;
 

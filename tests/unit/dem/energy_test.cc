@@ -361,7 +361,7 @@ TYPED_TEST(Touch, StrangersMeetAndRepel)
   const int steps = 70;
   for (int s = 1; s <= steps; ++s) {
     p.displacement[1][2] = -0.01 * d * s;
-    force.compute(p, 0);
+    force.compute(p, 1e-9 * s);
   }
   // 2 has come to 0.9 d of 0: the penalty of the mean face.
   const double stiffness = 2 * material.shear_modulus() * packing.faces[0].area / d;

@@ -1,0 +1,43 @@
+#include "src/simulation/body_state.h"
+
+namespace ligament::program
+{
+namespace
+{
+template <int dim>
+core::Names node_names(const CoupledBody<dim> &body)
+{
+  return fem::node_names<dim>(body.far->mesh(), body.lower, body.upper);
+}
+} // namespace
+
+template <int dim>
+core::State take_state(const CoupledBody<dim> &body)
+{
+  core::State state;
+  if (body.zone)
+    body.zone->save(state);
+  if (body.far)
+    body.far->save(state, node_names(body));
+  body.coupler->save(state, body.bodies());
+  core::save_value(state, "body", "regime_change", body.regime_change);
+  return state;
+}
+
+template <int dim>
+void give_state(const core::State &state, CoupledBody<dim> &body)
+{
+  if (body.zone)
+    body.zone->load(state);
+  if (body.far)
+    body.far->load(state, node_names(body));
+  auto bodies = body.bodies();
+  body.coupler->load(state, bodies);
+  body.regime_change = core::load_real(state, "body", "regime_change");
+}
+
+template core::State take_state(const CoupledBody<2> &);
+template core::State take_state(const CoupledBody<3> &);
+template void give_state(const core::State &, CoupledBody<2> &);
+template void give_state(const core::State &, CoupledBody<3> &);
+} // namespace ligament::program

@@ -1,0 +1,244 @@
+// A body that is built anew again and again, and given the state of the one before, goes on to the
+// last bit: motion, broken bonds, every energy.
+#include "src/simulation/body_state.h"
+#include "src/simulation/damping.h"
+#include "src/simulation/energy_ledger.h"
+#include "src/simulation/regime_control.h"
+#include "tests/support/small_plate.h"
+
+#include <cstring>
+
+namespace ligament::program
+{
+namespace
+{
+using tests::operator+;
+using tests::small_scene;
+
+/// The steps of `run`, between which the body may be replaced by a new one with its state.
+template <int dim>
+class Course
+{
+public:
+  Course(const Scene &scene, bool rests)
+      : scene_(scene), body_(make_body<dim>(scene_, log_, timers_)), damping_(scene.damping),
+        regime_(scene.coupling.regime, body_), rests_(rests)
+  {
+    now_.dt = body_.dt;
+    compute();
+    if (rests_)
+      let_rest();
+  }
+
+  /// Up to the next action of the far field.
+  void step(bool rebuild)
+  {
+    regime_.look(body_, now_, log_);
+    for (int k = 0; k < body_.coupler->step_ratio(); ++k) {
+      auto bodies = body_.bodies();
+      damping_.before_kick(body_, now_);
+      body_.coupler->kick(bodies, now_);
+      damping_.after_kick(body_, now_);
+      body_.coupler->drift(bodies, now_);
+      ++now_.step;
+      now_.time = double(now_.step) * now_.dt;
+      if (k + 1 == body_.coupler->step_ratio() && rebuild)
+        build_anew();
+      compute();
+    }
+  }
+
+  /// All energies and the state, bit by bit.
+  std::vector<double> ledger() const
+  {
+    std::vector<double> values;
+    for (const auto &[name, value] : read_ledger(body_, now_, damping_.energy()).channels())
+      values.push_back(value);
+    return values;
+  }
+  core::State state() const { return take_state(body_); }
+  long n_broken() const { return body_.force ? long(body_.force->broken_bonds().size()) : 0; }
+  const CoupledBody<dim> &body() const { return body_; }
+  double time() const { return now_.time; }
+
+private:
+  void compute()
+  {
+    auto bodies = body_.bodies();
+    body_.coupler->compute_forces(bodies, now_);
+  }
+  void let_rest()
+  {
+    const double strain = scene_.time.rest_threshold;
+    body_.zone->let_rest(particles::RestLimits::of_strain(
+        strain, body_.spacing, body_.force->elastic_constants().wave_speed_p));
+    if (body_.split)
+      body_.split->let_rest(body_.bodies(), strain);
+  }
+  void build_anew()
+  {
+    const core::State state = take_state(body_);
+    body_ = make_body<dim>(scene_, log_, timers_);
+    if (rests_)
+      let_rest();
+    give_state(state, body_);
+  }
+
+  Scene scene_;
+  core::Log log_;
+  core::Timers timers_;
+  CoupledBody<dim> body_;
+  BodyDamping<dim> damping_;
+  RegimeControl<dim> regime_;
+  bool rests_;
+  coupling::StepTime now_;
+};
+
+bool same_bits(const std::vector<double> &a, const std::vector<double> &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+/// Rebuilt every k far steps from `from` (s) on, until `to`; in every step for a while. Something
+/// must have broken by then.
+template <int dim>
+void expect_same_course(const std::vector<std::string> &overrides, double from, double to,
+                        long least_broken, bool rests = false)
+{
+  const Scene scene = small_scene(overrides);
+  Course<dim> plain(scene, rests);
+  std::vector<std::vector<double>> ledgers; // after each far step
+  for (; plain.time() < to; ledgers.push_back(plain.ledger()))
+    plain.step(false);
+  EXPECT_GE(plain.n_broken(), least_broken);
+  const core::State last = plain.state();
+
+  for (const int interval : {1, 7, 100}) {
+    SCOPED_TRACE(interval);
+    Course<dim> rebuilt(scene, rests);
+    int steps = 0, n_rebuilt = 0;
+    const int most = interval == 1 ? 30 : 100;
+    for (const auto &ledger : ledgers) {
+      const bool due = rebuilt.time() >= from && ++steps % interval == 0 && n_rebuilt < most;
+      n_rebuilt += due;
+      rebuilt.step(due);
+      ASSERT_TRUE(!due || same_bits(ledger, rebuilt.ledger())) << "at " << rebuilt.time();
+    }
+    EXPECT_GT(n_rebuilt, 0);
+    const core::State state = rebuilt.state();
+    ASSERT_EQ(state.size(), last.size());
+    for (const auto &[name, table] : last)
+      EXPECT_TRUE(state.count(name) && table == state.at(name)) << name;
+  }
+}
+
+// Bonds break at a strain of 1e-3 while the plate is torn apart.
+const std::vector<std::string> torn = {
+    R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-3})",
+    R"(/specimen/cracks=[{"points": [[-4, 0], [4, 0]]}])",
+    R"(/loads=[{"boundary": "top", "velocity": [null, 2e-4], "ramp": 100},
+               {"boundary": "bottom", "velocity": [null, -2e-4], "ramp": 100}])",
+    "/time/duration=6000"};
+
+const std::string friction = "/material/friction=0.4";
+
+TEST(BodyState, ABreakingCoupledPlateGoesOnToTheLastBit)
+{
+  expect_same_course<2>(torn, 60, 260, 10);
+}
+
+TEST(BodyState, APureDiscretePlateGoesOnToTheLastBit)
+{
+  expect_same_course<2>(torn + std::vector<std::string>{"/far_field=none", friction}, 60, 400, 30);
+}
+
+TEST(BodyState, APureMeshGoesOnToTheLastBit)
+{
+  expect_same_course<2>({"/discrete_zone=none", "/damping/mass=1e-3", torn[2],
+                         R"(/loads/1={"boundary": "bottom", "absorbing": true})"},
+                        20, 600, 0);
+}
+
+// With the inertia and drag of supports, dashpots and their layers, local damping.
+TEST(BodyState, EveryDampingGoesOnToTheLastBit)
+{
+  for (const char *damping : {"/damping/mass=1e-3", "/damping/local=0.3", "/damping/kinetic=true"})
+  {
+    SCOPED_TRACE(damping);
+    expect_same_course<2>(torn + std::vector<std::string>{damping}, 60, 200, 1);
+  }
+}
+
+TEST(BodyState, FourStepsPerActionOfTheFarFieldGoOnToTheLastBit)
+{
+  expect_same_course<2>(
+      torn + std::vector<std::string>{"/coupling/step_ratio=4", "/damping/mass=1e-3"}, 60, 260, 10);
+}
+
+// Pressed and sheared: the closed flanks of the crack slide, its joints go from particle to
+// particle.
+TEST(BodyState, ASlidingClosedCrackGoesOnToTheLastBit)
+{
+  expect_same_course<2>({R"(/specimen/cracks=[{"points": [[-7, -6.3], [7, 6.3]]}])",
+                         "/far_field=none",
+                         R"(/material/fracture={"criterion": "maximum_tension", "strength": 8e-3})",
+                         R"(/loads=[{"boundary": "top", "velocity": [4e-3, -2e-3], "ramp": 50},
+                  {"boundary": "bottom", "velocity": [-4e-3, 2e-3], "ramp": 50}])",
+                         friction},
+                        60, 500, 1);
+}
+
+// Fast enough that pieces fly and hit others.
+TEST(BodyState, FragmentsThatHitAgainGoOnToTheLastBit)
+{
+  expect_same_course<2>({"/far_field=none", friction,
+                         R"(/material/fracture={"criterion": "maximum_tension", "strength": 2e-3})",
+                         R"(/loads=[{"boundary": "top", "velocity": [null, -0.05], "ramp": 10},
+                  {"boundary": "bottom", "velocity": [null, 0.05], "ramp": 10}])"},
+                        60, 300, 100);
+}
+
+TEST(BodyState, EveryRegimeGoesOnToTheLastBit)
+{
+  for (const char *regime : {"corotated", "nonlinear"}) {
+    SCOPED_TRACE(regime);
+    expect_same_course<2>({std::string("/coupling/regime=") + regime,
+                           R"(/loads=[{"boundary": "top", "velocity": [3e-3, 1e-4], "ramp": 60},
+                    {"boundary": "bottom", "velocity": [-3e-3, -1e-4], "ramp": 60}])"},
+                          20, 120, 0);
+  }
+}
+
+TEST(BodyState, EnergyWeightedCouplersGoOnToTheLastBit)
+{
+  for (const char *scheme : {"acceleration", "xiao_belytschko"}) {
+    SCOPED_TRACE(scheme);
+    expect_same_course<2>(
+        torn + std::vector<std::string>{std::string("/coupling/scheme=") + scheme}, 60, 200, 1);
+  }
+}
+
+TEST(BodyState, RegionsAtRestGoOnToTheLastBit)
+{
+  for (const char *threshold : {"/time/rest_threshold=0", "/time/rest_threshold=1e-6"}) {
+    SCOPED_TRACE(threshold);
+    expect_same_course<2>(torn + std::vector<std::string>{threshold}, 10, 200, 1, true);
+    expect_same_course<2>(torn + std::vector<std::string>{threshold, "/far_field=none"}, 10, 200, 1,
+                          true);
+  }
+}
+
+TEST(BodyState, RandomPackingsOfTwoMaterialsGoOnToTheLastBit)
+{
+  expect_same_course<2>(
+      torn +
+          std::vector<std::string>{
+              "/discrete_zone/packing=random", "/discrete_zone/relaxation_sweeps=4",
+              "/discrete_zone/size_ratio=2", friction,
+              R"(/inclusions=[{"balls": [{"centre": [6, 0], "radius": 3}], "youngs_modulus": 3,
+                "poissons_ratio": 0.3, "density": 1,
+                "fracture": {"criterion": "maximum_tension", "strength": 2e-3}}])"},
+      60, 260, 10);
+}
+} // namespace
+} // namespace ligament::program
