@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <string>
 
 #include <dlfcn.h>
@@ -37,6 +38,7 @@ struct Disk
   long fault_at = std::atol(value("FAULTY_DISK_CALL")), calls = 0;
   int error = std::atoi(value("FAULTY_DISK_ERROR"));
   std::map<int, File> files;
+  std::recursive_mutex mutex; // the program may have threads
 
   static const char *value(const char *name)
   {
@@ -64,6 +66,8 @@ Function *real(const char *name, Function *)
   return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
 }
 
+using Lock = std::lock_guard<std::recursive_mutex>;
+
 bool is_below(const char *path)
 {
   const Disk &d = disk();
@@ -85,6 +89,7 @@ template <typename Call>
 long count(Call &&call)
 {
   Disk &d = disk();
+  const Lock lock(d.mutex);
   const long n = ++d.calls;
   if ((d.action == "fail" && n == d.fault_at) || (d.action == "fail_on" && n >= d.fault_at)) {
     errno = d.error;
@@ -140,7 +145,11 @@ int open64(const char *path, int flags, ...)
 ssize_t write(int descriptor, const void *bytes, size_t n)
 {
   static const auto real_write = real("write", ::write);
-  if (!disk().files.count(descriptor))
+  const auto is_watched = [&] {
+    const Lock lock(disk().mutex);
+    return disk().files.count(descriptor) > 0;
+  };
+  if (!is_watched())
     return real_write(descriptor, bytes, n);
   return count([&] { return real_write(descriptor, bytes, n); });
 }
@@ -166,6 +175,7 @@ int fsync(int descriptor)
 int close(int descriptor)
 {
   static const auto real_close = real("close", ::close);
+  const Lock lock(disk().mutex);
   auto &files = disk().files;
   if (const auto file = files.find(descriptor); file != files.end()) {
     files[-1 - int(files.size())] = file->second; // may be torn still
