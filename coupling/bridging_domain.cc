@@ -413,6 +413,14 @@ void BridgingDomain<dim>::load(const core::State &state, Bodies<dim> &bodies)
   fine_damper_energy_ = core::load_real(state, "bridging_domain", "damper_energy");
 }
 
+template <int dim>
+std::vector<core::SkippedPart> BridgingDomain<dim>::skipped_parts() const
+{
+  if (parameters_.fine_damper == 0)
+    return {{"fluctuation damper", "/coupling/fine_damper is 0"}};
+  return {};
+}
+
 template class BridgingDomain<2>;
 template class BridgingDomain<3>;
 } // namespace ligament::coupling

@@ -42,6 +42,8 @@ public:
   void take_velocities(Bodies<dim> &bodies) override;
   void save(core::State &state, const Bodies<dim> &bodies) const override;
   void load(const core::State &state, Bodies<dim> &bodies) override;
+  bool can_turn() const override { return false; }
+  std::vector<core::SkippedPart> skipped_parts() const override;
   const Overlap<dim> *overlap() const override { return &overlap_; }
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
 

@@ -1,8 +1,10 @@
 // What the time loop asks of whatever joins the two halves.
 #pragma once
 
+#include "core/skipped_part.h"
 #include "core/timers.h"
 #include "coupling/overlap.h"
+#include "coupling/regime.h"
 #include "fem/fem_solver.h"
 #include "particles/particle_solver.h"
 
@@ -10,6 +12,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace ligament::coupling
 {
@@ -40,6 +43,14 @@ struct CoupledEnergy
   double impulses = 0;    // step error of the far field's impulses, theory.md eq. (E5); 0 for m = 1
   double fine_damper = 0; // taken so far by the fluctuation damper
   double gap_filter = 0;  // taken so far by the gap-band filter
+};
+
+/// Share of some steps so far that a part of the body was left out of.
+struct RestShare
+{
+  std::string name;  // of the figure in a run's record
+  std::string steps; // which, in words
+  double share;
 };
 
 /// One time step is drift (positions), forces, kick (velocities); theory.md, "One step".
@@ -82,6 +93,24 @@ public:
   virtual void save(core::State &, const Bodies<dim> &) const {}
   virtual void load(const core::State &, Bodies<dim> &) {}
 
+  /// Overlap and far field may turn and stretch: set_regime() knows more than the linear regime.
+  virtual bool can_turn() const { return true; }
+  /// The regime in which they move from now on, never back to an earlier one; core::InputError when
+  /// the discrete law cannot follow. Without more knowledge the far field's cells turn.
+  virtual void set_regime(Regime regime, Bodies<dim> &bodies);
+  /// Of the near cells at present.
+  virtual NearMotion largest_motion() const { return {}; }
+
+  /// It wakes what it moves: blocks of the zone may rest.
+  virtual bool can_rest() const { return false; }
+  /// From now on overlap and far field wait for a wave, too; `strain` is that of the pull that
+  /// wakes, 0: any. To be called with all at rest but for loads, after the zone's let_rest.
+  virtual void let_rest(const Bodies<dim> &, double /*strain*/) {}
+  virtual std::vector<RestShare> shares_at_rest() const { return {}; }
+
+  /// What its parameters switch off.
+  virtual std::vector<core::SkippedPart> skipped_parts() const { return {}; }
+
   /// Null when the halves don't overlap.
   virtual const Overlap<dim> *overlap() const { return nullptr; }
   /// Scalar mass of the overlap's near nodes including the far field's share, kg.
@@ -112,5 +141,6 @@ public:
   void scale_velocities(Bodies<dim> &bodies, double factor) override;
   double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
+  bool can_rest() const override { return true; }
 };
 } // namespace ligament::coupling

@@ -61,22 +61,22 @@ public:
   /// From now on both halves move in this regime; forces must be computed again before the next
   /// kick. The energy jumps by what the regimes differ in the present motion. Throws
   /// core::InputError when the discrete law cannot follow, and when asked to become linear again.
-  void set_regime(Regime regime, Bodies<dim> &bodies);
+  void set_regime(Regime regime, Bodies<dim> &bodies) override;
   Regime regime() const { return regime_; }
   /// Of the near cells, in the present state.
-  typename RigidFrames<dim>::Motion largest_motion() const
-  {
-    return parts_.largest_motion(displacement_);
-  }
+  NearMotion largest_motion() const override { return parts_.largest_motion(displacement_); }
 
   /// From now on overlap and mesh wait for a wave: the near nodes stand still until the far field
   /// pulls at one of them, or particles within two bonds of the overlap are awake, and the far
   /// field does until then unless a load acts on it. `strain` is that of the pull that wakes, 0:
   /// any. To be called with all at rest but for loads, after the zone's let_rest.
-  void let_rest(const Bodies<dim> &bodies, double strain);
+  void let_rest(const Bodies<dim> &bodies, double strain) override;
+  bool can_rest() const override { return true; }
   /// Shares of the steps so far that the overlap, and the far field, were left out of.
   double share_at_rest() const { return share_of(rested_); }
   double far_share_at_rest() const { return share_of(far_rested_); }
+  std::vector<RestShare> shares_at_rest() const override;
+  std::vector<core::SkippedPart> skipped_parts() const override;
 
   const SplitReport &report() const { return report_; }
   const Overlap<dim> *overlap() const override { return &overlap_; }

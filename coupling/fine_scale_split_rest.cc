@@ -1,4 +1,5 @@
-// When overlap and far field wait for a wave, and what wakes them (theory.md section 1.11).
+// When overlap and far field wait for a wave, and what wakes them (theory.md section 1.11); what
+// else a run leaves out.
 #include "coupling/fine_scale_split.h"
 
 #include <algorithm>
@@ -53,6 +54,28 @@ void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
   bodies.zone->wake(particles);
 }
 
+template <int dim>
+std::vector<RestShare> FineScaleSplit<dim>::shares_at_rest() const
+{
+  return {{"overlap_at_rest", "overlap's steps", share_at_rest()},
+          {"far_field_at_rest", "far field's steps", far_share_at_rest()}};
+}
+
+template <int dim>
+std::vector<core::SkippedPart> FineScaleSplit<dim>::skipped_parts() const
+{
+  std::vector<core::SkippedPart> skipped;
+  if (parameters_.gap_filter == 0)
+    skipped.push_back({"gap-band filter", "/coupling/gap_filter is 0"});
+  if (parameters_.fine_damper == 0)
+    skipped.push_back({"fluctuation damper", "/coupling/fine_damper is 0"});
+  return skipped;
+}
+
+template std::vector<RestShare> FineScaleSplit<2>::shares_at_rest() const;
+template std::vector<RestShare> FineScaleSplit<3>::shares_at_rest() const;
+template std::vector<core::SkippedPart> FineScaleSplit<2>::skipped_parts() const;
+template std::vector<core::SkippedPart> FineScaleSplit<3>::skipped_parts() const;
 template void FineScaleSplit<2>::let_rest(const Bodies<2> &, double);
 template void FineScaleSplit<3>::let_rest(const Bodies<3> &, double);
 template bool FineScaleSplit<2>::far_rests(const Bodies<2> &, const StepTime &);

@@ -11,6 +11,13 @@ Coupler<dim>::Coupler(core::Timers &timers)
 }
 
 template <int dim>
+void Coupler<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
+{
+  if (bodies.far && regime != Regime::linear)
+    bodies.far->set_corotated(true);
+}
+
+template <int dim>
 void NullCoupler<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
   if (bodies.zone) {

@@ -1,5 +1,4 @@
-// One bonded face: its reference geometry, its stiffness, and how it answers to the motion of its
-// two particles.
+// One bonded face: its reference geometry, its stiffness, and the relative motion of its particles.
 #pragma once
 
 #include "dem/turn.h"
@@ -44,41 +43,5 @@ template <int dim>
 Vector<dim> present_normal(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j)
 {
   return (2 * bond.normal + turn_i.change(bond.normal) + turn_j.change(bond.normal)).normalized();
-}
-
-/// Torque of bending and twist on i, minus that on j (N m, space axes), theory.md eq. (D4): minus
-/// the exact gradient of bending_energy.
-inline Spin<2> bending_torque(const Bond<2> &bond, const particles::Particles<2> &p)
-{
-  return Spin<2>(bond.bending * (p.rotation[0][bond.j] - p.rotation[0][bond.i]));
-}
-
-inline double bending_energy(const Bond<2> &bond, const particles::Particles<2> &p)
-{
-  const double angle = p.rotation[0][bond.j] - p.rotation[0][bond.i];
-  return 0.5 * bond.bending * angle * angle;
-}
-
-/// conj(q_i) q_j: the rotation of j as i sees it.
-inline Turn<3> relative_turn(const Turn<3> &i, const Turn<3> &j)
-{
-  return {i.w * j.w + i.v.dot(j.v), i.w * j.v - j.w * i.v - i.v.cross(j.v)};
-}
-
-inline Spin<3> bending_torque(const Bond<3> &bond, const particles::Particles<3> &p)
-{
-  const Turn<3> turn_i = Turn<3>::of(p, bond.i),
-                rel = relative_turn(turn_i, Turn<3>::of(p, bond.j));
-  const Vector<3> kv =
-      bond.bending * rel.v + (bond.twist - bond.bending) * bond.normal.dot(rel.v) * bond.normal;
-  const Vector<3> body = 2 * (rel.w * kv + rel.v.cross(kv));
-  return body + turn_i.change(body);
-}
-
-inline double bending_energy(const Bond<3> &bond, const particles::Particles<3> &p)
-{
-  const Turn<3> rel = relative_turn(Turn<3>::of(p, bond.i), Turn<3>::of(p, bond.j));
-  const double vn = bond.normal.dot(rel.v);
-  return 2 * (bond.bending * rel.v.squaredNorm() + (bond.twist - bond.bending) * vn * vn);
 }
 } // namespace ligament::dem

@@ -1,5 +1,7 @@
 #include "dem/bond_slices.h"
 
+#include "dem/bond_law.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,16 +15,6 @@ namespace
 constexpr int sorted_group = 32 * slice_width;
 /// An array of so many numbers is worth large pages.
 constexpr int several_pages = 4096;
-
-/// Stiffness of a bond as the table wants it.
-std::array<double, n_stiffness<2>> stiffness_of(const Bond<2> &b, double shear)
-{
-  return {shear, b.bending};
-}
-std::array<double, n_stiffness<3>> stiffness_of(const Bond<3> &b, double shear)
-{
-  return {shear, b.bending, (b.twist - b.bending) / (b.distance * b.distance)};
-}
 } // namespace
 
 template <int dim>
@@ -107,22 +99,30 @@ void BondSlices<dim>::lay_out(const std::vector<int> &n_bonds_of)
 }
 
 template <int dim>
-void BondSlices<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int neighbour)
+double *SliceTable<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int neighbour)
 {
   const Vector<dim> &own = is_i ? b.lever_i : b.lever_j, &other = is_i ? b.lever_j : b.lever_i;
-  const double s_r = b.area / b.distance;
-  const auto stiffness = stiffness_of(b, b.weight * 2 * b.shear_i * s_r);
+  const BondLaw<dim> law = law_of(b);
   const long slot = place / slice_width, lane = place % slice_width;
-  double *const g = table_.geometry.data() + slot * n_geometry<dim> * slice_width + lane;
-  double *const k = table_.stiffness.data() + slot * n_stiffness<dim> * slice_width + lane;
+  double *const g = geometry.data() + slot * n_geometry<dim> * slice_width + lane;
+  double *const k = stiffness.data() + slot * n_stiffness<dim> * slice_width + lane;
   for (int c = 0; c < dim; ++c) {
     g[c * slice_width] = own[c];
     g[(dim + c) * slice_width] = other[c];
   }
-  g[2 * dim * slice_width] = s_r;
-  for (std::size_t c = 0; c < stiffness.size(); ++c)
-    k[c * slice_width] = stiffness[c];
-  table_.neighbour[place] = neighbour;
+  g[2 * dim * slice_width] = law.area_r;
+  k[0] = law.shear;
+  this->neighbour[place] = neighbour;
+  return k;
+}
+
+template <int dim>
+void BondSlices<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int neighbour)
+{
+  double *const k = table_.set_bond(place, b, is_i, neighbour);
+  k[slice_width] = b.bending;
+  if (dim == 3)
+    k[2 * slice_width] = (b.twist - b.bending) / (b.distance * b.distance);
 }
 
 template <int dim>
@@ -222,6 +222,8 @@ void BondSlices<dim>::add_energies(const LatticeArrays<dim> &arrays, core::Large
     add_slice_energies({table_, arrays, records.data(), 0, false, nullptr, nullptr, energy});
 }
 
+template struct SliceTable<2>;
+template struct SliceTable<3>;
 template class BondSlices<2>;
 template class BondSlices<3>;
 } // namespace ligament::dem

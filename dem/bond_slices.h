@@ -38,6 +38,11 @@ struct SliceTable
   /// others. Empty when none has.
   std::vector<double> per_volume;
 
+  /// What a bond is to one of its particles, bending aside; returns its numbers from the shear
+  /// stiffness on, slice_width apart, for the caller to fill. Neighbours are records times
+  /// record_size.
+  double *set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
+
   int n_slices() const { return int(first_slot.size()) - 1; }
   int n_records() const { return int(particle.size()); }
 };

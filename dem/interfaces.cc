@@ -1,5 +1,8 @@
 #include "dem/interfaces.h"
 
+#include "dem/bond_law.h"
+#include "dem/laws/series_bond.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,35 +10,12 @@ namespace ligament::dem
 {
 namespace
 {
-/// Both sides of a bond at one moment.
 template <int dim>
-struct Sides
+SeriesBond<dim> series_of(const Bond<dim> &b, const particles::Particles<dim> &p)
 {
-  double c_i, c_j;            // q / 2G, m/Pa
-  Vector<dim> unit_i, unit_j; // levers over q; dilatation grows with d along them
-  BondMotion<dim> motion;
-
-  Sides(const Bond<dim> &b, const BondMotion<dim> &m) : motion(m)
-  {
-    const double q_i = b.lever_i.dot(b.normal), q_j = -b.lever_j.dot(b.normal);
-    c_i = q_i / (2 * b.shear_i);
-    c_j = q_j / (2 * b.shear_j);
-    unit_i = m.a_i / q_i;
-    unit_j = -m.a_j / q_j;
-  }
-  Sides(const Bond<dim> &b, const particles::Particles<dim> &p)
-      : Sides(b, BondMotion<dim>(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j),
-                                 get(p.displacement, b.i), get(p.displacement, b.j)))
-  {
-  }
-
-  Vector<dim> traction(double p_i, double p_j) const
-  {
-    return (motion.du + c_i * p_i * unit_i + c_j * p_j * unit_j) / (c_i + c_j);
-  }
-  Vector<dim> d_i(const Vector<dim> &t, double p_i) const { return c_i * (t - p_i * unit_i); }
-  Vector<dim> d_j(const Vector<dim> &t, double p_j) const { return c_j * (t - p_j * unit_j); }
-};
+  return {b, BondMotion<dim>(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j),
+                             get(p.displacement, b.i), get(p.displacement, b.j))};
+}
 
 /// The bonds' part of the system for the pressures: [ii ij; ij jj] between two members.
 struct Coupling
@@ -141,15 +121,12 @@ void Interfaces<dim>::add_own_part(const Particles &p, const std::vector<double>
   }
   std::vector<Coupling> couplings;
   for (const auto &[bond, index] : bonds_) {
-    const Sides<dim> s(bond, p);
+    const auto c = series_of(bond, p).coupling();
     const int i = member_[bond.i], j = member_[bond.j];
-    const double c = s.c_i + s.c_j, k = bond.area * s.c_i * s.c_j / c;
     const bool has_i = diagonal[i] > 0, has_j = diagonal[j] > 0;
-    couplings.push_back({i, j, has_i ? k * s.unit_i.squaredNorm() : 0.,
-                         has_i && has_j ? -k * s.unit_i.dot(s.unit_j) : 0.,
-                         has_j ? k * s.unit_j.squaredNorm() : 0.});
-    b[i] += has_i ? bond.area * s.c_i / c * s.unit_i.dot(s.motion.du) : 0;
-    b[j] += has_j ? bond.area * s.c_j / c * s.unit_j.dot(s.motion.du) : 0;
+    couplings.push_back({i, j, has_i ? c.ii : 0., has_i && has_j ? c.ij : 0., has_j ? c.jj : 0.});
+    b[i] += has_i ? c.of_motion_i : 0;
+    b[j] += has_j ? c.of_motion_j : 0;
   }
   const std::vector<double> solution = solve(diagonal, couplings, b);
   for (std::size_t k = 0; k < n; ++k)
@@ -163,38 +140,28 @@ void Interfaces<dim>::take_own_part(const Particles &p,
 {
   std::vector<double> part(members_.size(), 0.);
   for (const auto &[bond, index] : bonds_) {
-    const Sides<dim> s(bond, p);
+    const auto s = series_of(bond, p);
     const double p_i = pressure[bond.i], p_j = pressure[bond.j];
     const Vector<dim> t = s.traction(p_i, p_j);
-    part[member_[bond.i]] += lambda_per_volume[bond.i] * bond.area * s.unit_i.dot(s.d_i(t, p_i));
-    part[member_[bond.j]] += lambda_per_volume[bond.j] * bond.area * s.unit_j.dot(s.d_j(t, p_j));
+    part[member_[bond.i]] += lambda_per_volume[bond.i] * s.dilatation_i(t, p_i);
+    part[member_[bond.j]] += lambda_per_volume[bond.j] * s.dilatation_j(t, p_j);
   }
   for (std::size_t k = 0; k < members_.size(); ++k)
     pressure[members_[k]] -= part[k];
 }
 
 template <int dim>
-Vector<dim> Interfaces<dim>::traction(const Bond<dim> &bond, const BondMotion<dim> &motion,
-                                      const std::vector<double> &pressure)
-{
-  return Sides<dim>(bond, motion).traction(pressure[bond.i], pressure[bond.j]);
-}
-
-template <int dim>
 void Interfaces<dim>::add_forces(Particles &p, const std::vector<double> &pressure) const
 {
   for (const auto &[b, index] : bonds_) {
-    const Sides<dim> s(b, p);
+    const auto s = series_of(b, p);
     const double p_i = pressure[b.i], p_j = pressure[b.j];
     const Vector<dim> t = s.traction(p_i, p_j), f = b.area * t;
     const Spin<dim> bend = bending_torque(b, p);
     add(p.force, b.i, f);
     add(p.force, b.j, Vector<dim>(-f));
-    // The second parts: theta depends on the levers that turn with the particles.
-    add(p.torque, b.i,
-        Spin<dim>(cross(s.motion.a_i, f) - b.area * p_i * cross(s.unit_i, s.d_i(t, p_i)) + bend));
-    add(p.torque, b.j,
-        Spin<dim>(-cross(s.motion.a_j, f) - b.area * p_j * cross(s.unit_j, s.d_j(t, p_j)) - bend));
+    add(p.torque, b.i, Spin<dim>(s.torque_i(t, p_i) + bend));
+    add(p.torque, b.j, Spin<dim>(s.torque_j(t, p_j) - bend));
   }
 }
 
@@ -203,10 +170,9 @@ double Interfaces<dim>::energy(const Particles &p, const std::vector<double> &pr
 {
   double sum = 0;
   for (const auto &[b, index] : bonds_) {
-    const Sides<dim> s(b, p);
-    const Vector<dim> t = s.traction(pressure[b.i], pressure[b.j]);
-    sum += 0.5 * b.area * s.d_i(t, pressure[b.i]).squaredNorm() / s.c_i +
-           0.5 * b.area * s.d_j(t, pressure[b.j]).squaredNorm() / s.c_j + bending_energy(b, p);
+    const auto s = series_of(b, p);
+    const double p_i = pressure[b.i], p_j = pressure[b.j];
+    sum += s.energy(s.traction(p_i, p_j), p_i, p_j) + bending_energy(b, p);
   }
   return sum;
 }

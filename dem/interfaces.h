@@ -45,10 +45,6 @@ public:
   double volume_energy(const std::vector<double> &lambda_per_volume,
                        const std::vector<double> &pressure) const;
 
-  /// Traction of one such bond in Pa.
-  static Vector<dim> traction(const Bond<dim> &bond, const BondMotion<dim> &motion,
-                              const std::vector<double> &pressure);
-
 private:
   struct IndexedBond
   {

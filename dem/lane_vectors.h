@@ -54,6 +54,11 @@ HWY_INLINE V add_dot(const Pair<V> &a, const Pair<V> &b, V c)
 {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, c));
 }
+template <typename V>
+HWY_INLINE V dot(const Pair<V> &a, const Pair<V> &b)
+{
+  return hn::MulAdd(a.x, b.x, hn::Mul(a.y, b.y));
+}
 /// c + a x b
 template <typename V>
 HWY_INLINE V add_cross(const Pair<V> &a, const Pair<V> &b, V c)
@@ -98,6 +103,11 @@ template <typename V>
 HWY_INLINE V add_dot(const Triple<V> &a, const Triple<V> &b, V c)
 {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::MulAdd(a.z, b.z, c)));
+}
+template <typename V>
+HWY_INLINE V dot(const Triple<V> &a, const Triple<V> &b)
+{
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 /// c + a x b
 template <typename V>

@@ -7,6 +7,8 @@
 // After foreach_target.h, as Highway wants it.
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
+#include "dem/laws/bending.h"
+#include "dem/laws/elastic_bond.h"
 #include "dem/sine.h"
 #include "dem/stress_bound.h"
 
@@ -27,7 +29,9 @@ public:
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds2d(const RowSweep<2> &sweep)
-      : a_(sweep.arrays), c_(sweep.constants), volumetric_(sweep.volumetric)
+      : a_(sweep.arrays),
+        c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
+        volumetric_(sweep.volumetric)
   {
   }
 
@@ -45,13 +49,12 @@ public:
     hn::StoreU(angle, d, at + angle_ * stride);
     hn::Vec<D> c, s;
     cosine_minus_1_and_sine(d, angle, c, s);
-    store(d, {c, s}, at + h_ * stride);
+    const Pair<hn::Vec<D>> h{c, s};
+    store(d, h, at + h_ * stride);
     if (volumetric_)
       hn::StoreU(hn::Zero(d), d, at + other_ * stride);
-    else {
-      const auto factor = hn::Set(d, -c_.shear * c_.half);
-      store(d, {hn::Mul(factor, c), hn::Mul(factor, s)}, at + g_ * stride);
-    }
+    else
+      store(d, law_.part(h), at + g_ * stride);
   }
 
   /// After turn() of the particle.
@@ -68,24 +71,21 @@ public:
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto half = hn::Set(d, c_.half);
       const auto h = along<k, h_>(d, at);
-      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
-      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
+      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
+      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
       const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
       const auto a = normal(d, k) + h;
       theta = add_dot(a, e, theta);
       moment = add_cross(a, e, moment);
     });
-    const double volumetric = c_.area_r * c_.half;
-    const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
-    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, at + other_ * stride));
+    const auto p = law_.pressure(hn::LoadU(d, a_.lambda_per_volume + i), theta,
+                                 hn::LoadU(d, at + other_ * stride));
     hn::StoreU(p, d, a_.pressure + i);
     hn::StoreU(moment, d, at + moment_ * stride);
-    const auto vp = hn::Mul(hn::Set(d, volumetric), p);
-    const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
+    const auto vp = law_.pressing(p);
     const auto h = load(d, at + h_ * stride);
-    store(d, {hn::MulAdd(factor, h.x, vp), hn::Mul(factor, h.y)}, at + g_ * stride);
+    store(d, law_.part_along(vp, h), at + g_ * stride);
   }
 
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
@@ -107,12 +107,10 @@ public:
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto shear = hn::Set(d, c_.shear);
       const auto g = along<k, g_>(d, at);
-      const auto t_f =
-          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
+      const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + along<k, g_>(d, f)), k);
       const auto t_b =
-          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
+          masked(mask, law_.force(u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
       const auto net = t_f - t_b, both = t_f + t_b, a = normal(d, k) + along<k, h_>(d, at);
       force = force + net;
       torque = add_cross(a, both, torque);
@@ -131,12 +129,11 @@ public:
       else
         return hn::Ge(largest, hn::Set(d, c_.limit2));
     }();
-    torque = hn::Mul(hn::Set(d, c_.half), torque);
+    torque = law_.torque(torque);
     if (volumetric_)
-      torque =
-          hn::NegMulAdd(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
-                        hn::LoadU(d, at + moment_ * stride), torque);
-    torque = hn::MulAdd(hn::Set(d, c_.bending), bend, torque);
+      torque = law_.add_torque_of_pressure(hn::LoadU(d, a_.pressure + i),
+                                           hn::LoadU(d, at + moment_ * stride), torque);
+    torque = bending(d).add_torque(bend, torque);
     hn::StoreU(force.x, d, a_.force[0] + i);
     hn::StoreU(force.y, d, a_.force[1] + i);
     hn::StoreU(torque, d, a_.torque[0] + i);
@@ -156,13 +153,12 @@ public:
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k];
       const auto h = along<k, h_>(d, at) + along<k, h_>(d, f);
-      const auto du = masked(mask, neg_mul_add(hn::Set(d, c_.half), h, displacement(d, f) - u), k);
+      const auto du = masked(mask, law_.relative(displacement(d, f) - u, h), k);
       const auto turn = mask(hn::Sub(hn::LoadU(d, f + angle_ * stride), angle), k);
       du2 = add_dot(du, du, du2);
       angle2 = hn::MulAdd(turn, turn, angle2);
     });
-    return hn::MulAdd(hn::Set(d, 0.5 * c_.shear), du2,
-                      hn::Mul(hn::Set(d, 0.5 * c_.bending), angle2));
+    return hn::Mul(hn::Set(d, 0.5), bending(d).add_twice_energy(angle2, law_.twice_energy(du2)));
   }
 
   /// The particles with a forward face that could break, with `backward` with any face.
@@ -182,14 +178,20 @@ public:
   }
 
 private:
+  template <typename D>
+  HWY_INLINE PlaneBending<hn::Vec<D>> bending(D d) const
+  {
+    return {hn::Set(d, c_.bending)};
+  }
+
   /// Of the face in direction k between two particles, bit `bit` of the mask.
   template <int k, typename D>
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,
                                       const double *to) const
   {
     const auto t = masked(mask,
-                          mul_add(hn::Set(d, c_.shear), displacement(d, to) - displacement(d, from),
-                                  along<k, g_>(d, from) + along<k, g_>(d, to)),
+                          law_.force(displacement(d, to) - displacement(d, from),
+                                     along<k, g_>(d, from) + along<k, g_>(d, to)),
                           bit);
     const auto n = normal(d, k);
     const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
@@ -250,6 +252,7 @@ private:
 
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;
+  LatticeBonds law_;
   bool volumetric_;
   double *w_ = nullptr; // origin of the window
 };

@@ -7,6 +7,8 @@
 // After foreach_target.h, as Highway wants it.
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
+#include "dem/laws/bending.h"
+#include "dem/laws/elastic_bond.h"
 #include "dem/stress_bound.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,7 +45,9 @@ public:
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds3d(const RowSweep<3> &sweep)
-      : a_(sweep.arrays), c_(sweep.constants), volumetric_(sweep.volumetric)
+      : a_(sweep.arrays),
+        c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
+        volumetric_(sweep.volumetric)
   {
   }
 
@@ -76,7 +80,7 @@ public:
       const auto h = mul_add(n.x, x, mul_add(n.y, y, n.z * z));
       store(d, h, at + (h_ + 3 * m) * stride);
       if (!volumetric_)
-        store(d, hn::Set(d, -c_.shear * c_.half) * h, at + (g_ + 3 * m) * stride);
+        store(d, law_.part(h), at + (g_ + 3 * m) * stride);
     }
   }
 
@@ -96,27 +100,24 @@ public:
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto half = hn::Set(d, c_.half);
       const auto h = along<k, h_>(d, at);
-      auto forward = neg_mul_add(half, h + along<k, h_>(d, f), displacement(d, f) - u);
-      auto backward = neg_mul_add(half, along<k, h_>(d, b) + h, u - displacement(d, b));
+      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
+      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
       const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
       const auto a = normal(d, k) + h;
       theta = add_dot(a, e, theta);
       moment = add_cross(a, e, moment);
     });
-    const double volumetric = c_.area_r * c_.half;
-    const auto share = hn::Mul(hn::Set(d, volumetric), hn::LoadU(d, a_.lambda_per_volume + i));
-    const auto p = hn::MulAdd(share, theta, hn::LoadU(d, at + other_ * stride));
+    const auto p = law_.pressure(hn::LoadU(d, a_.lambda_per_volume + i), theta,
+                                 hn::LoadU(d, at + other_ * stride));
     hn::StoreU(p, d, a_.pressure + i);
     store(d, moment, at + moment_ * stride);
-    const auto vp = hn::Mul(hn::Set(d, volumetric), p);
-    const auto factor = hn::Sub(vp, hn::Set(d, c_.shear * c_.half));
+    const auto vp = law_.pressing(p);
     for (int m = 0; m < 3; ++m)
-      store(d,
-            mul_add(vp, normal(d, Basis<n_dir>::direction[m]),
-                    factor * load(d, at + (h_ + 3 * m) * stride)),
-            at + (g_ + 3 * m) * stride);
+      store(
+          d,
+          law_.part(vp, normal(d, Basis<n_dir>::direction[m]), load(d, at + (h_ + 3 * m) * stride)),
+          at + (g_ + 3 * m) * stride);
   }
 
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
@@ -130,7 +131,7 @@ public:
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     Triple<V> force{zero, zero, zero}, torque{zero, zero, zero};
-    Quaternion<V> bend{zero, {zero, zero, zero}}, twist{zero, {zero, zero, zero}};
+    LatticeBending<V> bending(zero);
     V largest = zero; // by particle: twice the sum of all forces^2
     StressSum3d<V> stress(d);
     double *const at = w_ + i;
@@ -139,12 +140,10 @@ public:
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto shear = hn::Set(d, c_.shear);
       const auto g = along<k, g_>(d, at), n = normal(d, k);
-      const auto t_f =
-          masked(mask, mul_add(shear, displacement(d, f) - u, g + along<k, g_>(d, f)), k);
+      const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + along<k, g_>(d, f)), k);
       const auto t_b =
-          masked(mask, mul_add(shear, u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
+          masked(mask, law_.force(u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
       const auto net = t_f - t_b, both = t_f + t_b, a = n + along<k, h_>(d, at);
       force = force + net;
       torque = add_cross(a, both, torque);
@@ -154,16 +153,9 @@ public:
       } else
         largest = hn::Max(largest, add_dot(t_f, t_f, zero));
 
-      // With w the real part of the rotation of j as i sees it and s its part along n:
-      // bending w q_j, twist s q_j n.
-      const auto q_f = quaternion(d, f), q_b = quaternion(d, b);
-      bend = mul_add(mask(dot(q, q_f), k), q_f, bend);
-      bend = mul_add(mask(dot(q, q_b), n_dir + k), q_b, bend);
-      const auto qn = add_product(q, n, {zero, {zero, zero, zero}});
-      Quaternion<V> turned{zero, {zero, zero, zero}};
-      turned = mul_add(mask(dot(qn, q_f), k), q_f, turned);
-      turned = mul_add(mask(dot(qn, q_b), n_dir + k), q_b, turned);
-      twist = add_product(turned, n, twist);
+      bending.add(
+          q, n, quaternion(d, f), [&](V v) HWY_ATTR { return mask(v, k); }, quaternion(d, b),
+          [&](V v) HWY_ATTR { return mask(v, n_dir + k); });
     });
     const auto look = [&]() HWY_ATTR {
       if constexpr (by_particle) {
@@ -172,16 +164,11 @@ public:
       } else
         return hn::Ge(largest, hn::Set(d, c_.limit2));
     }();
-    const auto half = hn::Set(d, c_.half);
-    torque = half * torque;
+    torque = law_.torque(torque);
     if (volumetric_)
-      torque = neg_mul_add(hn::Mul(hn::Set(d, c_.half * c_.area_r), hn::LoadU(d, a_.pressure + i)),
-                           load(d, at + moment_ * stride), torque);
-    // Vector part of 2 (k_b bend + (k_t - k_b) twist) q*.
-    const V two_bending = hn::Set(d, 2 * c_.bending), two_twist = hn::Set(d, 2 * c_.twist);
-    const Quaternion<V> m = mul_add(
-        two_twist, twist, Quaternion<V>{hn::Mul(two_bending, bend.w), two_bending * bend.v});
-    torque = add_cross(q.v, m.v, mul_add(q.w, m.v, neg_mul_add(m.w, q.v, torque)));
+      torque = law_.add_torque_of_pressure(hn::LoadU(d, a_.pressure + i),
+                                           load(d, at + moment_ * stride), torque);
+    torque = bending.add_torque(q, hn::Set(d, 2 * c_.bending), hn::Set(d, 2 * c_.twist), torque);
     hn::StoreU(force.x, d, a_.force[0] + i);
     hn::StoreU(force.y, d, a_.force[1] + i);
     hn::StoreU(force.z, d, a_.force[2] + i);
@@ -205,18 +192,18 @@ public:
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k];
       const auto h = along<k, h_>(d, at) + along<k, h_>(d, f);
-      const auto du = masked(mask, neg_mul_add(hn::Set(d, c_.half), h, displacement(d, f) - u), k);
+      const auto du = masked(mask, law_.relative(displacement(d, f) - u, h), k);
       const auto q_f = quaternion(d, f);
-      // Vector part of q* q_f.
-      const auto v = masked(mask, add_cross(q_f.v, q.v, neg_mul_add(q_f.w, q.v, q.w * q_f.v)), k);
+      const auto v = masked(mask, relative_turn(q.w, q.v, q_f.w, q_f.v), k);
       const auto vn = add_dot(v, normal(d, k), zero);
       du2 = add_dot(du, du, du2);
       v2 = add_dot(v, v, v2);
       vn2 = hn::MulAdd(vn, vn, vn2);
     });
-    return hn::MulAdd(
-        hn::Set(d, 0.5 * c_.shear), du2,
-        hn::MulAdd(hn::Set(d, 2 * c_.bending), v2, hn::Mul(hn::Set(d, 2 * c_.twist), vn2)));
+    const SpaceBending<hn::Vec<D>> bending{hn::Set(d, c_.bending), hn::Set(d, c_.twist)};
+    const auto half =
+        bending.add_half_energy(v2, vn2, hn::Mul(hn::Set(d, 0.25), law_.twice_energy(du2)));
+    return hn::Add(half, half);
   }
 
   /// The particles with a forward face that could break, with `backward` with any face.
@@ -242,8 +229,8 @@ private:
                                       const double *to) const
   {
     const auto t = masked(mask,
-                          mul_add(hn::Set(d, c_.shear), displacement(d, to) - displacement(d, from),
-                                  along<k, g_>(d, from) + along<k, g_>(d, to)),
+                          law_.force(displacement(d, to) - displacement(d, from),
+                                     along<k, g_>(d, from) + along<k, g_>(d, to)),
                           bit);
     const auto n = normal(d, k);
     const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
@@ -316,6 +303,7 @@ private:
 
   LatticeArrays<3> a_;
   LatticeConstants<3> c_;
+  LatticeBonds law_;
   bool volumetric_;
   double *w_ = nullptr; // origin of the window
 };

@@ -1,5 +1,8 @@
 #include "dem/many_body_force.h"
 
+#include "dem/bond_law.h"
+#include "dem/laws/series_bond.h"
+
 #include <algorithm>
 
 namespace ligament::dem
@@ -193,9 +196,8 @@ Vector<dim> ManyBodyForce<dim>::bond_force(const Bond<dim> &b, const BondMotion<
                                            const std::vector<double> &pressure) const
 {
   if (b.joins_materials)
-    return b.area * Interfaces<dim>::traction(b, m, pressure);
-  return b.area / b.distance *
-         (2 * b.weight * b.shear_i * m.elastic + pressure[b.i] * m.a_i - pressure[b.j] * m.a_j);
+    return b.area * SeriesBond<dim>(b, m).traction(pressure[b.i], pressure[b.j]);
+  return law_of(b).force(m.elastic, pressure[b.i], m.a_i, pressure[b.j], m.a_j);
 }
 
 template <int dim>
@@ -346,6 +348,21 @@ template <int dim>
 particles::ElasticConstants<dim> ManyBodyForce<dim>::elastic_constants() const
 {
   return materials_.base().elastic_constants<dim>();
+}
+
+template <int dim>
+std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
+{
+  std::vector<core::SkippedPart> skipped;
+  if (materials_.has_no_dilatation())
+    skipped.push_back({"dilatation sweep", "Poisson's ratio is 0"});
+  if (!can_break())
+    skipped.push_back({"bond checks", "no fracture criterion"});
+  skipped.push_back({"stress tensors in the loop", "the criterion reads tractions; tensors are "
+                                                   "computed for output only"});
+  if (contacts_.all().empty())
+    skipped.push_back({"contacts until a bond breaks", "no initial crack"});
+  return skipped;
 }
 
 template class ManyBodyForce<2>;

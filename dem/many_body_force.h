@@ -20,18 +20,7 @@
 
 namespace ligament::dem
 {
-/// A bond that broke; place and normal in the reference configuration.
-template <int dim>
-struct BrokenBond
-{
-  int i, j;                        // particles
-  std::int64_t global_i, global_j; // their global ids
-  double time;                     // s
-  Vector<dim> position;            // m, face point
-  Vector<dim> normal;              // unit, from i to j
-  double area;                     // m^2
-  double energy;                   // J, released
-};
+using particles::BrokenBond, particles::Utilisation, particles::Watch;
 
 /// A bond under tension as a criterion looks at it.
 template <int dim>
@@ -41,23 +30,6 @@ struct BondTension
   Bond<dim> bond;
   Vector<dim> normal, traction; // of the face at present; Pa
   double utilisation;           // tension over strength, or a bound of it; 0 without tension
-};
-
-/// How near the most loaded of some faces is to breaking.
-template <int dim>
-struct Utilisation
-{
-  double share = 0;                        // of the limit at which it breaks
-  Vector<dim> place = Vector<dim>::Zero(); // m, face point in the reference
-};
-
-/// Whether the faces of a particle are watched: those with a watched particle and without an
-/// exempt one.
-enum class Watch : char
-{
-  none,
-  watched,
-  exempt
 };
 
 template <int dim>
@@ -116,7 +88,7 @@ public:
 
   /// Averaged stress tensors in Pa (Voigt order, in-plane components in 2D), theory.md eq. (D10);
   /// of the body before its energy was weighted.
-  void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const;
+  void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const override;
 
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.
   double max_tension(const Particles &particles, const std::vector<int> &of) const;
@@ -127,18 +99,19 @@ public:
 
   /// Every compute() notes the faces that reach this share of their limit (above 0, at most 1, the
   /// default) for utilisation().
-  void set_noted_share(double share);
+  void set_noted_share(double share) override;
 
   /// The watched face nearest to its limit at the last compute(); one entry per particle. Its share
   /// is 0 where no face reached the noted share.
-  Utilisation<dim> utilisation(const Particles &particles, const std::vector<Watch> &watch) const;
+  Utilisation<dim> utilisation(const Particles &particles,
+                               const std::vector<Watch> &watch) const override;
 
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
-  Vector<dim> reaction(int load) const { return surface_.reaction(load); }
+  Vector<dim> reaction(int load) const override { return surface_.reaction(load); }
   /// Work in J of supports and tractions since the last reset_work, booked by compute().
-  double external_work() const { return surface_.external_work(); }
-  void reset_work() { surface_.reset_work(); }
+  double external_work() const override { return surface_.external_work(); }
+  void reset_work() override { surface_.reset_work(); }
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return fracture_energy_; }
@@ -148,9 +121,14 @@ public:
   double breaking_step_error() const { return breaking_step_error_ + contacts_.step_error(); }
   /// Energy in J that friction took.
   double frictional_work() const { return contacts_.frictional_work(); }
+  particles::ForceLosses losses() const override
+  {
+    return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error()};
+  }
 
-  const std::vector<BrokenBond<dim>> &broken_bonds() const { return broken_; }
-  long n_bonds() const { return bonds_.n_bonds(); }
+  const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_; }
+  bool can_break() const override { return fracture_.criterion != FractureLaw::Criterion::none; }
+  long n_bonds() const override { return bonds_.n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
   /// Particles flow by this law from now on: once at every new time of compute(), whose forces are
@@ -169,6 +147,9 @@ public:
   /// Whether the last compute() asked the stresses of many particles for bonds that break.
   bool looks_by_stress() const { return screen_.was_asked(); }
   const Materials &materials() const { return materials_; }
+  int material(int particle) const override { return materials_.number(particle); }
+  bool can_rest() const override { return true; }
+  std::vector<core::SkippedPart> skipped_parts() const override;
 
 private:
   /// Face by face costs nothing while few faces bear much, by particle a little always.

@@ -1,4 +1,5 @@
 // Breaking of bonds: energy released, contact in place of the bond.
+#include "dem/bond_law.h"
 #include "dem/many_body_force.h"
 
 #include <algorithm>
@@ -9,8 +10,7 @@ template <int dim>
 double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const BondMotion<dim> &m,
                                        const Particles &p) const
 {
-  return b.weight * b.shear_i * b.area / b.distance * m.elastic.squaredNorm() +
-         bending_energy(b, p);
+  return law_of(b).twice_energy(m.elastic) / 2 + bending_energy(b, p);
 }
 
 template <int dim>
@@ -63,9 +63,11 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   if (at_interface)
     interfaces_.take_own_part(p, lambda_per_volume_, pressure);
   const auto m = motion(b, p);
-  const double s_r = b.joins_materials ? 0 : b.area / b.distance;
-  std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, s_r * m.a_i.dot(m.du)),
-                                                  std::pair(b.j, -s_r * m.a_j.dot(m.du))};
+  const auto share = [&](const Vector<dim> &du, const Vector<dim> &lever) {
+    return b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0);
+  };
+  std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(m.du, m.a_i)),
+                                                  std::pair(b.j, share(-m.du, m.a_j))};
   if (plastic_)
     for (auto &[i, share] : shares)
       share -= flowed_volume(b, i);

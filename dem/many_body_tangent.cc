@@ -1,57 +1,11 @@
 // What the coupler asks of the many-body law: its energy linearised, its faces, and tensors.
+#include "dem/laws/linear_bond.h"
 #include "dem/many_body_force.h"
 #include "dem/partial_many_body.h"
+#include "dem/surface_law.h"
 
 namespace ligament::dem
 {
-namespace
-{
-/// Rows of omega x a = -a x omega: how a rotation vector moves the tip of a lever.
-Eigen::Matrix<double, 2, 1> tip_rows(const Vector<2> &a)
-{
-  return {-a[1], a[0]};
-}
-Eigen::Matrix<double, 3, 3> tip_rows(const Vector<3> &a)
-{
-  Eigen::Matrix<double, 3, 3> m;
-  m << 0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0;
-  return m;
-}
-
-/// Du = sum over the members of these blocks times their degrees of freedom.
-template <int dim>
-using Block = Eigen::Matrix<double, dim, n_particle_dofs<dim>>;
-
-template <int dim>
-Block<dim> block(const Vector<dim> &lever, double sign)
-{
-  Block<dim> b;
-  b.template leftCols<dim>().setIdentity();
-  b.template rightCols<n_spins<dim>>() = tip_rows(lever);
-  return sign * b;
-}
-
-Eigen::Matrix<double, 1, 1> bending_rows(const Bond<2> &)
-{
-  return Spin<2>(1.);
-}
-Eigen::Matrix<double, 3, 3> bending_rows(const Bond<3> &b)
-{
-  const Vector<3> t = b.normal.unitOrthogonal();
-  Eigen::Matrix<double, 3, 3> m;
-  m << b.normal.transpose(), t.transpose(), b.normal.cross(t).transpose();
-  return m;
-}
-Spin<2> bending_stiffness(const Bond<2> &b)
-{
-  return Spin<2>(b.bending);
-}
-Spin<3> bending_stiffness(const Bond<3> &b)
-{
-  return {b.twist, b.bending, b.bending};
-}
-} // namespace
-
 template <int dim>
 void ManyBodyForce<dim>::add_tangent(
     const Particles &particles,
@@ -71,12 +25,12 @@ void ManyBodyForce<dim>::add_tangent(
     term.location = place(b.i, b.lever_i);
     term.members = {b.i, b.j};
     term.rows.setZero(dim + spins, 2 * dofs);
-    term.rows.template topLeftCorner<dim, dofs>() = block<dim>(b.lever_i, -1);
-    term.rows.template topRightCorner<dim, dofs>() = block<dim>(b.lever_j, 1);
+    term.rows.template topLeftCorner<dim, dofs>() = opening_rows<dim>(b.lever_i, -1);
+    term.rows.template topRightCorner<dim, dofs>() = opening_rows<dim>(b.lever_j, 1);
     term.rows.template block<spins, spins>(dim, dim) = -bending_rows(b);
     term.rows.template block<spins, spins>(dim, dofs + dim) = bending_rows(b);
     term.stiffness.resize(dim + spins);
-    term.stiffness.head(dim).setConstant(2 * b.weight * b.shear_i * b.area / b.distance);
+    term.stiffness.head(dim).setConstant(law_of(b).shear);
     term.stiffness.tail(spins) = bending_stiffness(b);
     add(term);
   });
@@ -85,8 +39,8 @@ void ManyBodyForce<dim>::add_tangent(
     term.kind = Term::Kind::wall;
     term.location = place(wall.i, wall.lever);
     term.members = {wall.i};
-    term.rows = wall.prescribed.asDiagonal() * block<dim>(wall.lever, -1);
-    term.stiffness.setConstant(dim, 2 * wall.shear_modulus * wall.area / wall.q);
+    term.rows = wall.prescribed.asDiagonal() * opening_rows<dim>(wall.lever, -1);
+    term.stiffness.setConstant(dim, law_of(wall).shear);
     add(term);
   }
 
@@ -108,16 +62,15 @@ void ManyBodyForce<dim>::add_tangent(
     bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
       const bool first = b.i == i;
       const Vector<dim> own = first ? b.lever_i : b.lever_j, other = first ? b.lever_j : b.lever_i;
-      const auto weight = (b.area / b.distance / particles.volume[i] * own.transpose()).eval();
-      term.rows.template middleCols<dofs>(0) += weight * block<dim>(own, -1);
-      term.rows.template middleCols<dofs>(member++ * dofs) += weight * block<dim>(other, 1);
+      const auto weight = (law_of(b).area_r / particles.volume[i] * own.transpose()).eval();
+      term.rows.template middleCols<dofs>(0) += weight * opening_rows<dim>(own, -1);
+      term.rows.template middleCols<dofs>(member++ * dofs) += weight * opening_rows<dim>(other, 1);
     });
     for (const int w : walls_of[i]) {
       const auto &wall = surface_.walls()[w];
       const auto weight =
-          (wall.area / particles.volume[i] * wall.prescribed.cwiseProduct(wall.normal).transpose())
-              .eval();
-      term.rows.template middleCols<dofs>(0) += weight * block<dim>(wall.lever, -1);
+          (law_of(wall).area_r / particles.volume[i] * pressed_along(wall).transpose()).eval();
+      term.rows.template middleCols<dofs>(0) += weight * opening_rows<dim>(wall.lever, -1);
     }
     term.stiffness.setConstant(1,
                                lambda_per_volume_[i] * particles.volume[i] * particles.volume[i]);

@@ -1,5 +1,7 @@
 #include "dem/partial_many_body.h"
 
+#include "dem/bond_law.h"
+
 #include <algorithm>
 
 namespace ligament::dem
@@ -27,9 +29,9 @@ double PartialManyBody<dim>::compute(particles::Particles<dim> &p)
   };
   for (const auto &[b, share] : bonds_) {
     const BondMotion<dim> m = motion(b);
-    const double s_r = b.area / b.distance;
-    pressure_[b.i] += lambda_per_volume_[b.i] * s_r * m.a_i.dot(m.du);
-    pressure_[b.j] -= lambda_per_volume_[b.j] * s_r * m.a_j.dot(m.du);
+    const BondLaw<dim> law = law_of(b, share);
+    pressure_[b.i] += lambda_per_volume_[b.i] * law.add_dilatation(m.du, m.a_i, 0);
+    pressure_[b.j] -= lambda_per_volume_[b.j] * law.add_dilatation(m.du, m.a_j, 0);
   }
   double energy = 0;
   for (int i = 0; i < n; ++i) {
@@ -43,15 +45,16 @@ double PartialManyBody<dim>::compute(particles::Particles<dim> &p)
     std::fill(a.begin(), a.end(), 0.);
   for (const auto &[b, share] : bonds_) {
     const BondMotion<dim> m = motion(b);
-    const double s_r = b.area / b.distance;
-    const Vector<dim> f =
-        s_r * (2 * b.shear_i * share * m.du + pressure_[b.i] * m.a_i - pressure_[b.j] * m.a_j);
+    const BondLaw<dim> law = law_of(b, share);
+    const double p_i = pressure_[b.i], p_j = pressure_[b.j];
+    const Vector<dim> f = law.force(m.du, p_i, m.a_i, p_j, m.a_j);
     const Spin<dim> bend = share * bending_torque(b, p);
     add(p.force, b.i, f);
     add(p.force, b.j, Vector<dim>(-f));
-    add(p.torque, b.i, Spin<dim>(cross(m.a_i, f - s_r * pressure_[b.i] * m.du) + bend));
-    add(p.torque, b.j, Spin<dim>(-cross(m.a_j, f - s_r * pressure_[b.j] * m.du) - bend));
-    energy += share * (b.shear_i * s_r * m.du.squaredNorm() + bending_energy(b, p));
+    add(p.torque, b.i, law.add_torque(f, m.du, p_i, m.a_i, bend));
+    add(p.torque, b.j,
+        law.add_torque(Vector<dim>(-f), Vector<dim>(-m.du), p_j, m.a_j, Spin<dim>(-bend)));
+    energy += law.twice_energy(m.du) / 2 + share * bending_energy(b, p);
   }
   return energy;
 }

@@ -5,6 +5,8 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/laws/bending.h"
+#include "dem/laws/elastic_bond.h"
 #include "dem/sine.h"
 #include "dem/slice_loop.h"
 #include "dem/stress_loop.h"
@@ -82,7 +84,7 @@ public:
                                         const Record<D> &other, V &sum)
   {
     const Motion m(d, own, bond, other);
-    sum = hn::MulAdd(bond.geometry(d, 4), add_dot(m.a_i, m.du, hn::Zero(d)), sum);
+    sum = Law{hn::Zero(d), bond.geometry(d, 4)}.add_dilatation(m.du, m.a_i, sum);
   }
 
   /// The half of the bond's energy that is the particle's.
@@ -92,9 +94,9 @@ public:
   {
     const Motion m(d, own, bond, other);
     const V turn = hn::Sub(m.other.angle, own.angle);
-    const V twice = hn::Mul(bond.stiffness(d, 0), add_dot(m.du, m.du, hn::Zero(d)));
-    sum = hn::MulAdd(hn::Set(d, 0.25), hn::MulAdd(bond.stiffness(d, 1), hn::Mul(turn, turn), twice),
-                     sum);
+    const V twice =
+        bending(d, bond).add_twice_energy(hn::Mul(turn, turn), law(d, bond).twice_energy(m.du));
+    sum = hn::MulAdd(hn::Set(d, 0.25), twice, sum);
   }
 
   template <typename Bonds>
@@ -102,16 +104,14 @@ public:
                                     V limit2, Sums &sums)
   {
     const Motion m(d, own, bond, other);
-    const V zero = hn::Zero(d);
-    const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
-    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
-    const V2 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    const Law law = SliceLaw2d::law(d, bond);
+    const V2 f = law.force(m.du, own.pressure, m.a_i, m.other.pressure, m.a_j);
     sums.force = sums.force + f;
-    sums.torque = add_cross(m.a_i, neg_mul_add(sp_i, m.du, f), sums.torque);
-    sums.torque = hn::MulAdd(bond.stiffness(d, 1), hn::Sub(m.other.angle, own.angle), sums.torque);
+    sums.torque = law.add_torque(f, m.du, own.pressure, m.a_i, sums.torque);
+    sums.torque = bending(d, bond).add_torque(hn::Sub(m.other.angle, own.angle), sums.torque);
     const V2 distance = m.lever_i - m.lever_j;
-    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), add_dot(distance, distance, zero));
-    sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, add_dot(f, f, zero)));
+    const V shear_r2 = hn::Mul(hn::Mul(law.shear, law.shear), dot(distance, distance));
+    sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, dot(f, f)));
   }
 
   using Stress = StressSum2d<V>;
@@ -133,12 +133,11 @@ public:
   static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Record<D> &other)
   {
     const Motion m(d, own, bond, other);
-    const V s_r = bond.geometry(d, 4), shear = bond.stiffness(d, 0);
-    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, m.other.pressure);
+    const Law law = SliceLaw2d::law(d, bond);
     const V2 n = m.lever_i - m.lever_j;
-    return {mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j),
+    return {law.force(m.du, own.pressure, m.a_i, m.other.pressure, m.a_j),
             (n + n) + (own.change(n) + m.other.change(n)), m.a_i,
-            hn::Mul(shear, hn::Sqrt(add_dot(n, n, hn::Zero(d))))};
+            hn::Mul(law.shear, hn::Sqrt(dot(n, n)))};
   }
 
   /// visit(number) of what the stress loop keeps of a face.
@@ -153,6 +152,18 @@ public:
   }
 
 private:
+  using Law = ElasticBond<V, V2>;
+  template <typename Bonds>
+  static HWY_INLINE Law law(D d, const Bonds &bond)
+  {
+    return {bond.stiffness(d, 0), bond.geometry(d, 4)};
+  }
+  template <typename Bonds>
+  static HWY_INLINE PlaneBending<V> bending(D d, const Bonds &bond)
+  {
+    return {bond.stiffness(d, 1)};
+  }
+
   struct Motion
   {
     Own other;

@@ -5,6 +5,8 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/laws/bending.h"
+#include "dem/laws/elastic_bond.h"
 #include "dem/slice_loop.h"
 #include "dem/stress_loop.h"
 
@@ -89,7 +91,7 @@ public:
                                         const Record<D> &other, V &sum)
   {
     const Motion m(d, own, bond, other);
-    sum = hn::MulAdd(bond.geometry(d, 6), dot(m.a_i, m.du), sum);
+    sum = Law{hn::Zero(d), bond.geometry(d, 6)}.add_dilatation(m.du, m.a_i, sum);
   }
 
   /// The half of the bond's energy that is the particle's.
@@ -98,11 +100,10 @@ public:
                                     V &sum)
   {
     const Motion m(d, own, bond, other);
-    const V3 v = relative_turn(own, m);
+    const V3 v = relative_turn(own.q.w, own.q.v, m.q.w, m.q.v);
     const V vn = dot(m.lever_i - m.lever_j, v);
-    sum = hn::MulAdd(hn::Mul(hn::Set(d, 0.25), bond.stiffness(d, 0)), dot(m.du, m.du), sum);
-    sum = hn::MulAdd(bond.stiffness(d, 1), dot(v, v), sum);
-    sum = hn::MulAdd(bond.stiffness(d, 2), hn::Mul(vn, vn), sum);
+    sum = hn::MulAdd(hn::Set(d, 0.25), law(d, bond).twice_energy(m.du), sum);
+    sum = bending(d, bond).add_half_energy(dot(v, v), hn::Mul(vn, vn), sum);
   }
 
   template <typename Bonds>
@@ -110,22 +111,18 @@ public:
                                     V limit2, Sums &sums)
   {
     const Motion m(d, own, bond, other);
-    const V s_r = bond.geometry(d, 6), shear = bond.stiffness(d, 0);
-    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, other.number[7]);
-    const V3 f = mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j);
+    const Law law = SliceLaw3d::law(d, bond);
+    const V3 f = law.force(m.du, own.pressure, m.a_i, other.number[pressure_place], m.a_j);
     sums.force = sums.force + f;
-    sums.torque = add_cross(m.a_i, neg_mul_add(sp_i, m.du, f), sums.torque);
+    sums.torque = law.add_torque(f, m.du, own.pressure, m.a_i, sums.torque);
     const V3 distance = m.lever_i - m.lever_j;
-    const V shear_r2 = hn::Mul(hn::Mul(shear, shear), dot(distance, distance));
+    const V shear_r2 = hn::Mul(hn::Mul(law.shear, law.shear), dot(distance, distance));
     sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, dot(f, f)));
 
-    // The rotation of j as i sees it, and half the couple of (D8d).
+    // The rotation of j as i sees it, and half the couple.
     const V w = dot(own.q, m.q);
-    const V3 v = relative_turn(own, m);
-    const V c = hn::Mul(bond.stiffness(d, 2), dot(distance, v));
-    sums.couple = mul_add(hn::Mul(bond.stiffness(d, 1), w), v, sums.couple);
-    sums.couple = mul_add(hn::Mul(c, w), distance, sums.couple);
-    sums.couple = add_cross(c * v, distance, sums.couple);
+    const V3 v = relative_turn(own.q.w, own.q.v, m.q.w, m.q.v);
+    sums.couple = bending(d, bond).add_half_couple(distance, w, v, sums.couple);
   }
 
   using Stress = StressSum3d<V>;
@@ -147,11 +144,11 @@ public:
   static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Record<D> &other)
   {
     const Motion m(d, own, bond, other);
-    const V s_r = bond.geometry(d, 6), shear = bond.stiffness(d, 0);
-    const V sp_i = hn::Mul(s_r, own.pressure), sp_j = hn::Mul(s_r, other.number[7]);
+    const Law law = SliceLaw3d::law(d, bond);
     const V3 n = m.lever_i - m.lever_j;
-    return {mul_add(shear, m.du, sp_i * m.a_i - sp_j * m.a_j),
-            (n + n) + (own.change(n) + m.change(n)), m.a_i, hn::Mul(shear, hn::Sqrt(dot(n, n)))};
+    return {law.force(m.du, own.pressure, m.a_i, other.number[pressure_place], m.a_j),
+            (n + n) + (own.change(n) + m.change(n)), m.a_i,
+            hn::Mul(law.shear, hn::Sqrt(dot(n, n)))};
   }
 
   /// visit(number) of what the stress loop keeps of a face.
@@ -167,13 +164,16 @@ public:
   }
 
 private:
-  static HWY_INLINE V dot(const V3 &a, const V3 &b)
+  using Law = ElasticBond<V, V3>;
+  template <typename Bonds>
+  static HWY_INLINE Law law(D d, const Bonds &bond)
   {
-    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+    return {bond.stiffness(d, 0), bond.geometry(d, 6)};
   }
-  static HWY_INLINE V dot(const Quaternion<V> &a, const Quaternion<V> &b)
+  template <typename Bonds>
+  static HWY_INLINE SpaceBending<V> bending(D d, const Bonds &bond)
   {
-    return add_dot(a.v, b.v, hn::Mul(a.w, b.w));
+    return {bond.stiffness(d, 1), bond.stiffness(d, 2)};
   }
   static HWY_INLINE V3 cross(const V3 &a, const V3 &b)
   {
@@ -205,11 +205,6 @@ private:
       return add_cross(q.v, t, q.w * t);
     }
   };
-  /// Vector part of the rotation of j as i sees it.
-  static HWY_INLINE V3 relative_turn(const Own &own, const Motion &m)
-  {
-    return add_cross(m.q.v, own.q.v, own.q.w * m.q.v - m.q.w * own.q.v);
-  }
 };
 
 using Slices3d = Slices<SliceLaw3d, 3>;

@@ -165,19 +165,7 @@ template <int dim>
 void StressScreen<dim>::set_bond(long place, const Bond<dim> &b, bool is_i, int neighbour,
                                  double limit)
 {
-  const Vector<dim> &own = is_i ? b.lever_i : b.lever_j, &other = is_i ? b.lever_j : b.lever_i;
-  const double s_r = b.area / b.distance;
-  const long slot = place / slice_width, lane = place % slice_width;
-  double *const g = table_.geometry.data() + slot * n_geometry<dim> * slice_width + lane;
-  double *const k = table_.stiffness.data() + slot * n_stiffness<dim> * slice_width + lane;
-  for (int c = 0; c < dim; ++c) {
-    g[c * slice_width] = own[c];
-    g[(dim + c) * slice_width] = other[c];
-  }
-  g[2 * dim * slice_width] = s_r;
-  k[0] = b.weight * 2 * b.shear_i * s_r;
-  k[slice_width] = limit;
-  table_.neighbour[place] = neighbour;
+  table_.set_bond(place, b, is_i, neighbour)[slice_width] = limit;
 }
 
 template <int dim>

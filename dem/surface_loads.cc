@@ -1,5 +1,7 @@
 #include "dem/surface_loads.h"
 
+#include "dem/surface_law.h"
+
 #include <fmt/format.h>
 
 namespace ligament::dem
@@ -78,6 +80,19 @@ Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall,
 }
 
 template <int dim>
+Vector<dim> SurfaceLoads<dim>::force(const WallFace<dim> &wall, const particles::Particles<dim> &p,
+                                     double pressure) const
+{
+  return law_of(wall).force(relative(wall, p), pressure, pressed_along(wall));
+}
+
+template <int dim>
+Vector<dim> SurfaceLoads<dim>::force(const TractionFace<dim> &face) const
+{
+  return law_of(face).force(traction(face));
+}
+
+template <int dim>
 Vector<dim> SurfaceLoads<dim>::traction(const TractionFace<dim> &face) const
 {
   return face.acting.cwiseProduct(traction_[face.load]);
@@ -90,11 +105,11 @@ void SurfaceLoads<dim>::add_dilatation(const particles::Particles<dim> &particle
 {
   for (const auto &wall : walls_)
     pressure[wall.i] +=
-        stiffness_per_volume[wall.i] * wall.area * wall.normal.dot(relative(wall, particles));
+        stiffness_per_volume[wall.i] *
+        law_of(wall).add_dilatation(relative(wall, particles), pressed_along(wall), 0);
   for (const auto &face : tractions_) {
     const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
-    pressure[face.i] +=
-        stiffness_per_volume[face.i] * face.area * a.dot(traction(face)) / (2 * face.shear_modulus);
+    pressure[face.i] += stiffness_per_volume[face.i] * law_of(face).dilatation(traction(face), a);
   }
 }
 
@@ -106,9 +121,7 @@ void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
     r.setZero();
   for (const auto &wall : walls_) {
     const Vector<dim> a = wall.lever + Turn<dim>::of(particles, wall.i).change(wall.lever);
-    const Vector<dim> f =
-        wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
-                     pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal));
+    const Vector<dim> f = force(wall, particles, pressure[wall.i]);
     add(particles.force, wall.i, f);
     add(particles.torque, wall.i, cross(a, f));
     for (int c = 0; c < dim; ++c)
@@ -117,11 +130,10 @@ void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
   }
   for (const auto &face : tractions_) {
     const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
-    const Vector<dim> f = face.area * traction(face);
+    const TractionLaw<dim> law = law_of(face);
+    const Vector<dim> t = traction(face), f = law.force(t);
     add(particles.force, face.i, f);
-    // The second part: theta depends on the lever that turns with the particle.
-    add(particles.torque, face.i,
-        Spin<dim>((1 - pressure[face.i] / (2 * face.shear_modulus)) * cross(a, f)));
+    add(particles.torque, face.i, law.torque(t, a, pressure[face.i]));
     reaction_[face.load] += f;
   }
 }
@@ -131,7 +143,7 @@ double SurfaceLoads<dim>::energy(const particles::Particles<dim> &particles) con
 {
   double sum = 0;
   for (const auto &wall : walls_)
-    sum += wall.shear_modulus * wall.area / wall.q * relative(wall, particles).squaredNorm();
+    sum += law_of(wall).twice_energy(relative(wall, particles)) / 2;
   return sum;
 }
 
@@ -163,8 +175,8 @@ void SurfaceLoads<dim>::book_work(const particles::Particles<dim> &particles,
   for (const auto &face : tractions_) {
     const Vector<dim> change = Turn<dim>::of(particles, face.i).change(face.lever);
     place.push_back(get(particles.displacement, face.i) + change);
-    gradient.push_back(pressure[face.i] * face.area / (2 * face.shear_modulus) *
-                       face.acting.cwiseProduct(face.lever + change));
+    gradient.push_back(
+        law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), pressure[face.i]));
   }
   if (booked_) {
     for (std::size_t l = 0; l < loads_.size(); ++l)

@@ -100,6 +100,10 @@ public:
 private:
   Vector<dim> relative(const WallFace<dim> &wall, const particles::Particles<dim> &p) const;
   Vector<dim> traction(const TractionFace<dim> &face) const;
+  /// On the particle, in N.
+  Vector<dim> force(const WallFace<dim> &wall, const particles::Particles<dim> &p,
+                    double pressure) const;
+  Vector<dim> force(const TractionFace<dim> &face) const;
 
   /// Faces under tractions by the name of their particle and their number there.
   std::map<std::array<std::int64_t, 2>, std::size_t> face_names(const core::Names &names) const;
@@ -124,11 +128,9 @@ void SurfaceLoads<dim>::for_each_moment(const particles::Particles<dim> &particl
     return face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
   };
   for (const auto &wall : walls_)
-    visit(wall.i, lever(wall),
-          Vector<dim>(wall.area * (2 * wall.shear_modulus / wall.q * relative(wall, particles) +
-                                   pressure[wall.i] * wall.prescribed.cwiseProduct(wall.normal))));
+    visit(wall.i, lever(wall), force(wall, particles, pressure[wall.i]));
   for (const auto &face : tractions_)
-    visit(face.i, lever(face), Vector<dim>(face.area * traction(face)));
+    visit(face.i, lever(face), force(face));
 }
 
 template <int dim>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/check.h"
-#include "particles/particles.h"
+#include "particles/force_report.h"
 #include "particles/rest_blocks.h"
 
 #include <functional>
@@ -76,20 +76,19 @@ struct CoupledEdge
   std::function<Eigen::Matrix<double, dim, dim>(int k)> gradient;
 };
 
-/// Adds forces to all particles: one virtual call per step.
+/// Adds forces to all particles: one virtual call per step. What the loop and the coupler need is
+/// pure, what observers ask has the neutral answers of ForceReport.
 template <int dim>
-class ParticleForce
+class ParticleForce : public ForceReport<dim>
 {
 public:
-  virtual ~ParticleForce() = default;
-
   /// Overwrites force and torque of all owned particles with those of the present state; time
   /// in s sets the prescribed boundaries.
   virtual void compute(Particles<dim> &particles, double time) = 0;
 
   /// From now on compute() may leave out what these blocks do not list, and wakes those on which
-  /// anything else than bonds between particles acts. They must outlive it. A force that knows
-  /// nothing of rest computes all.
+  /// anything else than bonds between particles acts. They must outlive it. Only called where
+  /// can_rest() says so.
   virtual void set_rest(RestBlocks<dim> *) {}
 
   /// Elastic (and contact) energy of the present state, in J.

@@ -1,7 +1,8 @@
 # Keeps the folders in layers: cmake -DROOT=<source tree> -P scripts/check_layers.cmake
 #
 # Reads every #include of the source folders and fails when one crosses a layer, names a third
-# party that the folder may not use, or is not written from the root. A CMake script, because every
+# party that the folder may not use, or is not written from the root; and when a file of the program
+# that should know no law names one. A CMake script, because every
 # machine that builds the tree can run it.
 
 cmake_minimum_required(VERSION 3.22)
@@ -150,6 +151,20 @@ foreach(folder core particles packings dem md)
     file(STRINGS ${ROOT}/${file} lines REGEX "deal_ii|dealii|deal\\.II|[Tt]rilinos|ligament_(fem|coupling|src|program)")
     foreach(line IN LISTS lines)
       list(APPEND complaints "${file}: ${line}: ${folder} does without it")
+    endforeach()
+  endforeach()
+endforeach()
+
+# The program knows no law: one file makes the force of a zone, no other sees what it is.
+set(names_the_law src/simulation/make_force.cc)
+foreach(folder simulation output drawing analysis)
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/${folder}/*.h ${ROOT}/src/${folder}/*.cc)
+  list(REMOVE_ITEM files ${names_the_law})
+  foreach(file IN LISTS files)
+    file(STRINGS ${ROOT}/${file} lines REGEX "\"(dem|md)/|(^|[^A-Za-z0-9_])(dem|md)::")
+    foreach(line IN LISTS lines)
+      string(REPLACE ";" "," line "${line}")
+      list(APPEND complaints "${file}: ${line}: only ${names_the_law} names a law")
     endforeach()
   endforeach()
 endforeach()

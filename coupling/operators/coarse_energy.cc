@@ -4,13 +4,6 @@
 
 namespace ligament::coupling
 {
-std::string name_of(Regime regime)
-{
-  return regime == Regime::linear      ? "linear"
-         : regime == Regime::corotated ? "corotated"
-                                       : "nonlinear";
-}
-
 template <int dim>
 double LinearCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const
 {

@@ -7,20 +7,9 @@
 #include "coupling/operators/rigid_frames.h"
 
 #include <memory>
-#include <string>
 
 namespace ligament::coupling
 {
-/// How far the overlap may move (theory.md, "Large rotation and finite strain").
-enum class Regime
-{
-  linear,    // small rotations
-  corotated, // any rotation of each connected part of the overlap, little bending of it
-  nonlinear  // any rotation of every cell, finite strain, nonlinear laws
-};
-
-std::string name_of(Regime regime);
-
 template <int dim>
 class CoarseEnergy
 {

@@ -71,11 +71,11 @@ std::vector<typename RigidFrames<dim>::Frame> RigidFrames<dim>::frames(const Nod
 }
 
 template <int dim>
-typename RigidFrames<dim>::Motion RigidFrames<dim>::largest_motion(const Nodal<dim> &u) const
+NearMotion RigidFrames<dim>::largest_motion(const Nodal<dim> &u) const
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
   const auto parts = frames(u);
-  Motion largest;
+  NearMotion largest;
   for (const Cell &cell : cells_) {
     Matrix f = Matrix::Identity();
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)

@@ -3,6 +3,7 @@
 
 #include "core/polar_rotation.h"
 #include "coupling/operators/transfer.h"
+#include "coupling/regime.h"
 
 namespace ligament::coupling
 {
@@ -20,14 +21,7 @@ public:
   };
   std::vector<Frame> frames(const Nodal<dim> &u) const;
 
-  /// How far the near cells move, at their centres.
-  struct Motion
-  {
-    double rotation = 0; // rad, the largest
-    double bending = 0;  // rad, the largest against the rotation of the part
-    double strain = 0;   // the largest |S - 1|
-  };
-  Motion largest_motion(const Nodal<dim> &u) const;
+  NearMotion largest_motion(const Nodal<dim> &u) const;
 
   std::vector<std::vector<int>> nodes; // near nodes of each part
   Nodal<dim> position;                 // m, of the nodes from the centre of their part

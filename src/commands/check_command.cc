@@ -7,7 +7,7 @@
 #include "src/commands/scene_picture.h"
 #include "src/launcher/program.h"
 #include "src/output/run_folder.h"
-#include "src/simulation/make_zone.h"
+#include "src/simulation/make_packing.h"
 #include "src/simulation/recorder.h"
 
 #include <fmt/format.h>
@@ -84,9 +84,8 @@ int check(const CommandLine &line, const ReadResult &input)
       fmt::print("{}", to_text(*advice, particles));
     }
   }
-  if (body.split)
-    fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n",
-               body.split->report().patch_residual);
+  if (const auto patch = body.figures.find("patch_residual"); patch != body.figures.end())
+    fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n", patch->second.value);
   for (const auto &part : body.skipped)
     fmt::print("  not needed: {} ({})\n", part.what, part.why);
   if (line.json) {

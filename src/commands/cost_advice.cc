@@ -44,7 +44,7 @@ template <int dim>
 std::vector<std::vector<std::string>> candidates(const Scene &scene, const CoupledBody<dim> &body)
 {
   std::vector<std::vector<std::string>> all;
-  const bool has_ratio = body.split;
+  const bool has_ratio = scene.coupling.scheme == coupling::Scheme::fine_scale_split;
   const auto step_ratio = [&](double factor) { return int(0.6 * factor * body.dt_far / body.dt); };
   const double h = scene.far_field->cell_size;
   for (const double factor : {1., 1.5, 2., 3., 1 / 1.5}) {

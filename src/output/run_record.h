@@ -1,6 +1,7 @@
 // What a run says about itself: the content of run.json, read by report, compare and sweep.
 #pragma once
 
+#include "core/skipped_part.h"
 #include "core/timers.h"
 
 #include <cstdint>
@@ -18,12 +19,7 @@ struct Figure
   std::string unit; // "" for plain numbers
 };
 
-/// A part of the program that the scene did not need.
-struct SkippedPart
-{
-  std::string what;
-  std::string why;
-};
+using core::SkippedPart;
 
 struct PictureEntry
 {

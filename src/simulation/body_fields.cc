@@ -44,7 +44,7 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("displacement", interleave(state.displacement)));
   fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
-  body.force->stresses(state, stress);
+  body.force()->stresses(state, stress);
   std::vector<double> tensor(6 * state.n_owned);
   for (int i = 0; i < state.n_owned; ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
@@ -139,11 +139,11 @@ void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
 {
   const auto &state = body.zone->state;
   n_faces_.assign(state.n_owned, 0);
-  body.force->for_each_face(state, [&](const auto &face) {
+  body.force()->for_each_face(state, [&](const auto &face) {
     if (face.bonded)
       ++n_faces_[face.i];
   });
-  for (const auto &broken : body.force->broken_bonds())
+  for (const auto &broken : body.force()->broken_bonds())
     for (const int i : {broken.i, broken.j})
       ++n_faces_[i];
   auto cut = open_faces({}, body.cut_faces);
@@ -162,7 +162,7 @@ void StateFields<dim>::add_particle_fields(const CoupledBody<dim> &body, BodySta
   std::vector<double> material(n), zone(n, double(ZoneNumber::discrete)), share(n);
   const auto open = open_faces(state.bonds, body.cut_faces);
   for (std::size_t i = 0; i < n; ++i) {
-    material[i] = body.force->materials().number(int(i));
+    material[i] = body.force()->material(int(i));
     if (const auto found = open.find(ids[i]); found != open.end())
       share[i] = double(found->second) / std::max<int>(n_faces_[i], 1);
   }
@@ -215,9 +215,9 @@ template <int dim>
 std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body)
 {
   std::vector<BrokenBond> bonds;
-  if (!body.force)
+  if (!body.force())
     return bonds;
-  for (const auto &broken : body.force->broken_bonds()) {
+  for (const auto &broken : body.force()->broken_bonds()) {
     BrokenBond b = {};
     b.i = broken.global_i;
     b.j = broken.global_j;
@@ -237,8 +237,8 @@ template <int dim>
 double crack_length(const CoupledBody<dim> &body, int axis)
 {
   double sum = 0;
-  if (body.force)
-    for (const auto &broken : body.force->broken_bonds())
+  if (body.force())
+    for (const auto &broken : body.force()->broken_bonds())
       sum += broken.area * std::abs(broken.normal[axis]);
   return sum / body.thickness;
 }

@@ -2,6 +2,8 @@
 
 #include "core/check.h"
 #include "core/keyed_error.h"
+#include "coupling/bridging_domain.h"
+#include "coupling/fine_scale_split.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_zone.h"
 
@@ -73,7 +75,7 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
     require(!p.inner.empty(), "the discrete zone is nowhere wider than its two overlaps; widen it "
                               "or lower /coupling/overlap_cells");
   }
-  const auto constants = material_of(scene).elastic_constants<dim>();
+  const auto constants = elastic_constants_of<dim>(scene);
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
   material.density = scene.coupling.coarse_mass * constants.density;
@@ -150,12 +152,12 @@ void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log 
   auto bodies = body.bodies();
   auto coupler = std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, p, timers);
   require(
-      body.force->broken_bonds().empty(),
+      body.force()->broken_bonds().empty(),
       "/coupling/ghost_force_correction: bonds break at this reference strain; give a smaller one");
-  body.force->reset_work(); // of the way to the reference strain and back
+  body.force()->reset_work(); // of the way to the reference strain and back
   body.far->reset_work();
   const double plain = body.dt_zone;
-  body.dt_zone = std::min(body.force->stable_step(body.zone->state), coupler->near_stable_step());
+  body.dt_zone = std::min(body.force()->stable_step(body.zone->state), coupler->near_stable_step());
   log.info("overlap: {} particles, {} nodes, {} multipliers; stable step {:.4g} s with energy "
            "weights, {:.3f} of the plain one",
            coupler->overlap()->members.size(), coupler->overlap()->n_nodes(),
@@ -185,37 +187,30 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
       report.patch_residual_before, report.patch_residual, report.patch_modulus);
   body.figures["patch_residual"] = {report.patch_residual, ""};
   body.figures["patch_modulus"] = {report.patch_modulus, ""};
-  body.split = split.get();
   body.coupler = std::move(split);
 }
 
 template <int dim>
-std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim> &body)
+std::vector<SkippedPart> skipped_parts(const CoupledBody<dim> &body)
 {
   std::vector<SkippedPart> skipped;
   if (!body.far)
     skipped.push_back({"far field and overlap", "the whole specimen is discrete"});
   if (!body.zone)
     skipped.push_back({"particles and overlap", "the whole specimen is mesh"});
-  if (body.zone && body.force->materials().has_no_dilatation())
-    skipped.push_back({"dilatation sweep", "Poisson's ratio is 0"});
-  if (body.zone && scene.material.fracture.criterion == "none")
-    skipped.push_back({"bond checks", "no fracture criterion"});
+  const auto add = [&](const std::vector<SkippedPart> &parts) {
+    skipped.insert(skipped.end(), parts.begin(), parts.end());
+  };
   if (body.zone)
-    skipped.push_back({"stress tensors in the loop", "the criterion reads tractions; tensors are "
-                                                     "computed for output only"});
-  if (body.zone && body.n_cracked_faces == 0)
-    skipped.push_back({"contacts until a bond breaks", "no initial crack"});
-  if (body.split && scene.coupling.gap_filter == 0)
-    skipped.push_back({"gap-band filter", "/coupling/gap_filter is 0"});
-  if (body.coupler->overlap() && scene.coupling.fine_damper == 0)
-    skipped.push_back({"fluctuation damper", "/coupling/fine_damper is 0"});
+    add(body.force()->skipped_parts());
+  add(body.coupler->skipped_parts());
   return skipped;
 }
 } // namespace
 
 template <int dim>
-CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers)
+CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
+                           const ForceMaker<dim> &make_force)
 {
   CoupledBody<dim> body;
   body.upper = to_vector<dim>(scene.specimen.size) / 2;
@@ -229,7 +224,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
     core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
-                 [&] { make_zone(scene, body, log); });
+                 [&] { make_zone(scene, make_force, body, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
     core::at_key("/far_field", "change cell_size, levels or the zone",
                  [&] { make_far(scene, body, log); });
@@ -244,10 +239,12 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     if (!body.coupler)
       make_fine_scale_split(scene, body, log, timers);
   });
-  body.skipped = skipped_parts(scene, body);
+  body.skipped = skipped_parts(body);
   return body;
 }
 
-template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &);
-template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &);
+template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &,
+                                     const ForceMaker<2> &);
+template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &,
+                                     const ForceMaker<3> &);
 } // namespace ligament::program

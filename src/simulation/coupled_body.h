@@ -2,13 +2,12 @@
 #pragma once
 
 #include "core/log.h"
-#include "coupling/bridging_domain.h"
-#include "coupling/fine_scale_split.h"
-#include "dem/many_body_force.h"
-#include "packings/random_packing.h"
+#include "coupling/coupler.h"
 #include "src/output/fields.h"
 #include "src/output/run_record.h"
 #include "src/scene/scene.h"
+#include "src/simulation/make_force.h"
+#include "src/simulation/make_packing.h"
 
 namespace ligament::program
 {
@@ -21,9 +20,6 @@ struct CoupledBody
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
   std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
-
-  dem::ManyBodyForce<dim> *force = nullptr;       // of the zone
-  coupling::FineScaleSplit<dim> *split = nullptr; // the coupler, when it is one
 
   Vector<dim> lower, upper;            // m, specimen
   double thickness = 1;                // m, 2D
@@ -40,20 +36,13 @@ struct CoupledBody
   std::map<std::string, Figure> figures;
   std::vector<SkippedPart> skipped;
 
+  /// Of the zone; null without one.
+  particles::ParticleForce<dim> *force() const { return zone ? zone->force.get() : nullptr; }
   coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
 };
 
 /// Throws core::InputError where the scene can't be built: reason and remedy in the message.
 template <int dim>
-CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers);
-
-/// The first `dim` components.
-template <int dim>
-Vector<dim> to_vector(const Point &p)
-{
-  Vector<dim> v;
-  for (int c = 0; c < dim; ++c)
-    v[c] = p[c];
-  return v;
-}
+CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
+                           const ForceMaker<dim> &make_force = make_many_body_force<dim>);
 } // namespace ligament::program

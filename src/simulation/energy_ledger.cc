@@ -10,9 +10,9 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"potential_far", body.potential_far},
           {"blended", body.blended},
           {"impulses", body.impulses},
-          {"breaking", breaking_step_error},
-          {"fracture", fracture},
-          {"friction", friction},
+          {"breaking", force.breaking_step_error},
+          {"fracture", force.fracture},
+          {"friction", force.friction},
           {"damper_fine", body.fine_damper},
           {"damper_gap", body.gap_filter},
           {"damping", damping},
@@ -34,11 +34,9 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
     ledger.absorbed += body.zone->dashpots.energy();
   if (body.far)
     ledger.absorbed += body.far->absorbed_energy();
-  if (body.force) {
-    ledger.fracture = body.force->fracture_energy();
-    ledger.breaking_step_error = body.force->breaking_step_error();
-    ledger.friction = body.force->frictional_work();
-    ledger.external_work += body.force->external_work();
+  if (const auto *force = body.force()) {
+    ledger.force = force->losses();
+    ledger.external_work += force->external_work();
   }
   if (body.far)
     ledger.external_work += body.far->external_work();

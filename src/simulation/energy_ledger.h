@@ -13,21 +13,19 @@ namespace ligament::program
 struct EnergyLedger
 {
   coupling::CoupledEnergy body;
-  double fracture = 0;
-  double friction = 0;
+  particles::ForceLosses force;
   double damping = 0;
   double absorbed = 0; // by absorbing sides and their layers
   double external_work = 0;
   double regime_change = 0; // taken where the coupler changed its regime
-  /// What the invariant's kinetic part misses of breaking bonds: -dt^2/8 (F^2 after - before)/m.
-  double breaking_step_error = 0;
 
   double kinetic() const { return body.kinetic_discrete + body.kinetic_far; }
   double potential() const { return body.potential_discrete + body.potential_far + body.blended; }
   double residual() const
   {
-    return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter + fracture +
-           friction + breaking_step_error + damping + absorbed + regime_change - external_work;
+    return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter +
+           force.fracture + force.friction + force.breaking_step_error + damping + absorbed +
+           regime_change + force.plastic - external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;

@@ -131,11 +131,11 @@ double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carryin
   Items<dim> items(body, axis);
   std::set<std::pair<int, int>> broken;
   if (body.zone && carrying == Carrying::at_start)
-    for (const auto &b : body.force->broken_bonds())
+    for (const auto &b : body.force()->broken_bonds())
       broken.insert(std::minmax(b.i, b.j));
   std::vector<Link> links;
   if (body.zone)
-    body.force->for_each_face(body.zone->state, [&](const particles::FaceView<dim> &face) {
+    body.force()->for_each_face(body.zone->state, [&](const particles::FaceView<dim> &face) {
       if (face.j >= 0) {
         if (face.i < face.j && (face.bonded || broken.count({face.i, face.j})))
           links.push_back({face.i, face.j, face.area});
@@ -155,9 +155,9 @@ double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carryin
 template <int dim>
 std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
 {
-  if (!body.force || body.force->broken_bonds().empty())
+  if (!body.force() || body.force()->broken_bonds().empty())
     return {};
-  const auto &broken = body.force->broken_bonds();
+  const auto &broken = body.force()->broken_bonds();
   if (at_start_ < 0)
     at_least_ = at_start_ = smallest_section(body, axis_, Carrying::at_start);
   if (std::isinf(at_start_)) // the mesh goes round the zone

@@ -8,6 +8,8 @@
 
 namespace ligament::program
 {
+using particles::Watch;
+
 namespace
 {
 template <int dim>
@@ -24,18 +26,18 @@ template <int dim>
 OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
 {
   const auto *overlap = body.coupler->overlap();
-  if (!overlap || body.force->fracture().criterion == dem::FractureLaw::Criterion::none)
+  if (!overlap || !body.force()->can_break())
     return;
-  watch_.assign(body.zone->state.n_owned, dem::Watch::none);
+  watch_.assign(body.zone->state.n_owned, Watch::none);
   for (const auto &m : overlap->members)
-    watch_[m.particle] = m.pad ? dem::Watch::exempt : dem::Watch::watched;
-  body.force->set_noted_share(limit);
+    watch_[m.particle] = m.pad ? Watch::exempt : Watch::watched;
+  body.force()->set_noted_share(limit);
 }
 
 template <int dim>
-bool OverlapGuard<dim>::is_watched(const dem::BrokenBond<dim> &bond) const
+bool OverlapGuard<dim>::is_watched(const particles::BrokenBond<dim> &bond) const
 {
-  return std::max(watch_[bond.i], watch_[bond.j]) == dem::Watch::watched;
+  return std::max(watch_[bond.i], watch_[bond.j]) == Watch::watched;
 }
 
 template <int dim>
@@ -43,7 +45,7 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
 {
   if (watch_.empty())
     return {};
-  const auto &broken = body.force->broken_bonds();
+  const auto &broken = body.force()->broken_bonds();
   for (; seen_ < broken.size(); ++seen_)
     if (is_watched(broken[seen_])) {
       ++n_broken_;
@@ -61,7 +63,7 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
                        n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
                        place<dim>(first->position), n_broken_ == 1 ? "it" : "they", remedy);
   }
-  const auto most = body.force->utilisation(body.zone->state, watch_);
+  const auto most = body.force()->utilisation(body.zone->state, watch_);
   if (most.share < limit)
     return {};
   found_ = true;

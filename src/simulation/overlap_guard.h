@@ -33,10 +33,10 @@ public:
   void load(const core::State &state);
 
 private:
-  bool is_watched(const dem::BrokenBond<dim> &bond) const;
+  bool is_watched(const particles::BrokenBond<dim> &bond) const;
 
-  std::vector<dem::Watch> watch_; // of the particles; empty: nothing to watch
-  std::size_t seen_ = 0;          // of the body's broken bonds
+  std::vector<particles::Watch> watch_; // of the particles; empty: nothing to watch
+  std::size_t seen_ = 0;                // of the body's broken bonds
   long n_broken_ = 0;
   double energy_ = 0;
   bool found_ = false;

@@ -32,7 +32,7 @@ constexpr double largest_regime_change = 1e-3;
 template <int dim>
 std::int64_t n_broken(const CoupledBody<dim> &body)
 {
-  return body.force ? std::int64_t(body.force->broken_bonds().size()) : 0;
+  return body.force() ? std::int64_t(body.force()->broken_bonds().size()) : 0;
 }
 
 double history_interval_of(const Scene &scene)
@@ -223,13 +223,13 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling:
   const auto left = path_.lost(body);
   if (!left)
     return;
-  const auto &bonds = body.force->broken_bonds();
+  const auto &bonds = body.force()->broken_bonds();
   const int axis = machine_.axis();
   if (machine_.is_answer() && !curve_.has_fallen()) {
     const bool pulled = machine_.component() == axis && curve_.largest_load() > 0;
     const double place = bonds.back().position[axis];
     const double way = std::max(body.upper[axis] - place, place - body.lower[axis]);
-    const double felt_at = bonds.back().time + way / body.force->elastic_constants().wave_speed_p;
+    const double felt_at = bonds.back().time + way / body.force()->elastic_constants().wave_speed_p;
     if (*left > 0 || !pulled || step.time < felt_at)
       return;
   }
@@ -377,7 +377,6 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
 template <int dim>
 std::map<std::string, std::int64_t> Recorder<dim>::sync()
 {
-  writer_.wait();
   history_.sync();
   std::map<std::string, std::int64_t> sizes;
   for (const std::string &file : {folder_.history(), folder_.log()}) {

@@ -54,10 +54,12 @@ public:
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
               RunRecord &record);
 
+  /// Waits for the fields that are being written; throws what kept them from it.
+  void wait() { writer_.wait(); }
   /// Puts the files that grow onto the disk and says how long they are, by their names in the
   /// folder; EnvironmentError when it refuses.
   std::map<std::string, std::int64_t> sync();
-  /// After sync().
+  /// After wait().
   void save(core::State &state) const;
   /// The body has its motion already, and the files have been cut back.
   void load(const core::State &state, const CoupledBody<dim> &body, long step);

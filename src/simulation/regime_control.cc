@@ -29,8 +29,7 @@ constexpr double largest_strain = 0.1;
 
 template <int dim>
 RegimeControl<dim>::RegimeControl(const std::string &key, CoupledBody<dim> &body)
-    : weighted_(body.coupler->overlap() && !body.split),
-      automatic_(key == "automatic" && !weighted_)
+    : can_turn_(body.coupler->can_turn()), automatic_(key == "automatic" && can_turn_)
 {
   if (!body.far)
     return;
@@ -45,17 +44,14 @@ template <int dim>
 void RegimeControl<dim>::set(Regime regime, CoupledBody<dim> &body)
 {
   auto bodies = body.bodies();
-  if (body.split)
-    body.split->set_regime(regime, bodies);
-  else
-    body.far->set_corotated(true);
+  body.coupler->set_regime(regime, bodies);
   regime_ = regime;
 }
 
 template <int dim>
-Regime RegimeControl<dim>::needed(const CoupledBody<dim> &body) const
+Regime RegimeControl<dim>::needed() const
 {
-  if (body.split && (near_.bending > change_at || near_.strain > largest_corotated_strain))
+  if (near_.bending > change_at || near_.strain > largest_corotated_strain)
     return Regime::nonlinear;
   return std::max(near_.rotation, far_.rotation) > change_at ? Regime::corotated : Regime::linear;
 }
@@ -73,9 +69,9 @@ std::optional<std::string> RegimeControl<dim>::excess() const
     return fmt::format("overlap or far field has turned by {:.2f} degrees, more than the linear "
                        "regime carries; {}",
                        rotation / degree,
-                       weighted_ ? "energy-weighted schemes have no other: hold the specimen "
-                                   "against rotation or end the run earlier"
-                                 : "set /coupling/regime to \"automatic\"");
+                       can_turn_ ? "set /coupling/regime to \"automatic\""
+                                 : "energy-weighted schemes have no other: hold the specimen "
+                                   "against rotation or end the run earlier");
   if (regime_ == Regime::corotated && near_.bending > limit)
     return fmt::format("the overlap bends by {:.2f} degrees, more than one rotation carries; set "
                        "/coupling/regime to \"automatic\" or \"nonlinear\"",
@@ -91,9 +87,8 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
   if (!body.far || step.step % (ratio * look_interval) != 0)
     return {};
   far_ = body.far->largest_motion();
-  if (body.split)
-    near_ = body.split->largest_motion();
-  const Regime needed = automatic_ ? this->needed(body) : regime_;
+  near_ = body.coupler->largest_motion();
+  const Regime needed = automatic_ ? this->needed() : regime_;
   if (needed > regime_) {
     auto bodies = body.bodies();
     const auto total = [&] {

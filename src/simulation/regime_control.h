@@ -30,14 +30,14 @@ public:
   void load(const core::State &state, CoupledBody<dim> &body);
 
 private:
-  coupling::Regime needed(const CoupledBody<dim> &body) const;
+  coupling::Regime needed() const;
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
-  bool weighted_; // an energy-weighted coupler, which is linear
+  bool can_turn_; // else the coupler is linear
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
-  typename coupling::RigidFrames<dim>::Motion near_; // at the last look
+  coupling::NearMotion near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;
   bool warned_ = false;
   std::vector<std::pair<coupling::Regime, double>> history_; // and since when, s

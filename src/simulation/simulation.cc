@@ -104,6 +104,7 @@ void Simulation<dim>::look_at_the_clock(const EndRequest &request)
   if (!keeper_ || (!ends && !keeper_->is_due()))
     return;
   const auto timing = timers_.scope(timers_.section("checkpoints"));
+  recorder_.wait(); // a disk that refuses results ends the run, other than one for checkpoints
   keeper_->attempt(log_, [&](const Checkpoints &checkpoints) { write_checkpoint(checkpoints); });
 }
 
@@ -118,23 +119,21 @@ Clock Simulation<dim>::clock_of() const
   return clock;
 }
 
-// Energy-weighted couplers join all velocities of the overlap in every step.
 template <int dim>
 void Simulation<dim>::let_rest()
 {
-  if (!body_.zone || (body_.coupler->overlap() && !body_.split))
+  if (!body_.zone || !body_.force()->can_rest() || !body_.coupler->can_rest())
     return;
   const double strain = scene_.time.rest_threshold;
   body_.zone->let_rest(particles::RestLimits::of_strain(
-      strain, body_.spacing, body_.force->elastic_constants().wave_speed_p));
-  if (body_.split)
-    body_.split->let_rest(body_.bodies(), strain);
+      strain, body_.spacing, body_.force()->elastic_constants().wave_speed_p));
+  body_.coupler->let_rest(body_.bodies(), strain);
 }
 
 template <int dim>
 void Simulation<dim>::report_rest(RunRecord &record)
 {
-  const auto report = [&](const char *name, double share, const std::string &steps) {
+  const auto report = [&](const std::string &name, const std::string &steps, double share) {
     record.figures[name] = {share, ""};
     const std::string what = fmt::format("{:.1f} % of the {}", 100 * share, steps);
     log_.info("not needed: {} (at rest until a wave arrived)", what);
@@ -143,11 +142,9 @@ void Simulation<dim>::report_rest(RunRecord &record)
   };
   if (!body_.zone || !body_.zone->rest())
     return;
-  report("share_at_rest", body_.zone->rest()->share_at_rest(), "particle-steps");
-  if (body_.split) {
-    report("overlap_at_rest", body_.split->share_at_rest(), "overlap's steps");
-    report("far_field_at_rest", body_.split->far_share_at_rest(), "far field's steps");
-  }
+  report("share_at_rest", "particle-steps", body_.zone->rest()->share_at_rest());
+  for (const auto &[name, steps, share] : body_.coupler->shares_at_rest())
+    report(name, steps, share);
 }
 
 template <int dim>

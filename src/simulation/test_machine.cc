@@ -75,8 +75,8 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
   Reading r;
   if (load_ < 0)
     return r;
-  if (body.force)
-    r.load += sign_ * body.force->reaction(load_)[component_];
+  if (body.force())
+    r.load += sign_ * body.force()->reaction(load_)[component_];
   if (body.far)
     r.load += sign_ * body.far->reaction(load_)[component_];
   r.stress = r.load / area_;
@@ -90,8 +90,8 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
 {
   const int axis = boundary / 2;
   if (!body.far)
-    return extrapolated_displacement(body, axis,
-                                     boundary % 2 ? body.upper[axis] : body.lower[axis], component);
+    return extrapolated_displacement(body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
+                                     component);
   double sum = 0, area = 0;
   const auto &mesh = body.far->mesh();
   for (const auto &face : mesh.boundary_faces)

@@ -27,7 +27,7 @@ struct UnitBody
   core::Timers timers;
   CoupledBody<dim> body;
 
-  double c11() const { return body.force->elastic_constants().stiffness(0, 0); }
+  double c11() const { return body.force()->elastic_constants().stiffness(0, 0); }
 };
 
 /// Names of the sides of a box, numbered as in core/types.h.

@@ -183,7 +183,7 @@ double reflected_by_random_packing(const AbsorbingParameters &p)
   top.absorbing_layer = p.layer * cell_size;
   UnitBody<dim> unit(scene);
   auto &zone = *unit.body.zone;
-  const auto constants = unit.body.force->elastic_constants();
+  const auto constants = unit.body.force()->elastic_constants();
   const double speed = is_p ? constants.wave_speed_p : constants.wave_speed_s,
                k = 2 * M_PI / (p.wave_length * cell_size),
                start = course.centre() - course.length / 2;

@@ -62,7 +62,7 @@ double error_of_load(Models models, bool is_p, double layer, int passages)
     if (step.time > (passages - 1) * way) {
       Vector<2> load = Vector<2>::Zero();
       if (body.zone)
-        load += body.force->reaction(0);
+        load += body.force()->reaction(0);
       if (body.far)
         load += body.far->reaction(0);
       sum += load[is_p ? 0 : 1];

@@ -40,7 +40,7 @@ double worst_residual(const Scene &scene, double duration, long &n_broken)
     run.step();
     keep_worst(worst, run.unbooked());
   }
-  n_broken += long(run.body().force->broken_bonds().size());
+  n_broken += long(run.body().force()->broken_bonds().size());
   return worst / run.work();
 }
 

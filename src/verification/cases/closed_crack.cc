@@ -63,7 +63,7 @@ Wings grow_wings(const Scene &scene)
     run.step();
     std::array<int, 2> n = {0, 0};
     Wings wings;
-    for (const auto &face : run.body().force->broken_bonds()) {
+    for (const auto &face : run.body().force()->broken_bonds()) {
       const int side = face.position.sum() > 0;
       const double end =
           (face.position - (side ? 1 : -1) * tip).norm() + face.area / run.body().thickness / 2;
@@ -75,7 +75,7 @@ Wings grow_wings(const Scene &scene)
     for (const int load : {0, 1}) {
       const auto &body = run.body();
       const double force =
-          body.force->reaction(load)[1] + (body.far ? body.far->reaction(load)[1] : 0);
+          body.force()->reaction(load)[1] + (body.far ? body.far->reaction(load)[1] : 0);
       wings.load += std::abs(force) / width / body.thickness / 2;
     }
     wings.residual = run.unbooked() / run.work();

@@ -1,5 +1,6 @@
 // Uniaxial compression without a crack: no tension anywhere, and nothing breaks, at the coupled
 // edge of the packing either.
+#include "dem/many_body_force.h"
 #include "src/simulation/damping.h"
 #include "src/verification/bodies/unit_bodies.h"
 #include "src/verification/cases.h"
@@ -66,7 +67,7 @@ void impose(Scene scene, const Material &material, Excess &worst)
   UnitBody<dim> unit(scene);
   auto &body = unit.body;
   const Tensor<dim> strain =
-      -size * uniaxial_strain<dim>(body.force->elastic_constants().stiffness);
+      -size * uniaxial_strain<dim>(body.force()->elastic_constants().stiffness);
   auto &state = body.zone->state;
   std::vector<int> all;
   for (int i = 0; i < state.n_owned; ++i) {
@@ -77,9 +78,10 @@ void impose(Scene scene, const Material &material, Excess &worst)
     set(body.far->displacement, i, Vector<dim>(strain * body.far->mesh().nodes[i]));
   auto bodies = body.bodies();
   body.coupler->take_velocities(bodies); // takes over the near nodes' displacements as well
-  keep_worst(worst.tension, body.force->max_tension(state, all) / size);
+  const auto &force = dynamic_cast<const dem::ManyBodyForce<dim> &>(*body.force());
+  keep_worst(worst.tension, force.max_tension(state, all) / size);
   Components<n_strains<dim>> stress;
-  body.force->stresses(state, stress);
+  force.stresses(state, stress);
   for (int i = 0; i < state.n_owned; ++i) {
     const Strain<dim> rest = get(stress, i) + size * Strain<dim>::Unit(dim - 1);
     keep_worst(worst.stress, rest.cwiseAbs().maxCoeff() / size);
@@ -158,7 +160,7 @@ void press(const Point &size, double zone_half, int overlap_cells, const Materia
   UnitBody<dim> unit(scene);
   auto &body = unit.body;
   const double modulus =
-      1 / uniaxial_strain<dim>(body.force->elastic_constants().stiffness)(dim - 1, dim - 1);
+      1 / uniaxial_strain<dim>(body.force()->elastic_constants().stiffness)(dim - 1, dim - 1);
   const double duration = 1.02 * target / modulus * size[dim - 1] / (2 * speed);
   BodyDamping<dim> damping(scene.damping);
   auto bodies = body.bodies();
@@ -171,9 +173,9 @@ void press(const Point &size, double zone_half, int overlap_cells, const Materia
     damping.after_kick(body, step);
     body.coupler->drift(bodies, step);
   }
-  worst.broken_faces += double(body.force->broken_bonds().size());
+  worst.broken_faces += double(body.force()->broken_bonds().size());
   Components<n_strains<dim>> stress;
-  body.force->stresses(body.zone->state, stress);
+  body.force()->stresses(body.zone->state, stress);
   double mean = 0;
   for (const double s : stress[dim - 1])
     mean -= s / double(stress[dim - 1].size());

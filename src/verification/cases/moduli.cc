@@ -66,7 +66,7 @@ void pull(Scene scene, Deviation &worst)
   for (int c = 1; c < dim; ++c)
     area *= scene.specimen.size[c];
   const bool plane_strain = dim == 2 && scene.plane == PlaneMode::strain;
-  const double modulus = body.force->reaction(1)[0] / (area * strain);
+  const double modulus = body.force()->reaction(1)[0] / (area * strain);
   for (int c = 1; c < dim; ++c) {
     const double ratio = -lateral_strain(body.zone->state, c) / strain;
     const double nu = plane_strain ? ratio / (1 + ratio) : ratio;

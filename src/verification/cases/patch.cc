@@ -40,8 +40,8 @@ void load(Scene scene, const std::vector<int> &sides, Strain<dim> stress, Deviat
   add_tractions<dim>(scene, sides, stress);
   UnitBody<dim> unit(scene);
   auto &body = unit.body;
-  if (body.split)
-    keep_worst(worst.residual, body.split->report().patch_residual);
+  if (const auto patch = body.figures.find("patch_residual"); patch != body.figures.end())
+    keep_worst(worst.residual, patch->second.value);
   LinearMotion<dim> motion(body);
   const Strain<dim> strain = body.far->body().stiffness.inverse() * stress;
   const auto gradient = tensor<dim>(strain);

@@ -1,12 +1,12 @@
 // Coupled bodies at large rotation and finite strain.
+#include "core/polar_rotation.h"
+#include "particles/orientation.h"
 #include "src/simulation/damping.h"
 #include "src/simulation/regime_control.h"
 #include "src/simulation/test_machine.h"
 #include "src/verification/bodies/unit_bodies.h"
 #include "src/verification/cases.h"
 #include "src/verification/instruments/noise_run.h"
-
-#include "particles/orientation.h"
 
 #include <Eigen/Geometry>
 
@@ -52,7 +52,7 @@ struct MovingBody
     for (int i = 0; i < far.mesh().n_nodes(); ++i)
       set(far.displacement, i, Vector<dim>(h * far.mesh().nodes[i]));
     auto bodies = unit.body.bodies();
-    unit.body.split->take_velocities(bodies);
+    unit.body.coupler->take_velocities(bodies);
   }
 
   /// Force on every near node in N, from one kick at rest over a unit step.
@@ -63,11 +63,11 @@ struct MovingBody
     step.dt = 1;
     unit.body.coupler->compute_forces(bodies, step);
     unit.body.coupler->kick(bodies, step);
-    const auto &near = unit.body.split->overlap()->near_nodes;
+    const auto &near = unit.body.coupler->overlap()->near_nodes;
     Eigen::MatrixXd v(near.size(), dim);
     for (std::size_t i = 0; i < near.size(); ++i)
       v.row(i) = get(unit.body.far->velocity, near[i]).transpose();
-    return unit.body.split->near_mass() * v;
+    return unit.body.coupler->near_mass() * v;
   }
 
   UnitBody<dim> unit;
@@ -99,7 +99,7 @@ std::vector<Result> rotate(const std::string &name)
     auto &body = moving.unit.body;
     moving.move(right_angle<dim>(random), Matrix<dim>::Identity());
     const double unit = moving.unit.c11();
-    const double h = body.split->overlap()->cell_size;
+    const double h = body.coupler->overlap()->cell_size;
     keep_worst(force, moving.near_force().cwiseAbs().maxCoeff() / (unit * std::pow(h, dim - 1)));
     for (int i = 0; i < body.zone->state.n_owned; ++i) {
       keep_worst(force, get(body.zone->state.force, i).norm() / unit);
@@ -128,7 +128,7 @@ std::vector<Result> turned_patch()
     for (const double size : {1e-5, 0.05}) {
       MovingBody<2> moving(small_scene(2, regime));
       moving.move(right_angle<2>(random), Matrix<2>::Identity() + size * strain);
-      const double unit = moving.unit.c11() * moving.unit.body.split->overlap()->cell_size;
+      const double unit = moving.unit.c11() * moving.unit.body.coupler->overlap()->cell_size;
       const double residual = moving.near_force().rowwise().norm().maxCoeff() / unit;
       keep_worst(size < 1e-3 ? small : finite, size < 1e-3 ? residual : residual / (size * size));
     }
@@ -140,7 +140,7 @@ std::vector<Result> turned_patch()
 template <int dim>
 Spin<dim> angular_momentum(const CoupledBody<dim> &body, const Eigen::SparseMatrix<double> &mass)
 {
-  const auto &overlap = *body.split->overlap();
+  const auto &overlap = *body.coupler->overlap();
   const auto &far = *body.far;
   const auto &zone = body.zone->state;
   Spin<dim> sum = Spin<dim>::Zero();
@@ -229,8 +229,8 @@ std::vector<Result> spin(const std::string &name, const std::string &regime, dou
   for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
     set(body.far->velocity, i, velocity(body.far->mesh().nodes[i]));
   auto bodies = body.bodies();
-  body.split->take_velocities(bodies);
-  const Eigen::SparseMatrix<double> mass = body.split->near_mass();
+  body.coupler->take_velocities(bodies);
+  const Eigen::SparseMatrix<double> mass = body.coupler->near_mass();
   const Spin<dim> before = angular_momentum<dim>(body, mass);
   const double energy = energy_change(body, std::lround(turns * 2 * M_PI / rate / body.dt));
   const double momentum = (angular_momentum<dim>(body, mass) - before).norm() / before.norm();

@@ -90,9 +90,10 @@ Peak break_plate(const InclinedPlate &plate)
       return {};
     double load = 0;
     for (const int end : {0, 1})
-      load += (end == 0 ? -0.5 : 0.5) * (body.force->reaction(end)[1] + body.far->reaction(end)[1]);
+      load +=
+          (end == 0 ? -0.5 : 0.5) * (body.force()->reaction(end)[1] + body.far->reaction(end)[1]);
     peak = std::max(peak, load);
-    if (load < peak / 2 && !body.force->broken_bonds().empty()) {
+    if (load < peak / 2 && !body.force()->broken_bonds().empty()) {
       const double stress = peak / (width * body.thickness);
       return {stress, stress * estimate(half_length(body.cut_faces)) / toughness};
     }

@@ -1,6 +1,7 @@
 #include "src/verification/instruments/linear_motion.h"
 
 #include "core/check.h"
+#include "coupling/fine_scale_split.h"
 #include "src/verification/bodies/body_state.h"
 
 #include <Eigen/Dense>
@@ -131,9 +132,10 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
       near_y.row(i) = node(y, overlap->near_nodes[i]).transpose();
     }
   }
+  const bool splits = dynamic_cast<const coupling::FineScaleSplit<dim> *>(body_.coupler.get());
   double sum = 0;
   for (int i = 0; i < n_particles_; ++i) {
-    const int index = body_.split ? overlap->member_of_particle[i] : -1;
+    const int index = splits ? overlap->member_of_particle[i] : -1;
     Vector<dim> u = particle(x, i), v = particle(y, i);
     if (index >= 0) {
       const auto &member = overlap->members[index];
@@ -292,7 +294,7 @@ double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x, const Place &
       largest = strain;
   };
   if (body_.zone)
-    body_.force->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {
+    body_.force()->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {
       if (face.j > face.i && face.bonded)
         compare(place(face.i), place(face.j), particle(x, face.j) - particle(x, face.i));
     });

@@ -112,7 +112,8 @@ TEST(Manual, NamesTheKeysOfAManifest)
   CheckpointManifest manifest;
   manifest.states["body"] = {};
   const std::string text = section("Checkpoints");
-  for (const auto &[key, value] : nlohmann::json::parse(manifest_text(manifest)).items())
+  const auto json = nlohmann::json::parse(manifest_text(manifest));
+  for (const auto &[key, value] : json.items())
     expect_named(text, key);
 }
 } // namespace

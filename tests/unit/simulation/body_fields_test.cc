@@ -88,7 +88,7 @@ TEST(StateFields, BrokenSharesStandAtTheNamedParticles)
 {
   const SmallBody small(small_scene({"/coupling/overlap_cells=2"}));
   BrokenBond bond = {};
-  small.body.force->for_each_face(small.body.zone->state, [&](const auto &face) {
+  small.body.force()->for_each_face(small.body.zone->state, [&](const auto &face) {
     if (!face.bonded || face.centroid.norm() > 1 || face.i > face.j)
       return;
     bond.i = small.body.zone->state.global_id[face.i];

@@ -22,14 +22,14 @@ TEST(Inclusions, TakeTheParticlesOfTheirRegionsLaterOnesFirst)
   SmallBody small(
       small_scene({"/inclusions=[" + ball + ", " + box + "]", "/far_field/cell_size=3"}));
   const auto &state = small.body.zone->state;
-  const auto &materials = small.body.force->materials();
+  const auto &force = *small.body.force();
   int n[3] = {};
   for (int i = 0; i < state.n_owned; ++i) {
     const double x = state.reference[0][i], y = state.reference[1][i];
     const bool in_box = x > 1 && x < 5 && y > -1 && y < 3, in_ball = std::hypot(x - 2, y - 3) < 2.5;
-    ASSERT_EQ(materials.number(i), in_box ? 2 : in_ball ? 1 : 0);
-    EXPECT_DOUBLE_EQ(state.mass[i], (materials.number(i) ? 3 : 1) * state.volume[i]);
-    ++n[materials.number(i)];
+    ASSERT_EQ(force.material(i), in_box ? 2 : in_ball ? 1 : 0);
+    EXPECT_DOUBLE_EQ(state.mass[i], (force.material(i) ? 3 : 1) * state.volume[i]);
+    ++n[force.material(i)];
   }
   EXPECT_GT(n[1], 3);
   EXPECT_GT(n[2], 10);
@@ -65,7 +65,7 @@ TEST(Inclusions, ThePackingFileNamesThem)
       small_scene(file + discrete + std::vector<std::string>{"/inclusions=[" + stiff + "}]"}));
   const auto &state = small.body.zone->state;
   for (int i = 0; i < state.n_owned; ++i)
-    ASSERT_EQ(small.body.force->materials().number(i), state.global_id[i] % 7 == 0);
+    ASSERT_EQ(small.body.force()->material(i), state.global_id[i] % 7 == 0);
   ASSERT_EQ(small.body.seeds->material.size(), std::size_t(small.body.seeds->size()));
   for (int k = 0; k < small.body.seeds->size(); ++k)
     ASSERT_EQ(small.body.seeds->material[k], small.body.seeds->id[k] % 7 == 0);

@@ -83,7 +83,7 @@ struct OpenedPlate
     for (int i = 0; i < state.n_owned; ++i)
       if (state.reference[1][i] > 0 && state.reference[0][i] > from && state.reference[0][i] < to)
         state.displacement[1][i] = 2e-3;
-    small.body.force->compute(state, ++time);
+    small.body.force()->compute(state, ++time);
     return path.lost(small.body);
   }
 
@@ -99,7 +99,7 @@ TEST(LoadPath, IsLostWhenAFewPerCentOfTheSectionOfTheStartAreLeft)
   EXPECT_FALSE(plate.path.lost(body));
   EXPECT_FALSE(plate.open(-12, 0)); // 12 of 14 are left
   EXPECT_FALSE(plate.open(0, 11));  // 1 of 14: more than 5 %
-  EXPECT_EQ(body.force->broken_bonds().size(), 13u);
+  EXPECT_EQ(body.force()->broken_bonds().size(), 13u);
   EXPECT_NEAR(section(plate.small, 1), 1, 1e-9);
   EXPECT_NEAR(smallest_section(body, 1, Carrying::at_start), 14, 1e-9);
   const auto left = plate.open(11, 12);
@@ -113,7 +113,7 @@ TEST(LoadPath, IsNeverLostWhereTheMeshGoesRoundTheZone)
                      R"(/discrete_zone/region={"lower": [-20, -20], "upper": [20, 20]})"});
   EXPECT_TRUE(std::isinf(section(plate.small, 1)));
   EXPECT_FALSE(plate.open(-3, 3));
-  EXPECT_FALSE(plate.small.body.force->broken_bonds().empty());
+  EXPECT_FALSE(plate.small.body.force()->broken_bonds().empty());
   EXPECT_FALSE(plate.open(-6, 6));
 }
 

@@ -28,7 +28,7 @@ struct GuardedPlate
   {
     for (int i = 0; i < state().n_owned; ++i)
       state().displacement[1][i] = is_below(i) ? -share * strength : 0;
-    small.body.force->compute(state(), ++time);
+    small.body.force()->compute(state(), ++time);
     return guard.look(small.body);
   }
   /// An overlap particle inside, pad or not.
@@ -64,7 +64,7 @@ TEST(OverlapGuard, BreaksAreCountedWithTheirEnergy)
   ASSERT_TRUE(finding);
   EXPECT_NE(finding->find("broke"), std::string::npos) << *finding;
   EXPECT_EQ(plate.guard.n_broken(), 1);
-  EXPECT_NEAR(plate.guard.energy(), plate.small.body.force->fracture_energy(), 1e-20);
+  EXPECT_NEAR(plate.guard.energy(), plate.small.body.force()->losses().fracture, 1e-20);
   EXPECT_GT(plate.guard.energy(), 0);
 }
 
@@ -74,7 +74,7 @@ TEST(OverlapGuard, WhatIsFarFromTheOverlapIsNotItsMatter)
   EXPECT_FALSE(plate.look(2, [&](int k) {
     return std::abs(plate.state().reference[1][k]) < 5 && plate.state().reference[1][k] < 0;
   }));
-  EXPECT_GT(plate.small.body.force->broken_bonds().size(), 10u);
+  EXPECT_GT(plate.small.body.force()->broken_bonds().size(), 10u);
   EXPECT_EQ(plate.guard.n_broken(), 0);
 }
 

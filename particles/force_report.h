@@ -1,0 +1,100 @@
+// What observers ask of a force between particles; one that has no answer keeps the neutral one.
+#pragma once
+
+#include "core/skipped_part.h"
+#include "particles/particles.h"
+
+#include <vector>
+
+namespace ligament::particles
+{
+/// A bond that broke; place and normal in the reference configuration.
+template <int dim>
+struct BrokenBond
+{
+  int i, j;                        // particles
+  std::int64_t global_i, global_j; // their global ids
+  double time;                     // s
+  Vector<dim> position;            // m, face point
+  Vector<dim> normal;              // unit, from i to j
+  double area;                     // m^2
+  double energy;                   // J, released
+};
+
+/// How near the most loaded of some faces is to breaking.
+template <int dim>
+struct Utilisation
+{
+  double share = 0;                        // of the limit at which it breaks
+  Vector<dim> place = Vector<dim>::Zero(); // m, face point in the reference
+};
+
+/// Whether the faces of a particle are watched: those with a watched particle and without an
+/// exempt one.
+enum class Watch : char
+{
+  none,
+  watched,
+  exempt
+};
+
+/// Energies in J that have left motion and potential so far.
+struct ForceLosses
+{
+  double fracture = 0; // released by breaking bonds
+  double friction = 0;
+  double plastic = 0;
+  /// By which the leap-frog's invariant fell because forces jumped, theory.md (E10).
+  double breaking_step_error = 0;
+};
+
+template <int dim>
+class ForceReport
+{
+public:
+  virtual ~ForceReport() = default;
+
+  virtual ForceLosses losses() const { return {}; }
+
+  /// Force in N of load number `load` on the particles, at the last compute.
+  virtual Vector<dim> reaction(int /*load*/) const { return Vector<dim>::Zero(); }
+  /// Work in J of the loads since the last reset_work.
+  virtual double external_work() const { return 0; }
+  virtual void reset_work() {}
+
+  /// Overwrites: stress tensors of the owned particles in Pa, Voigt order (in-plane in 2D).
+  virtual void stresses(const Particles<dim> &particles, Components<n_strains<dim>> &stress) const
+  {
+    for (auto &component : stress)
+      component.assign(particles.n_owned, 0.);
+  }
+
+  virtual long n_bonds() const { return 0; }
+  virtual bool can_break() const { return false; }
+  /// All so far, in the order of breaking.
+  virtual const std::vector<BrokenBond<dim>> &broken_bonds() const
+  {
+    static const std::vector<BrokenBond<dim>> none;
+    return none;
+  }
+
+  /// Faces that reach this share of their limit (above 0, at most 1) at a compute are kept in mind
+  /// for utilisation().
+  virtual void set_noted_share(double /*share*/) {}
+  /// The watched face nearest to its limit at the last compute; one entry per particle. Its share
+  /// is 0 where no face reached the noted share.
+  virtual Utilisation<dim> utilisation(const Particles<dim> &, const std::vector<Watch> &) const
+  {
+    return {};
+  }
+
+  /// Number of a particle's material; 0: the one that it shares with the far field.
+  virtual int material(int /*particle*/) const { return 0; }
+
+  /// It wakes what it acts on, see ParticleForce::set_rest: blocks of particles may rest.
+  virtual bool can_rest() const { return false; }
+
+  /// What the intact body has no need of.
+  virtual std::vector<core::SkippedPart> skipped_parts() const { return {}; }
+};
+} // namespace ligament::particles

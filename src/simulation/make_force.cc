@@ -1,0 +1,135 @@
+#include "src/simulation/make_force.h"
+
+#include "dem/many_body_force.h"
+#include "dem/principal_tension.h"
+#include "dem/toughness_calibration.h"
+#include "src/simulation/make_packing.h"
+#include "src/simulation/toughness_cache.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)
+{
+  dem::DemMaterial m;
+  m.youngs_modulus = parameters.youngs_modulus;
+  m.poissons_ratio = parameters.poissons_ratio;
+  m.density = parameters.density;
+  m.plane = plane;
+  m.friction = parameters.friction;
+  return m;
+}
+
+dem::FractureLaw::Criterion criterion_of(const Scene &scene)
+{
+  using Criterion = dem::FractureLaw::Criterion;
+  const std::string &name = scene.material.fracture.criterion;
+  return name == "maximum_tension" ? Criterion::maximum_tension
+         : name == "face_tension"  ? Criterion::face_tension
+                                   : Criterion::none;
+}
+
+/// All that the factor c depends on, in one line.
+std::string toughness_key(const Scene &scene, const dem::DemMaterial &material)
+{
+  const DiscreteZone &zone = scene.zone;
+  const std::string packing =
+      zone.packing == "random"
+          ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
+          : fmt::format("turned {}", fmt::join(zone.orientation, " "));
+  return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method,
+                     scene.material.fracture.criterion, scene.dimension,
+                     scene.plane == PlaneMode::stress ? "stress" : "strain", zone.packing,
+                     material.poissons_ratio, packing);
+}
+
+template <int dim>
+double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
+{
+  const auto criterion = criterion_of(scene);
+  return ToughnessCache().factor(toughness_key(scene, material), [&] {
+    if (scene.zone.packing == "random")
+      return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
+    const auto lattice = lattice_of<dim>(scene);
+    return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
+  });
+}
+
+/// Strength from the scene, or from the toughness through the calibrated factor c. `name` is added
+/// to the names of the figures.
+template <int dim>
+double strength_of(const Scene &scene, const MaterialParameters &material, const std::string &name,
+                   std::map<std::string, Figure> &figures, core::Log &log)
+{
+  const auto &p = material.fracture;
+  double strength = p.strength.value_or(0);
+  if (!p.strength) {
+    const double c = toughness_factor<dim>(scene, material_of(material, scene.plane));
+    strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
+    figures["toughness_factor" + name] = {c, ""};
+    log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, strength,
+             scene.zone.spacing);
+  }
+  figures["strength" + name] = {strength, "Pa"};
+  return strength;
+}
+
+template <int dim>
+dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &figures,
+                             core::Log &log)
+{
+  dem::FractureLaw law;
+  law.criterion = criterion_of(scene);
+  if (law.criterion == dem::FractureLaw::Criterion::none)
+    return law;
+  if (!scene.material.fracture.strength)
+    law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
+                     (dim == 2 ? scene.specimen.thickness : 1);
+  law.strength = strength_of<dim>(scene, scene.material, "", figures, log);
+  if (scene.inclusions.empty())
+    return law;
+  law.strengths = {law.strength};
+  for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
+    law.strengths.push_back(strength_of<dim>(scene, scene.inclusions[k].material,
+                                             fmt::format("_inclusion_{}", k + 1), figures, log));
+  return law;
+}
+} // namespace
+
+template <int dim>
+particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene)
+{
+  return material_of(scene.material, scene.plane).elastic_constants<dim>();
+}
+
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
+                     const std::vector<core::BoundaryLoad<dim>> &loads,
+                     std::map<std::string, Figure> &figures, core::Log &log)
+{
+  std::vector<dem::DemMaterial> materials = {material_of(scene.material, scene.plane)};
+  for (const Inclusion &inclusion : scene.inclusions)
+    materials.push_back(material_of(inclusion.material, scene.plane));
+  const dem::Materials of_particles(std::move(materials), packing.material);
+  return std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles, loads,
+                                                   fracture_of<dim>(scene, figures, log));
+}
+
+template particles::ElasticConstants<2> elastic_constants_of(const Scene &);
+template particles::ElasticConstants<3> elastic_constants_of(const Scene &);
+template std::unique_ptr<particles::ParticleForce<2>>
+make_many_body_force(const Scene &, packings::Packing<2>,
+                     const std::vector<core::BoundaryLoad<2>> &, std::map<std::string, Figure> &,
+                     core::Log &);
+template std::unique_ptr<particles::ParticleForce<3>>
+make_many_body_force(const Scene &, packings::Packing<3>,
+                     const std::vector<core::BoundaryLoad<3>> &, std::map<std::string, Figure> &,
+                     core::Log &);
+} // namespace ligament::program

@@ -1,0 +1,35 @@
+// The law of the discrete zone from its scene: the only place where the program names one.
+#pragma once
+
+#include "core/load.h"
+#include "core/log.h"
+#include "packings/packing.h"
+#include "particles/particle_force.h"
+#include "src/output/run_record.h"
+#include "src/scene/scene.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+
+namespace ligament::program
+{
+/// Makes the force of a zone from its packing; adds what it finds on the way (a strength) to the
+/// figures of the run. The solid that it stands for is that of elastic_constants_of(). Throws
+/// core::InputError where the scene can't be built.
+template <int dim>
+using ForceMaker = std::function<std::unique_ptr<particles::ParticleForce<dim>>(
+    const Scene &, packings::Packing<dim>, const std::vector<core::BoundaryLoad<dim>> &loads,
+    std::map<std::string, Figure> &figures, core::Log &)>;
+
+/// The default: the many-body law of discrete elements.
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
+                     const std::vector<core::BoundaryLoad<dim>> &loads,
+                     std::map<std::string, Figure> &figures, core::Log &log);
+
+/// Of the solid that particles and far field share: the scene's /material.
+template <int dim>
+particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene);
+} // namespace ligament::program

@@ -1,0 +1,272 @@
+#include "src/simulation/make_packing.h"
+
+#include "core/check.h"
+#include "core/keyed_error.h"
+#include "packings/packing_file.h"
+#include "src/scene/geometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ligament::program
+{
+using core::require;
+
+namespace
+{
+template <int dim>
+void set_specimen(const Scene &scene, packings::SpecimenParameters<dim> &p)
+{
+  p.spacing = scene.zone.spacing;
+  p.thickness = scene.specimen.thickness;
+  p.upper = to_vector<dim>(scene.specimen.size) / 2;
+  p.lower = -p.upper;
+  for (const auto &hole : scene.specimen.holes)
+    p.holes.push_back({to_vector<dim>(hole.centre), hole.radius});
+  for (const auto &notch : scene.specimen.notches)
+    p.notches.push_back({to_vector<dim>(notch.lower), to_vector<dim>(notch.upper)});
+  for (const auto &crack : scene.specimen.cracks) {
+    auto &points = p.cracks.emplace_back();
+    for (const auto &point : crack.points)
+      points.push_back(to_vector<dim>(point));
+  }
+  if (scene.zone.extent != DiscreteZone::Extent::box)
+    return;
+  // The corners around all boxes; the default reaches through.
+  const Vector<dim> through = p.zone_upper;
+  p.zone_lower = through;
+  p.zone_upper = -through;
+  for (const auto &box : zone_shape<dim>(scene).boxes) {
+    p.zone_lower = p.zone_lower.cwiseMin(box.lower).cwiseMax(-through);
+    p.zone_upper = p.zone_upper.cwiseMax(box.upper).cwiseMin(through);
+  }
+  if (scene.zone.boxes.size() > 1)
+    p.zone_parts = zone_shape<dim>(scene);
+}
+} // namespace
+
+template <int dim>
+packings::LatticeParameters<dim> lattice_of(const Scene &scene)
+{
+  packings::LatticeParameters<dim> p;
+  set_specimen<dim>(scene, p);
+  p.kind = packings::lattice_kind(scene.zone.packing);
+  for (int c = 0; c < n_spins<dim>; ++c)
+    p.orientation[c] = scene.zone.orientation[c];
+  return p;
+}
+
+template <int dim>
+packings::RandomParameters<dim> random_packing_of(const Scene &scene)
+{
+  packings::RandomParameters<dim> p;
+  set_specimen<dim>(scene, p);
+  p.seed = scene.zone.seed;
+  p.relaxation_sweeps = scene.zone.relaxation_sweeps;
+  p.size_ratio = scene.zone.size_ratio;
+  return p;
+}
+
+double mean_cell_volume(const Scene &scene)
+{
+  const double d = scene.zone.spacing, thickness = scene.specimen.thickness;
+  if (scene.zone.is_irregular())
+    return scene.dimension == 2 ? packings::mean_cell_volume<2>(d) * thickness
+                                : packings::mean_cell_volume<3>(d);
+  switch (packings::lattice_kind(scene.zone.packing)) {
+  case packings::LatticeKind::square:
+    return d * d * thickness;
+  case packings::LatticeKind::hexagonal:
+    return std::sqrt(3.) / 2 * d * d * thickness;
+  case packings::LatticeKind::simple_cubic:
+    return d * d * d;
+  case packings::LatticeKind::fcc:
+    return d * d * d / std::sqrt(2.);
+  }
+  return 0;
+}
+
+namespace
+{
+template <int dim>
+packings::Seeds<dim> read_seeds(const Scene &scene)
+{
+  const auto refuse = [](const std::string &reason) {
+    return core::KeyedError("/discrete_zone/packing_file",
+                            "the \"packing_file\" in /discrete_zone cannot be used", reason,
+                            "correct the file or its path; a run writes such a file, packing.csv");
+  };
+  try {
+    return packings::read_packing_file<dim>(scene.zone.packing_file);
+  } catch (const core::InputError &error) {
+    throw refuse(error.what());
+  } catch (const core::EnvironmentError &error) {
+    throw refuse(error.what());
+  }
+}
+
+/// Cells reach to the next seed, however far: the file of a zone would fill a whole specimen badly.
+template <int dim>
+void require_cover(const Scene &scene, const packings::RandomParameters<dim> &p,
+                   const packings::Seeds<dim> &seeds)
+{
+  Vector<dim> lower = seeds.centre[0], upper = lower;
+  for (int i = 1; i < seeds.size(); ++i) {
+    lower = lower.cwiseMin(seeds.centre[i]);
+    upper = upper.cwiseMax(seeds.centre[i]);
+  }
+  for (int c = 0; c < dim; ++c) {
+    const double low = std::max(p.lower[c], p.zone_lower[c]),
+                 high = std::min(p.upper[c], p.zone_upper[c]);
+    if (std::max(lower[c] - low, high - upper[c]) > 3 * p.spacing)
+      throw core::KeyedError(
+          "/discrete_zone/packing_file",
+          fmt::format("the particles of {} do not fill the discrete zone in {}",
+                      scene.zone.packing_file, "xyz"[c]),
+          fmt::format("they go from {:.4g} m to {:.4g} m, the zone from {:.4g} m to {:.4g} m",
+                      lower[c], upper[c], low, high),
+          "give a file for this zone: that of a run with far field holds its zone alone, its pure "
+          "discrete twin needs the packing of the whole specimen");
+  }
+}
+
+/// Seeds of an irregular packing, from their file or from random numbers.
+template <int dim>
+packings::RandomPacking<dim> irregular_packing(const Scene &scene)
+{
+  const auto parameters = random_packing_of<dim>(scene);
+  if (scene.zone.packing == "random")
+    return packings::make_random_packing<dim>(parameters);
+  auto seeds = read_seeds<dim>(scene);
+  const std::vector<int> material = std::move(seeds.material);
+  seeds.material.clear();
+  require_cover(scene, parameters, seeds);
+  auto packing = packings::pack_seeds<dim>(parameters, std::move(seeds));
+  for (const auto row : packing.packing.global_id) // the name of a seed is the number of its row
+    if (!material.empty())
+      packing.packing.material.push_back(material[row]);
+  for (const auto row : packing.seeds.id)
+    if (!material.empty())
+      packing.seeds.material.push_back(material[row]);
+  const auto &cells = packing.packing.volume;
+  const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
+  const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
+  if (!(ratio > 0.9 && ratio < 1.1))
+    throw core::KeyedError(
+        "/discrete_zone/spacing",
+        fmt::format("\"spacing\" in /discrete_zone is {} m, but that of the packing is {:.4g} m",
+                    scene.zone.spacing, ratio * scene.zone.spacing),
+        "the file says how large its particles are: " + scene.zone.packing_file,
+        fmt::format("give {:.4g} m", ratio * scene.zone.spacing));
+  return packing;
+}
+
+/// The last inclusion, from 1, with a region around the point; 0: none.
+template <int dim>
+int inclusion_at(const Scene &scene, const Vector<dim> &x)
+{
+  const auto in_ball = [&](const Hole &ball) {
+    return (x - to_vector<dim>(ball.centre)).norm() < ball.radius;
+  };
+  const auto in_box = [&](const Notch &box) {
+    return (x.array() > to_vector<dim>(box.lower).array()).all() &&
+           (x.array() < to_vector<dim>(box.upper).array()).all();
+  };
+  for (int k = int(scene.inclusions.size()); k > 0; --k) {
+    const Inclusion &inclusion = scene.inclusions[k - 1];
+    if (std::any_of(inclusion.balls.begin(), inclusion.balls.end(), in_ball) ||
+        std::any_of(inclusion.boxes.begin(), inclusion.boxes.end(), in_box))
+      return k;
+  }
+  return 0;
+}
+
+/// Materials of the points: those of their regions over those that they have.
+template <int dim, typename Place>
+void assign_materials(const Scene &scene, int n, const Place &place, std::vector<int> &material)
+{
+  material.resize(n, 0);
+  for (int i = 0; i < n; ++i)
+    if (const int k = inclusion_at<dim>(scene, place(i)); k > 0)
+      material[i] = k;
+}
+
+/// Particles of other materials; none of them, nor a neighbour, may lie in an overlap.
+template <int dim>
+void set_materials(const Scene &scene, std::optional<packings::Seeds<dim>> &seeds,
+                   packings::Packing<dim> &packing, core::Log &log)
+{
+  if (scene.inclusions.empty()) {
+    if (std::count(packing.material.begin(), packing.material.end(), 0) !=
+        long(packing.material.size()))
+      throw core::KeyedError("/discrete_zone/packing_file",
+                             scene.zone.packing_file + " names materials other than 0",
+                             "the scene has no inclusions", "add them to /inclusions");
+    packing.material.clear();
+    return;
+  }
+  const auto centre = [&](int i) { return get(packing.centre, i); };
+  assign_materials<dim>(scene, packing.size(), centre, packing.material);
+  if (seeds)
+    assign_materials<dim>(
+        scene, seeds->size(), [&](int i) { return seeds->centre[i]; }, seeds->material);
+  const bool coupled = scene.far_field && scene.zone.extent == DiscreteZone::Extent::box;
+  const double keep_off =
+      coupled ? scene.coupling.overlap_cells * scene.far_field->cell_size + 2 * scene.zone.spacing
+              : 0;
+  const auto zone = zone_shape<dim>(scene);
+  std::vector<long> number(scene.inclusions.size() + 1, 0);
+  for (int i = 0; i < packing.size(); ++i) {
+    const int k = packing.material[i];
+    if (k >= int(number.size()))
+      throw core::KeyedError(
+          "/discrete_zone/packing_file",
+          fmt::format("material {} of {} is no inclusion", k, scene.zone.packing_file),
+          fmt::format("/inclusions has {}", scene.inclusions.size()),
+          "add inclusions, or give the particles another material");
+    ++number[k];
+    if (k > 0 && coupled && zone.distance(centre(i)) < keep_off)
+      throw core::InputError(fmt::format(
+          "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m: "
+          "the "
+          "overlap is of /material alone; widen the discrete zone or move the inclusion",
+          k - 1, centre(i)[0], centre(i)[1]));
+  }
+  for (std::size_t k = 1; k < number.size(); ++k) {
+    require(
+        number[k] > 0,
+        fmt::format("/inclusions/{}: no particle has its centre there; enlarge or move it", k - 1));
+    log.info("inclusion {}: {} particles", k, number[k]);
+  }
+}
+} // namespace
+
+template <int dim>
+PackedZone<dim> make_packing(const Scene &scene, core::Log &log)
+{
+  PackedZone<dim> zone;
+  if (!scene.zone.is_irregular())
+    zone.packing = packings::make_lattice_packing<dim>(lattice_of<dim>(scene));
+  else {
+    auto irregular = irregular_packing<dim>(scene);
+    if (irregular.n_healed > 0)
+      log.info("{} radii made smaller, lest a neighbour's cell lose its centre",
+               irregular.n_healed);
+    zone.n_healed = irregular.n_healed;
+    zone.seeds = std::move(irregular.seeds);
+    zone.packing = std::move(irregular.packing);
+  }
+  set_materials(scene, zone.seeds, zone.packing, log);
+  return zone;
+}
+
+template packings::LatticeParameters<2> lattice_of(const Scene &);
+template packings::LatticeParameters<3> lattice_of(const Scene &);
+template packings::RandomParameters<2> random_packing_of(const Scene &);
+template packings::RandomParameters<3> random_packing_of(const Scene &);
+template PackedZone<2> make_packing(const Scene &, core::Log &);
+template PackedZone<3> make_packing(const Scene &, core::Log &);
+} // namespace ligament::program

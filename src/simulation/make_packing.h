@@ -1,0 +1,44 @@
+// The packing of the discrete zone from its scene.
+#pragma once
+
+#include "core/log.h"
+#include "packings/lattice_packing.h"
+#include "packings/random_packing.h"
+#include "src/scene/scene.h"
+
+#include <optional>
+
+namespace ligament::program
+{
+template <int dim>
+struct PackedZone
+{
+  packings::Packing<dim> packing;
+  std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
+  std::optional<int> n_healed;               // likewise: radii made smaller
+};
+
+/// With the materials of its particles, and the cracks cut. Throws core::InputError where the scene
+/// can't be built.
+template <int dim>
+PackedZone<dim> make_packing(const Scene &scene, core::Log &log);
+
+/// What a packing of the scene's kind is made from.
+template <int dim>
+packings::LatticeParameters<dim> lattice_of(const Scene &scene);
+template <int dim>
+packings::RandomParameters<dim> random_packing_of(const Scene &scene);
+
+/// m^3, of the whole cells of the packing.
+double mean_cell_volume(const Scene &scene);
+
+/// The first `dim` components.
+template <int dim>
+Vector<dim> to_vector(const Point &p)
+{
+  Vector<dim> v;
+  for (int c = 0; c < dim; ++c)
+    v[c] = p[c];
+  return v;
+}
+} // namespace ligament::program
