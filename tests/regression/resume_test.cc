@@ -62,9 +62,10 @@ std::string newest_checkpoint(const std::string &run)
 std::map<std::string, std::string> results(const std::string &run)
 {
   std::map<std::string, std::string> files;
-  for (const char *name : {"history.csv", "broken_bonds.csv", "cut_faces.csv", "fields.pvd",
-                           "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
-    files[name] = file_text(run + "/" + name);
+  for (const char *name : {"history.csv", "broken_bonds.csv", "cut_faces.csv", "packing.csv",
+                           "fields.pvd", "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
+    if (fs::exists(run + "/" + name))
+      files[name] = file_text(run + "/" + name);
   for (const auto &entry : fs::directory_iterator(run + "/fields"))
     files["fields/" + entry.path().filename().string()] = file_text(entry.path());
   files["body.bin"] = file_text(newest_checkpoint(run) + "/body.bin");
@@ -117,9 +118,9 @@ protected:
   }
 
   /// A run that ended by SIGTERM with some checkpoints, in the middle of breaking.
-  static void make_half(const std::string &run)
+  static void make_half(const std::string &run, const std::string &overrides = "")
   {
-    Process process("exec " + program + " run torn.json -o " + run);
+    Process process("exec " + program + " run torn.json -o " + run + overrides);
     ASSERT_TRUE(eventually(
         [&] { return newest_checkpoint(run) >= run + "/checkpoints/checkpoint_000004"; }));
     process.send(SIGTERM);
@@ -186,11 +187,13 @@ TEST_F(Resume, SignalsLeaveACheckpoint)
     process.send(signal);
     EXPECT_EQ(process.wait().code, 128 + signal);
     EXPECT_FALSE(newest_checkpoint(run).empty());
-    const Outcome outcome = ligament("resume " + run + " --json");
-    EXPECT_EQ(outcome.code, 0) << outcome.errors;
-    EXPECT_EQ(outcome.json()["status"], "done");
-    expect_same(run, "whole");
+    EXPECT_EQ(file_json(run + "/run.json")["status"], "interrupted");
   }
+  const std::string run = "signal_" + std::to_string(SIGHUP);
+  const Outcome outcome = ligament("resume " + run + " --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.json()["status"], "done");
+  expect_same(run, "whole");
 }
 
 TEST_F(Resume, AnEndOfTheWallTimeLeavesACheckpoint)
@@ -298,6 +301,40 @@ TEST_F(Resume, ARunCanBeProlonged)
   const auto outcome = ligament("resume first --set /time/duration=400");
   EXPECT_EQ(outcome.code, 0) << outcome.errors;
   expect_same("first", "whole");
+}
+
+/// What bodies and loops may be made of, in overrides of the scene.
+const std::vector<std::pair<std::string, std::string>> other_scenes = {
+    {"random", " --set /discrete_zone/packing=random --set /discrete_zone/relaxation_sweeps=4 "},
+    {"file", " --set /discrete_zone/packing=file --set /discrete_zone/packing_file=packing.csv "},
+    {"damped", " --set /damping/kinetic=true --set /coupling/step_ratio=4 "},
+    {"resting", " --set /time/rest_threshold=1e-5 --set /far_field=none --set /damping/local=0.2 "},
+    {"mesh", " --set /discrete_zone=none --set '/specimen/cracks=[]' --set /damping/mass=1e-3 "
+             "--set /time/duration=5000 "},
+    {"weighted", " --set /coupling/scheme=acceleration --set /coupling/step_ratio=1 "},
+    {"cube", " --set /dimension=3 --set '/specimen={\"size\": [10, 30, 10]}' --set /far_field=none "
+             "--set '/discrete_zone={\"extent\": \"all\", \"packing\": \"fcc\", \"spacing\": 1}' "
+             "--set '/loads=[{\"boundary\": \"top\", \"velocity\": [null, 2e-3, null]}, "
+             "{\"boundary\": \"bottom\", \"velocity\": [null, -2e-3, null]}]' "
+             "--set /time/duration=60 "}};
+
+TEST_F(Resume, SlowOtherScenesGoOnAsWell)
+{
+  for (const auto &[name, overrides] : other_scenes) {
+    SCOPED_TRACE(name);
+    const auto outcome = ligament("run torn.json -o " + name + "_whole" + overrides);
+    ASSERT_EQ(outcome.code, 0) << outcome.errors;
+    if (name == "random")
+      fs::copy("random_whole/packing.csv", "packing.csv", fs::copy_options::overwrite_existing);
+    if (name != "mesh") {
+      EXPECT_GE(file_json(name + "_whole/run.json")["broken_bonds"], 5);
+    }
+    make_half(name, overrides);
+    fs::rename(name, "moved_" + name); // nothing depends on the place
+    const Outcome more = ligament("resume moved_" + name);
+    EXPECT_EQ(more.code, 0) << more.errors;
+    expect_same("moved_" + name, name + "_whole");
+  }
 }
 
 /// The disk below the checkpoints of a run, which begins to refuse at a call.
