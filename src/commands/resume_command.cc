@@ -24,6 +24,11 @@ Checkpoint newest_checkpoint(const RunFolder &folder)
     core::tell(stderr, fmt::format("warning: a checkpoint cannot be used: {}\n", reason));
   core::require(found.checkpoint.has_value(),
                 folder.path + ": there is no checkpoint to go on from; repeat the run");
+  if (const std::string &lost = found.checkpoint->reference_lost; !lost.empty())
+    core::tell(stderr,
+               fmt::format("warning: what the set-up had found is lost, and is sought again: "
+                           "{}\n",
+                           lost));
   return std::move(*found.checkpoint);
 }
 

@@ -31,6 +31,16 @@ void for_each_field(Manifest &m, Visit &&visit)
   visit("positions", m.positions);
 }
 
+Json json_of(const core::StateFileSum &sum)
+{
+  return {{"bytes", sum.bytes}, {"checksum", sum.checksum}};
+}
+
+core::StateFileSum sum_of(const Json &json)
+{
+  return {json.at("bytes").get<std::int64_t>(), json.at("checksum").get<std::int64_t>()};
+}
+
 std::string text_of(const Json &json)
 {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -53,7 +63,8 @@ std::string manifest_text(const CheckpointManifest &manifest)
     timing.push_back({{"name", row.name}, {"seconds", row.seconds}, {"calls", row.calls}});
   Json &states = json["states"] = Json::object();
   for (const auto &[name, sum] : manifest.states)
-    states[name] = {{"bytes", sum.bytes}, {"checksum", sum.checksum}};
+    states[name] = json_of(sum);
+  json["reference"] = manifest.reference ? json_of(*manifest.reference) : Json();
   json["checksum"] = checksum(json);
   return text_of(json);
 }
@@ -77,8 +88,9 @@ CheckpointManifest parse_manifest(const std::string &text)
       manifest.timing.push_back({row.at("name").get<std::string>(), row.at("seconds").get<double>(),
                                  row.at("calls").get<std::int64_t>()});
     for (const auto &[name, sum] : json.at("states").items())
-      manifest.states[name] = {sum.at("bytes").get<std::int64_t>(),
-                               sum.at("checksum").get<std::int64_t>()};
+      manifest.states[name] = sum_of(sum);
+    if (const Json &reference = json.at("reference"); !reference.is_null())
+      manifest.reference = sum_of(reference);
   } catch (const Json::exception &error) {
     throw core::InputError(std::string("damaged: ") + error.what());
   }

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct CheckpointManifest
   /// written later.
   std::map<std::string, std::int64_t> positions;
   std::map<std::string, core::StateFileSum> states; // by name
+  std::optional<core::StateFileSum> reference;      // see Checkpoints::write_reference
 };
 
 /// Its file, with a checksum of all that it says.

@@ -14,7 +14,8 @@ namespace ligament::program
 {
 namespace
 {
-const std::string prefix = "checkpoint_", manifest_file = "manifest.json", unfinished = ".tmp";
+const std::string reference_name = "reference", prefix = "checkpoint_",
+                  manifest_file = "manifest.json", unfinished = ".tmp";
 
 /// Of a name checkpoint_NNNNNN; 0: it is none.
 std::int64_t number_of(const std::string &name)
@@ -76,11 +77,24 @@ void Checkpoints::clean() const
   }
 }
 
-void Checkpoints::write(CheckpointManifest manifest,
-                        const std::map<std::string, core::State> &states) const
+void Checkpoints::make() const
 {
   if (!is_there(folder_))
     core::make_new_folder(folder_);
+}
+
+core::StateFileSum Checkpoints::write_reference(const core::State &state) const
+{
+  make();
+  const core::StateFileSum sum = core::write_state_file(state_file(folder_, reference_name), state);
+  core::sync_folder(folder_);
+  return sum;
+}
+
+void Checkpoints::write(CheckpointManifest manifest,
+                        const std::map<std::string, core::State> &states) const
+{
+  make();
   clean();
   const std::vector<std::int64_t> before = numbers();
   manifest.number = before.empty() ? 1 : before.back() + 1;
@@ -121,6 +135,13 @@ Checkpoint Checkpoints::read(std::int64_t number) const
                 fmt::format("{}: of checkpoint {}, not of this one", file, manifest.number));
   for (const auto &[name, sum] : manifest.states)
     checkpoint.states[name] = core::read_state_file(state_file(folder, name), sum);
+  if (manifest.reference)
+    try {
+      checkpoint.reference =
+          core::read_state_file(state_file(folder_, reference_name), manifest.reference);
+    } catch (const core::InputError &error) {
+      checkpoint.reference_lost = error.what();
+    }
   return checkpoint;
 }
 

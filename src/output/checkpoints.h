@@ -15,6 +15,8 @@ struct Checkpoint
 {
   CheckpointManifest manifest;
   std::map<std::string, core::State> states; // by name
+  core::State reference;                     // empty: there is none, or it is lost
+  std::string reference_lost;                // why
 };
 
 /// What was found: the newest one that can be used, and why newer ones cannot.
@@ -37,6 +39,10 @@ public:
   /// newest one before is untouched then.
   void write(CheckpointManifest manifest, const std::map<std::string, core::State> &states) const;
 
+  /// What all checkpoints of a run have in common, written once beside them; its sum belongs into
+  /// their manifests. It is what a set-up can find again: a checkpoint can do without.
+  core::StateFileSum write_reference(const core::State &state) const;
+
   /// Verifies before it answers; the folder stays as it is. Does not throw for what is damaged.
   FoundCheckpoint newest_good() const;
 
@@ -44,6 +50,7 @@ public:
   void remove_newer_than(std::int64_t number) const;
 
 private:
+  void make() const;
   std::string path(std::int64_t number) const;
   /// Of all that have left .tmp behind, ascending.
   std::vector<std::int64_t> numbers() const;

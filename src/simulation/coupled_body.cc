@@ -134,8 +134,8 @@ coupling::OverlapParameters<dim> overlap_of(const Scene &scene)
 
 /// Weighs the zone, which changes its stable step.
 template <int dim>
-void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
-                          core::Timers &timers)
+void make_bridging_domain(const Scene &scene, Reference &reference, CoupledBody<dim> &body,
+                          core::Log &log, core::Timers &timers)
 {
   require(
       scene.coupling.step_ratio == 1,
@@ -157,7 +157,9 @@ void make_bridging_domain(const Scene &scene, CoupledBody<dim> &body, core::Log 
   body.force()->reset_work(); // of the way to the reference strain and back
   body.far->reset_work();
   const double plain = body.dt_zone;
-  body.dt_zone = std::min(body.force()->stable_step(body.zone->state), coupler->near_stable_step());
+  body.dt_zone = reference.value("weighted_stable_step", [&] {
+    return std::min(body.force()->stable_step(body.zone->state), coupler->near_stable_step());
+  });
   log.info("overlap: {} particles, {} nodes, {} multipliers; stable step {:.4g} s with energy "
            "weights, {:.3f} of the plain one",
            coupler->overlap()->members.size(), coupler->overlap()->n_nodes(),
@@ -210,7 +212,7 @@ std::vector<SkippedPart> skipped_parts(const CoupledBody<dim> &body)
 
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
-                           const ForceMaker<dim> &make_force)
+                           Reference &reference, const ForceMaker<dim> &make_force)
 {
   CoupledBody<dim> body;
   body.upper = to_vector<dim>(scene.specimen.size) / 2;
@@ -224,7 +226,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   if (scene.zone.extent != DiscreteZone::Extent::none)
     core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
-                 [&] { make_zone(scene, make_force, body, log); });
+                 [&] { make_zone(scene, make_force, reference, body, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
     core::at_key("/far_field", "change cell_size, levels or the zone",
                  [&] { make_far(scene, body, log); });
@@ -234,7 +236,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
   core::at_key("/coupling", "change overlap_cells, cell_size or the zone", [&] {
     if (coupled && coupling::is_energy_weighted(scene.coupling.scheme))
-      make_bridging_domain(scene, body, log, timers);
+      make_bridging_domain(scene, reference, body, log, timers);
     choose_step(scene, body);
     if (!body.coupler)
       make_fine_scale_split(scene, body, log, timers);
@@ -243,8 +245,8 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   return body;
 }
 
-template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &,
+template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &, Reference &,
                                      const ForceMaker<2> &);
-template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &,
+template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &, Reference &,
                                      const ForceMaker<3> &);
 } // namespace ligament::program

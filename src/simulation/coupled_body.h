@@ -41,8 +41,19 @@ struct CoupledBody
   coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
 };
 
-/// Throws core::InputError where the scene can't be built: reason and remedy in the message.
+/// Throws core::InputError where the scene can't be built: reason and remedy in the message. What
+/// `reference` knows is not sought again; what it doesn't is added.
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
+                           Reference &reference,
                            const ForceMaker<dim> &make_force = make_many_body_force<dim>);
+
+/// Where nothing is known.
+template <int dim>
+CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
+                           const ForceMaker<dim> &make_force = make_many_body_force<dim>)
+{
+  Reference reference;
+  return make_body(scene, log, timers, reference, make_force);
+}
 } // namespace ligament::program

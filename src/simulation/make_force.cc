@@ -70,7 +70,10 @@ double strength_of(const Scene &scene, const MaterialParameters &material, const
   const auto &p = material.fracture;
   double strength = p.strength.value_or(0);
   if (!p.strength) {
-    const double c = toughness_factor<dim>(scene, material_of(material, scene.plane));
+    const auto known = figures.find("toughness_factor" + name);
+    const double c = known != figures.end()
+                         ? known->second.value
+                         : toughness_factor<dim>(scene, material_of(material, scene.plane));
     strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
     figures["toughness_factor" + name] = {c, ""};
     log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, strength,

@@ -15,8 +15,9 @@
 namespace ligament::program
 {
 /// Makes the force of a zone from its packing; adds what it finds on the way (a strength) to the
-/// figures of the run. The solid that it stands for is that of elastic_constants_of(). Throws
-/// core::InputError where the scene can't be built.
+/// figures of the run, and takes a "toughness_factor" that is there as found. The solid that it
+/// stands for is that of elastic_constants_of(). Throws core::InputError where the scene can't be
+/// built.
 template <int dim>
 using ForceMaker = std::function<std::unique_ptr<particles::ParticleForce<dim>>(
     const Scene &, packings::Packing<dim>, const std::vector<core::BoundaryLoad<dim>> &loads,

@@ -245,13 +245,14 @@ void set_materials(const Scene &scene, std::optional<packings::Seeds<dim>> &seed
 } // namespace
 
 template <int dim>
-PackedZone<dim> make_packing(const Scene &scene, core::Log &log)
+PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log)
 {
   PackedZone<dim> zone;
   if (!scene.zone.is_irregular())
     zone.packing = packings::make_lattice_packing<dim>(lattice_of<dim>(scene));
   else {
-    auto irregular = irregular_packing<dim>(scene);
+    auto irregular = reference.packing<dim>(random_packing_of<dim>(scene),
+                                            [&] { return irregular_packing<dim>(scene); });
     if (irregular.n_healed > 0)
       log.info("{} radii made smaller, lest a neighbour's cell lose its centre",
                irregular.n_healed);
@@ -267,6 +268,6 @@ template packings::LatticeParameters<2> lattice_of(const Scene &);
 template packings::LatticeParameters<3> lattice_of(const Scene &);
 template packings::RandomParameters<2> random_packing_of(const Scene &);
 template packings::RandomParameters<3> random_packing_of(const Scene &);
-template PackedZone<2> make_packing(const Scene &, core::Log &);
-template PackedZone<3> make_packing(const Scene &, core::Log &);
+template PackedZone<2> make_packing(const Scene &, Reference &, core::Log &);
+template PackedZone<3> make_packing(const Scene &, Reference &, core::Log &);
 } // namespace ligament::program

@@ -5,6 +5,7 @@
 #include "packings/lattice_packing.h"
 #include "packings/random_packing.h"
 #include "src/scene/scene.h"
+#include "src/simulation/reference.h"
 
 #include <optional>
 
@@ -21,7 +22,7 @@ struct PackedZone
 /// With the materials of its particles, and the cracks cut. Throws core::InputError where the scene
 /// can't be built.
 template <int dim>
-PackedZone<dim> make_packing(const Scene &scene, core::Log &log);
+PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log);
 
 /// What a packing of the scene's kind is made from.
 template <int dim>

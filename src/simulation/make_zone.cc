@@ -12,6 +12,9 @@ namespace ligament::program
 {
 namespace
 {
+/// Figures that take a calibration begin so.
+const std::string calibrated = "toughness_factor";
+
 template <int dim>
 BrokenBond cut_face(const packings::Packing<dim> &packing, const packings::Face<dim> &face,
                     double thickness)
@@ -41,10 +44,10 @@ void require_same_solid(const particles::ElasticConstants<dim> &force,
 } // namespace
 
 template <int dim>
-void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, CoupledBody<dim> &body,
-               core::Log &log)
+void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
+               CoupledBody<dim> &body, core::Log &log)
 {
-  auto [packing, seeds, n_healed] = make_packing<dim>(scene, log);
+  auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
   body.seeds = std::move(seeds);
   if (n_healed)
     body.figures["healed_radii"] = {double(*n_healed), ""};
@@ -60,15 +63,23 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, CoupledBod
     if (face.cracked)
       body.cut_faces.push_back(cut_face<dim>(packing, face, body.thickness));
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
+  for (const std::string &name : reference.names(calibrated))
+    body.figures[name] = {reference.value(name, {}), ""};
   auto force = make_force(scene, std::move(packing), body.loads, body.figures, log);
+  for (const auto &[name, figure] : body.figures)
+    if (name.compare(0, calibrated.size(), calibrated) == 0)
+      reference.value(name, [&value = figure.value] { return value; });
   require_same_solid(force->elastic_constants(), constants);
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);
-  body.dt_zone = body.force()->stable_step(body.zone->state);
+  body.dt_zone =
+      reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
            body.zone->state.n_owned, body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
 }
 
-template void make_zone(const Scene &, const ForceMaker<2> &, CoupledBody<2> &, core::Log &);
-template void make_zone(const Scene &, const ForceMaker<3> &, CoupledBody<3> &, core::Log &);
+template void make_zone(const Scene &, const ForceMaker<2> &, Reference &, CoupledBody<2> &,
+                        core::Log &);
+template void make_zone(const Scene &, const ForceMaker<3> &, Reference &, CoupledBody<3> &,
+                        core::Log &);
 } // namespace ligament::program

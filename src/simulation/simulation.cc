@@ -25,8 +25,9 @@ template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
                             bool draws_pictures, const Checkpoint *from)
     : scene_(scene), folder_(folder), log_(folder.log(), progress),
-      body_(make_body<dim>(scene_, log_, timers_)), regime_(scene_.coupling.regime, body_),
-      damping_(scene_.damping), clock_(clock_of()),
+      reference_(from ? from->reference : core::State()),
+      body_(make_body<dim>(scene_, log_, timers_, reference_)),
+      regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
       recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures,
                 from != nullptr),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
@@ -58,6 +59,8 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
   started_ = manifest.started;
+  if (checkpoint.reference_lost.empty())
+    reference_sum_ = manifest.reference;
   log_.info("goes on from checkpoint {}, step {} of {}, {:.4g} s", manifest.number, manifest.step,
             clock_.n_steps, manifest.time);
   log_.set_warnings(manifest.warnings);
@@ -88,6 +91,9 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   manifest.commit = core::commit();
   manifest.instructions = particles::instruction_set();
   manifest.scene = resolved_;
+  if (!reference_sum_)
+    reference_sum_ = checkpoints.write_reference(reference_.tables());
+  manifest.reference = reference_sum_;
   core::State run;
   regime_.save(run);
   damping_.save(run);

@@ -70,6 +70,7 @@ private:
   RunFolder folder_;
   core::Log log_;
   core::Timers timers_;
+  Reference reference_; // of the body
   CoupledBody<dim> body_;
   RegimeControl<dim> regime_;
   BodyDamping<dim> damping_;
@@ -77,8 +78,9 @@ private:
   Recorder<dim> recorder_;
 
   std::optional<CheckpointKeeper> keeper_;
-  nlohmann::ordered_json resolved_; // the scene, for checkpoints
-  std::string started_;             // date and time
+  std::optional<core::StateFileSum> reference_sum_; // once it is on the disk
+  nlohmann::ordered_json resolved_;                 // the scene, for checkpoints
+  std::string started_;                             // date and time
   double setup_seconds_ = 0;
   std::string asked_by_; // who asked for the end; empty: nobody
 };

@@ -128,6 +128,27 @@ TEST_F(CheckpointsTest, NewerOnesCanBeGivenUp)
   EXPECT_EQ(core::folder_entries(folder), (Names{"checkpoint_000002", "checkpoint_000003"}));
 }
 
+TEST_F(CheckpointsTest, DoWithoutALostReference)
+{
+  const core::State reference = sample_states(9).at("run");
+  CheckpointManifest manifest;
+  manifest.reference = checkpoints.write_reference(reference);
+  checkpoints.write(manifest, sample_states(1));
+  checkpoints.write(manifest, sample_states(1));
+  checkpoints.write(manifest, sample_states(1));
+  auto found = checkpoints.newest_good();
+  ASSERT_TRUE(found.checkpoint);
+  EXPECT_EQ(found.checkpoint->reference, reference);
+  EXPECT_EQ(found.checkpoint->reference_lost, "");
+  checkpoints.write_reference(sample_states(8).at("run")); // another one
+  found = checkpoints.newest_good();
+  ASSERT_TRUE(found.checkpoint && found.passed_over.empty());
+  EXPECT_EQ(found.checkpoint->states, sample_states(1));
+  EXPECT_TRUE(found.checkpoint->reference.empty());
+  EXPECT_NE(found.checkpoint->reference_lost.find("checkpoints/reference.bin: "),
+            std::string::npos);
+}
+
 /// What may happen to a file between two runs.
 struct Damage
 {

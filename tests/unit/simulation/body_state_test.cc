@@ -57,7 +57,7 @@ public:
     return values;
   }
   core::State state() const { return take_state(body_); }
-  long n_broken() const { return body_.force ? long(body_.force->broken_bonds().size()) : 0; }
+  long n_broken() const { return body_.force() ? long(body_.force()->broken_bonds().size()) : 0; }
   const CoupledBody<dim> &body() const { return body_; }
   double time() const { return now_.time; }
 
@@ -71,9 +71,9 @@ private:
   {
     const double strain = scene_.time.rest_threshold;
     body_.zone->let_rest(particles::RestLimits::of_strain(
-        strain, body_.spacing, body_.force->elastic_constants().wave_speed_p));
-    if (body_.split)
-      body_.split->let_rest(body_.bodies(), strain);
+        strain, body_.spacing, body_.force()->elastic_constants().wave_speed_p));
+    if (body_.coupler->can_rest())
+      body_.coupler->let_rest(body_.bodies(), strain);
   }
   void build_anew()
   {
@@ -195,7 +195,7 @@ TEST(BodyState, FragmentsThatHitAgainGoOnToTheLastBit)
                          R"(/material/fracture={"criterion": "maximum_tension", "strength": 2e-3})",
                          R"(/loads=[{"boundary": "top", "velocity": [null, -0.05], "ramp": 10},
                   {"boundary": "bottom", "velocity": [null, 0.05], "ramp": 10}])"},
-                        60, 300, 100);
+                        60, 160, 100);
 }
 
 TEST(BodyState, EveryRegimeGoesOnToTheLastBit)
