@@ -37,7 +37,7 @@ const std::string torn = R"({
   ],
   "time": {"duration": 400},
   "output": {
-    "history_interval": 0.5, "field_interval": 50, "progress_interval": 1000,
+    "history_interval": 1.7, "field_interval": 50, "progress_interval": 1000,
     "checkpoint_interval": 0.01
   }
 })";
