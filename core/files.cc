@@ -99,12 +99,17 @@ void OutputFile::flush()
   buffer_.clear();
 }
 
-void OutputFile::commit()
+void OutputFile::sync()
 {
   flush();
   // Some file systems report a full disk only here. Devices cannot be synchronised (EINVAL).
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
     fail("write");
+}
+
+void OutputFile::commit()
+{
+  sync();
   if (::close(std::exchange(descriptor_, -1)) != 0)
     fail("close");
   if (renames_ && std::rename(written_path_.c_str(), path_.c_str()) != 0)
@@ -116,6 +121,17 @@ void write_file(const std::string &path, std::string_view text)
   OutputFile file(path);
   file.write(text);
   file.commit();
+}
+
+void cut_file(const std::string &path, std::int64_t bytes)
+{
+  struct stat status;
+  require(::stat(path.c_str(), &status) == 0,
+          fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+  require(status.st_size >= bytes, fmt::format("{} has {} bytes where {} were written", path,
+                                               std::int64_t(status.st_size), bytes));
+  if (status.st_size > bytes && ::truncate(path.c_str(), bytes) != 0)
+    throw EnvironmentError(fmt::format("cannot cut {}: {}", path, std::strerror(errno)));
 }
 
 std::string read_file(const std::string &path)

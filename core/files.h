@@ -1,6 +1,7 @@
 // Files whose writers notice a full disk: every byte is accounted for, a finished file is complete.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,8 @@ public:
   void write(std::string_view text);
   /// Hands the buffer to the system.
   void flush();
+  /// Flushes and waits for the disk.
+  void sync();
   /// Flushes, waits for the disk, closes and puts the file in its place.
   void commit();
 
@@ -48,6 +51,9 @@ private:
 
 /// Replaces the whole file at once.
 void write_file(const std::string &path, std::string_view text);
+
+/// Takes off what follows the first bytes. InputError when the file has fewer.
+void cut_file(const std::string &path, std::int64_t bytes);
 
 /// The whole file; EnvironmentError when it cannot be read.
 std::string read_file(const std::string &path);

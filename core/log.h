@@ -25,6 +25,8 @@ public:
   void warning(const std::string &message);
   /// All warnings so far, in their order.
   const std::vector<std::string> &warnings() const { return warnings_; }
+  /// For a run that goes on: those of before in place of what its set-up has said again.
+  void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
 
   template <typename... Args>
   void info(fmt::format_string<Args...> format, Args &&...args)

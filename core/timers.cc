@@ -53,6 +53,17 @@ Timers::Scope::~Scope()
   timers_.switch_to(outer_);
 }
 
+void Timers::add(const std::vector<Row> &rows)
+{
+  for (const Row &row : rows) {
+    Row &mine = rows_[row.name == rows_[0].name ? 0 : section(row.name)];
+    mine.seconds += row.seconds;
+    mine.calls += row.calls;
+    start_ -=
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(row.seconds));
+  }
+}
+
 std::vector<Timers::Row> Timers::rows() const
 {
   std::vector<Row> rows(rows_.begin() + 1, rows_.end());

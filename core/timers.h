@@ -43,6 +43,9 @@ public:
   /// `const auto timing = timers.scope(forces);`
   Scope scope(int section) { return Scope(*this, section); }
 
+  /// For a run that goes on: as if these had passed here, too.
+  void add(const std::vector<Row> &rows);
+
   /// All sections in the order in which they were made; time outside of all of them is the last
   /// row, "rest". The section that runs counts up to now.
   std::vector<Row> rows() const;

@@ -10,6 +10,9 @@ namespace ligament::program
 /// 0 done, 3 stopped by a guard.
 int run_command(const CommandLine &line, const ReadResult &input);
 
+/// Goes on with a run from its newest checkpoint, in its folder. As run_command.
+int resume_command(const CommandLine &line);
+
 /// Builds everything, steps for a moment to predict the run, prints the pre-flight card.
 int check_command(const CommandLine &line, const ReadResult &input);
 

@@ -24,6 +24,8 @@ int dispatch(const CommandLine &line, int, char **)
   require_one_rank(line.ranks);
   if (line.command == "verify")
     return verify_command(line);
+  if (line.command == "resume")
+    return resume_command(line);
   const ReadResult input = read_again(line);
   if (!input.scene)
     return refuse(line, line.scene, input.errors, input.warnings);

@@ -16,9 +16,8 @@ namespace ligament::program
 {
 namespace
 {
-void add_scene_options(CLI::App &app, CommandLine &line)
+void add_override_option(CLI::App &app, CommandLine &line)
 {
-  app.add_option("scene", line.scene, "scene file")->required()->type_name("SCENE");
   // One value per --set: what follows belongs to other options.
   app.add_option("--set", line.overrides, "replaces a value of the scene; may be repeated")
       ->type_name("/PATH=VALUE")
@@ -26,6 +25,20 @@ void add_scene_options(CLI::App &app, CommandLine &line)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
+}
+
+void add_wall_time_option(CLI::App &app, CommandLine &line)
+{
+  app.add_option("--wall-time", line.wall_time,
+                 "ends in time with a checkpoint, s of wall time; `ligament resume` goes on")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_scene_options(CLI::App &app, CommandLine &line)
+{
+  app.add_option("scene", line.scene, "scene file")->required()->type_name("SCENE");
+  add_override_option(app, line);
   app.add_option("--output,-o", line.output, "folder for the results")->type_name("DIR");
   app.add_option("-n", line.ranks, "number of ranks (only 1 so far)")->type_name("RANKS");
 }
@@ -39,6 +52,17 @@ void declare(CLI::App &app, CommandLine &line)
 
   CLI::App &run = *app.add_subcommand("run", "computes a scene");
   add_scene_options(run, line);
+  add_wall_time_option(run, line);
+
+  CLI::App &resume = *app.add_subcommand("resume", "goes on with a run from its newest checkpoint");
+  resume.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
+  resume
+      .add_option("--scene", line.scene,
+                  "scene file in place of the run's own; only a longer duration and what is "
+                  "written may differ")
+      ->type_name("SCENE");
+  add_override_option(resume, line);
+  add_wall_time_option(resume, line);
 
   CLI::App &check =
       *app.add_subcommand("check", "everything but time stepping: errors, sizes, steps, cost");

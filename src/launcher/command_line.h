@@ -11,10 +11,10 @@ namespace ligament::program
 {
 struct CommandLine
 {
-  std::string command; // run check compare sweep explain report verify
+  std::string command; // run resume check compare sweep explain report verify
   bool json = false;   // end with one JSON object on the last line of standard output
 
-  std::string scene;                  // run, check: file
+  std::string scene;                  // run, check: file; resume: empty: that of the run
   std::vector<std::string> overrides; // run, check: "/path=value", in their order
   std::string output;                 // folder for what is written; empty: chosen from the name
   int ranks = 1;                      // run, check
@@ -22,16 +22,17 @@ struct CommandLine
   std::string study;                  // sweep: file
   int jobs = 1;                       // sweep: runs at the same time
   bool dry_run = false;               // sweep: list the cases only
-  std::string run, reference;         // compare, report: folders (the reference may be a curve)
-  std::vector<std::string> fields;    // report: of its pictures; empty: those of the run
-  std::string key;                    // explain; empty: all keys
-  bool markdown = false;              // explain: the page of the manual
-  bool schema = false;                // explain: the JSON schema
-  bool explain_study = false;         // explain: of study files
-  std::string verify_case;            // verify; empty: all
-  bool full = false;                  // verify: also the slow ones; check: builds whatever its size
-  bool stability = false;             // verify: those of stability under stress
-  std::string seeds;                  // verify: of random scenes, into `output`; "17" or "1:1000"
+  double wall_time = 0;               // run, resume: s until it ends; 0: no limit
+  std::string run, reference; // resume, compare, report: folders (the reference may be a curve)
+  std::vector<std::string> fields; // report: of its pictures; empty: those of the run
+  std::string key;                 // explain; empty: all keys
+  bool markdown = false;           // explain: the page of the manual
+  bool schema = false;             // explain: the JSON schema
+  bool explain_study = false;      // explain: of study files
+  std::string verify_case;         // verify; empty: all
+  bool full = false;               // verify: also the slow ones; check: builds whatever its size
+  bool stability = false;          // verify: those of stability under stress
+  std::string seeds;               // verify: of random scenes, into `output`; "17" or "1:1000"
 
   /// Set when nothing is left to do: help and version were printed, or a mistake (2).
   std::optional<int> exit_code;

@@ -107,7 +107,7 @@ int dispatch(const CommandLine &line, int argc, char **argv)
     return sweep_command(line);
   if (line.command == "run" || line.command == "check")
     return compute(line, argc, argv);
-  if (line.command == "verify") {
+  if (line.command == "verify" || line.command == "resume") {
     require_one_rank(line.ranks);
     start_solver(argc, argv);
   }

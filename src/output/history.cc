@@ -31,10 +31,13 @@ Table read_history(const RunFolder &folder, const RunRecord &record)
 }
 
 HistoryWriter::HistoryWriter(const std::string &path, std::vector<Column> columns,
-                             int rows_per_flush)
+                             int rows_per_flush, bool goes_on)
     : columns_(std::move(columns)), row_(columns_.size(), std::numeric_limits<double>::quiet_NaN()),
-      file_(path, core::OutputFile::Mode::stream), rows_per_flush_(rows_per_flush)
+      file_(path, goes_on ? core::OutputFile::Mode::append : core::OutputFile::Mode::stream),
+      rows_per_flush_(rows_per_flush)
 {
+  if (goes_on)
+    return;
   std::string names, units;
   for (const auto &column : columns_) {
     const char *separator = names.empty() ? "" : ",";

@@ -25,13 +25,17 @@ Table read_history(const RunFolder &folder, const RunRecord &record);
 class HistoryWriter
 {
 public:
-  HistoryWriter(const std::string &path, std::vector<Column> columns, int rows_per_flush = 50);
+  /// With `goes_on` behind the rows that are there.
+  HistoryWriter(const std::string &path, std::vector<Column> columns, int rows_per_flush = 50,
+                bool goes_on = false);
 
   /// InputError for a column that was not declared.
   void set(const std::string &name, double value);
   /// Writes the values set since the last row; the others are nan.
   void end_row();
   void flush() { file_.flush(); }
+  /// All rows are on the disk.
+  void sync() { file_.sync(); }
 
 private:
   std::vector<Column> columns_;

@@ -79,6 +79,21 @@ OpenRun::OpenRun(RunFolder folder, const RunRecord &first, std::FILE *messages)
   write_run_record(folder_.record(), first);
 }
 
+OpenRun::OpenRun(RunFolder folder) : folder_(std::move(folder))
+{
+  core::require(std::filesystem::is_directory(folder_.path) &&
+                    (folder_.holds_a_run() || std::filesystem::exists(folder_.checkpoints())),
+                folder_.path + " is not the output folder of a run");
+  lock_.emplace(folder_.path, "run");
+}
+
+void OpenRun::go_on(const RunRecord &first)
+{
+  folder_.create();
+  reserve_.emplace(folder_.record(), reserved_bytes);
+  write_run_record(folder_.record(), first);
+}
+
 void OpenRun::end(const std::string &status, const std::string &reason) noexcept
 {
   try {

@@ -20,6 +20,11 @@ public:
   /// core::EnvironmentError when a run is under way there or the disk refuses.
   OpenRun(RunFolder folder, const RunRecord &first, std::FILE *messages);
 
+  /// Locks the folder of an older run. Throws core::InputError where there is none.
+  explicit OpenRun(RunFolder folder);
+  /// The older run goes on: its record, or what is left of it, makes way for this one.
+  void go_on(const RunRecord &first);
+
   const RunFolder &folder() const { return folder_; }
 
   /// For a run that cannot say so itself: the record keeps its figures. Does not throw.

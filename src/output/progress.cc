@@ -11,7 +11,7 @@ namespace ligament::program
 {
 std::string progress_line(const ProgressState &s, double seconds, int dimension)
 {
-  const double rate = seconds > 0 ? double(s.step) / seconds : 0;
+  const double rate = seconds > 0 ? double(s.step - s.first_step) / seconds : 0;
   const double share = s.n_steps > 0 ? 100. * double(s.step) / double(s.n_steps) : 100;
   std::string line = fmt::format(
       "{:3.0f} %  step {}/{}  t {}  Ekin {}  Epot {}  work {}  resid {}  broken {}  "

@@ -11,6 +11,7 @@ namespace ligament::program
 struct ProgressState
 {
   std::int64_t step = 0, n_steps = 0;
+  std::int64_t first_step = 0; // of this process
   double time = 0;          // s
   double kinetic = 0;       // J, both models
   double potential = 0;     // J
@@ -20,7 +21,7 @@ struct ProgressState
   double crack_length = 0; // m (3D: m^2)
 };
 
-/// The line without its end; `seconds` of wall time have passed since the first step.
+/// The line without its end; `seconds` of wall time have passed since the process's first step.
 std::string progress_line(const ProgressState &state, double seconds, int dimension);
 
 /// Rewrites one line on a terminal, else prints one line per interval.

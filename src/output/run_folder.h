@@ -31,6 +31,7 @@ struct RunFolder
   std::string pvd() const { return path + "/fields.pvd"; }
   std::string fields() const { return path + "/fields"; }
   std::string pictures() const { return path + "/pictures"; }
+  std::string checkpoints() const { return path + "/checkpoints"; }
   std::string report() const { return path + "/report.html"; }
 
   /// Makes the folder with its subfolders; EnvironmentError when the disk refuses.

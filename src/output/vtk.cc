@@ -230,33 +230,70 @@ FieldSeries::FieldSeries(RunFolder folder, int dimension)
 {
 }
 
-StateFiles FieldSeries::files(const BodyState &state, const std::string &name)
+namespace
+{
+std::string number(std::size_t n)
+{
+  return fmt::format("{:04}", n);
+}
+
+std::string bonds_file(const std::string &name)
+{
+  return "fields/broken_bonds_" + name + ".vtp";
+}
+
+StateFiles files_of(const std::string &name, bool has_particles, bool has_cells)
 {
   StateFiles files;
-  if (state.particles.size() > 0)
+  if (has_particles)
     files.particles = "fields/particles_" + name + ".vtp";
-  if (state.cells.n_cells() > 0)
+  if (has_cells)
     files.cells = "fields/cells_" + name + ".vtu";
   return files;
+}
+} // namespace
+
+StateFiles FieldSeries::files(const BodyState &state, const std::string &name)
+{
+  return files_of(name, state.particles.size() > 0, state.cells.n_cells() > 0);
 }
 
 void FieldSeries::write(const BodyState &state)
 {
-  const std::string name = state.name.empty() ? fmt::format("{:04}", n_numbered_++) : state.name;
+  const std::string name = state.name.empty() ? number(times_.size()) : state.name;
   const StateFiles files = FieldSeries::files(state, name);
   if (!files.particles.empty()) {
     write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
-    add(state.time, 0, files.particles);
     // Also while nothing is broken: a part must exist at every time or at none.
-    const std::string bonds = "fields/broken_bonds_" + name + ".vtp";
-    write_broken_bonds_vtp(folder_.path + "/" + bonds, state.bonds, dimension_);
-    add(state.time, 2, bonds);
+    write_broken_bonds_vtp(folder_.path + "/" + bonds_file(name), state.bonds, dimension_);
   }
-  if (!files.cells.empty()) {
+  if (!files.cells.empty())
     write_cells_vtu(folder_.path + "/" + files.cells, state.cells);
-    add(state.time, 1, files.cells);
-  }
+  if (state.name.empty())
+    times_.push_back(state.time);
+  add(state.time, name, files);
   write_collection();
+}
+
+void FieldSeries::go_on(const std::vector<double> &times, bool has_particles, bool has_cells)
+{
+  for (const double time : times) {
+    const std::string name = number(times_.size());
+    add(time, name, files_of(name, has_particles, has_cells));
+    times_.push_back(time);
+  }
+  if (!times.empty())
+    write_collection();
+}
+
+void FieldSeries::add(double time, const std::string &name, const StateFiles &files)
+{
+  if (!files.particles.empty()) {
+    add(time, 0, files.particles);
+    add(time, 2, bonds_file(name));
+  }
+  if (!files.cells.empty())
+    add(time, 1, files.cells);
 }
 
 void FieldSeries::add(double time, int part, const std::string &file)

@@ -38,6 +38,12 @@ public:
   /// counts.
   void write(const BodyState &state);
 
+  /// Of the numbered states so far, in their order.
+  const std::vector<double> &times() const { return times_; }
+  /// Goes on behind the states of these times, whose files are there with these parts. Not to be
+  /// called behind write().
+  void go_on(const std::vector<double> &times, bool has_particles, bool has_cells);
+
   static StateFiles files(const BodyState &state, const std::string &name);
 
 private:
@@ -48,11 +54,13 @@ private:
     std::string file; // relative to the .pvd
   };
   void add(double time, int part, const std::string &file);
+  /// The entries of a state.
+  void add(double time, const std::string &name, const StateFiles &files);
   void write_collection() const;
 
   RunFolder folder_;
   int dimension_;
-  int n_numbered_ = 0;
+  std::vector<double> times_;  // s, of numbered states
   std::vector<Entry> entries_; // in the order of their times
 };
 } // namespace ligament::program

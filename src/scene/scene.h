@@ -182,6 +182,7 @@ struct OutputParameters
   double field_interval = infinity;        // s; infinite: never
   double history_interval = 0;             // s; 0: duration/2000
   double progress_interval = 2;            // s of wall time
+  double checkpoint_interval = 900;        // s of wall time; infinite: never by itself
   std::vector<PictureParameters> pictures; // empty: the stress along the load
   double magnification = 0;                // of displacements in pictures; 0: one that suits
 };

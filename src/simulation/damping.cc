@@ -164,6 +164,20 @@ void BodyDamping<dim>::after_kick(CoupledBody<dim> &body, const coupling::StepTi
   restarts_ = false;
 }
 
+template <int dim>
+void BodyDamping<dim>::save(core::State &state) const
+{
+  core::save_value(state, "damping", "energy", energy_);
+  core::save_value(state, "damping", "last_kinetic", last_kinetic_);
+}
+
+template <int dim>
+void BodyDamping<dim>::load(const core::State &state)
+{
+  energy_ = core::load_real(state, "damping", "energy");
+  last_kinetic_ = core::load_real(state, "damping", "last_kinetic");
+}
+
 template class BodyDamping<2>;
 template class BodyDamping<3>;
 } // namespace ligament::program

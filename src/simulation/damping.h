@@ -1,6 +1,7 @@
 // Damping of the whole body for quasi-static loading, with the energy that it takes.
 #pragma once
 
+#include "core/state.h"
 #include "src/simulation/coupled_body.h"
 
 namespace ligament::program
@@ -20,6 +21,10 @@ public:
 
   /// J, so far.
   double energy() const { return energy_; }
+
+  /// Between drift and forces.
+  void save(core::State &state) const;
+  void load(const core::State &state);
 
 private:
   void add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts);

@@ -1,6 +1,7 @@
 #include "src/simulation/load_curve.h"
 
 #include "src/analysis/curve.h"
+#include "src/simulation/kept_tables.h"
 
 #include <cmath>
 
@@ -38,5 +39,32 @@ void LoadCurve::put_into(RunRecord &record) const
   record.peak_load = record.largest_load;
   record.peak_stress = record.largest_stress;
   record.peak_time = record.largest_time;
+}
+
+void LoadCurve::save(core::State &state) const
+{
+  core::Table rows = numbered_rows(time_.size());
+  rows.add("time", time_);
+  rows.add("load", load_);
+  rows.add("stress", stress_);
+  rows.add("strain", strain_);
+  state.emplace("load_curve", std::move(rows));
+  core::save_value(state, "recorder", "largest_load_row", std::int64_t(largest_));
+  core::save_value(state, "recorder", "curve_broken", n_broken_);
+  core::save_value(state, "recorder", "curve_fallen", std::int64_t(has_fallen_));
+  core::save_value(state, "recorder", "curve_ended", std::int64_t(has_ended_));
+}
+
+void LoadCurve::load(const core::State &state)
+{
+  const core::Table &rows = core::table(state, "load_curve");
+  time_ = rows.reals("time");
+  load_ = rows.reals("load");
+  stress_ = rows.reals("stress");
+  strain_ = rows.reals("strain");
+  largest_ = std::size_t(core::load_integer(state, "recorder", "largest_load_row"));
+  n_broken_ = core::load_integer(state, "recorder", "curve_broken");
+  has_fallen_ = core::load_integer(state, "recorder", "curve_fallen") != 0;
+  has_ended_ = core::load_integer(state, "recorder", "curve_ended") != 0;
 }
 } // namespace ligament::program

@@ -1,6 +1,7 @@
 // The load of a run over time, as far as it counts: its peak and the stiffness.
 #pragma once
 
+#include "core/state.h"
 #include "src/output/run_record.h"
 #include "src/simulation/test_machine.h"
 
@@ -24,6 +25,9 @@ public:
 
   /// Largest load and its time, the peak when something broke before the end, the stiffness.
   void put_into(RunRecord &record) const;
+
+  void save(core::State &state) const;
+  void load(const core::State &state);
 
 private:
   std::vector<double> time_, load_, stress_, strain_;

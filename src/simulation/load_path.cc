@@ -174,6 +174,22 @@ std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
   return at_start_ > 0 ? at_least_ / at_start_ : 0;
 }
 
+template <int dim>
+void LoadPath<dim>::save(core::State &state) const
+{
+  core::save_value(state, "recorder", "section_at_start", at_start_);
+  core::save_value(state, "recorder", "section_at_least", at_least_);
+  core::save_value(state, "recorder", "section_counted", std::int64_t(counted_));
+}
+
+template <int dim>
+void LoadPath<dim>::load(const core::State &state)
+{
+  at_start_ = core::load_real(state, "recorder", "section_at_start");
+  at_least_ = core::load_real(state, "recorder", "section_at_least");
+  counted_ = std::size_t(core::load_integer(state, "recorder", "section_counted"));
+}
+
 template double smallest_section(const CoupledBody<2> &, int, Carrying);
 template double smallest_section(const CoupledBody<3> &, int, Carrying);
 template class LoadPath<2>;

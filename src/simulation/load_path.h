@@ -1,6 +1,7 @@
 // What still joins the two sides of the specimen: the smallest section that a load has to pass.
 #pragma once
 
+#include "core/state.h"
 #include "src/simulation/coupled_body.h"
 
 namespace ligament::program
@@ -31,6 +32,9 @@ public:
   /// The share of the section of the start that is left at present, once the path is lost. Cheap
   /// while less has broken than would have to.
   std::optional<double> lost(const CoupledBody<dim> &body);
+
+  void save(core::State &state) const;
+  void load(const core::State &state);
 
 private:
   int axis_;

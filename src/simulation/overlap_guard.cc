@@ -72,6 +72,24 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
                      100 * most.share, place<dim>(most.place), remedy);
 }
 
+template <int dim>
+void OverlapGuard<dim>::save(core::State &state) const
+{
+  core::save_value(state, "recorder", "guard_seen", std::int64_t(seen_));
+  core::save_value(state, "recorder", "guard_broken", std::int64_t(n_broken_));
+  core::save_value(state, "recorder", "guard_energy", energy_);
+  core::save_value(state, "recorder", "guard_found", std::int64_t(found_));
+}
+
+template <int dim>
+void OverlapGuard<dim>::load(const core::State &state)
+{
+  seen_ = std::size_t(core::load_integer(state, "recorder", "guard_seen"));
+  n_broken_ = long(core::load_integer(state, "recorder", "guard_broken"));
+  energy_ = core::load_real(state, "recorder", "guard_energy");
+  found_ = core::load_integer(state, "recorder", "guard_found") != 0;
+}
+
 template class OverlapGuard<2>;
 template class OverlapGuard<3>;
 } // namespace ligament::program

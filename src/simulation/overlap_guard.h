@@ -1,6 +1,7 @@
 // Watches that nothing breaks where the models overlap: the mesh there stands for intact bonds.
 #pragma once
 
+#include "core/state.h"
 #include "src/simulation/coupled_body.h"
 
 #include <optional>
@@ -27,6 +28,9 @@ public:
 
   long n_broken() const { return n_broken_; }
   double energy() const { return energy_; } // J, released by those faces
+
+  void save(core::State &state) const;
+  void load(const core::State &state);
 
 private:
   bool is_watched(const particles::BrokenBond<dim> &bond) const;

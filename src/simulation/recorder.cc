@@ -5,12 +5,14 @@
 #include "src/drawing/run_pictures.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
+#include "src/simulation/kept_tables.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 namespace ligament::program
 {
@@ -18,6 +20,8 @@ namespace
 {
 // Fields are copied when the load has grown by this factor.
 constexpr double copied_growth = 1.02;
+
+constexpr int rows_per_flush = 50; // of the history
 
 // The load path is looked at this often, in steps of the far field.
 constexpr long break_interval = 50;
@@ -79,10 +83,10 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
 template <int dim>
 Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
                         core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
-                        bool draws_pictures)
+                        bool draws_pictures, bool goes_on)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
-      history_(folder.history(), history_columns(dim)),
+      history_(folder.history(), history_columns(dim), rows_per_flush, goes_on),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
       n_steps_(n_steps), draws_pictures_(draws_pictures),
       history_interval_(history_interval_of(scene)), guard_(body), path_(machine_.axis())
@@ -258,6 +262,7 @@ ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
   ProgressState state;
   state.step = step.step;
   state.n_steps = n_steps_;
+  state.first_step = first_step_;
   state.time = step.time;
   state.kinetic = ledger.kinetic();
   state.potential = ledger.potential();
@@ -367,6 +372,68 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.energy_residual = relative_residual(residual_, work_);
   add_warnings(body, record);
   attempt([&] { writer_.wait(); });
+}
+
+template <int dim>
+std::map<std::string, std::int64_t> Recorder<dim>::sync()
+{
+  history_.sync();
+  std::map<std::string, std::int64_t> sizes;
+  for (const std::string &file : {folder_.history(), folder_.log()}) {
+    std::error_code none; // the log may have ended early
+    const auto size = std::filesystem::file_size(file, none);
+    sizes[std::filesystem::path(file).filename()] = none ? 0 : std::int64_t(size);
+  }
+  return sizes;
+}
+
+template <int dim>
+void Recorder<dim>::save(core::State &state) const
+{
+  core::save_value(state, "recorder", "next_history", next_history_);
+  core::save_value(state, "recorder", "next_fields", next_fields_);
+  core::save_value(state, "recorder", "quasi_static", std::int64_t(quasi_static_));
+  core::save_value(state, "recorder", "fields_copied_at", fields_copied_at_);
+  save_optional(state, "recorder", "broken_time", broken_time_);
+  save_optional(state, "recorder", "trusted_until", trusted_until_);
+  guard_.save(state);
+  path_.save(state);
+  curve_.save(state);
+  snapshots_.save(state);
+  core::Table rows = numbered_rows(work_.size()), outputs = numbered_rows(fields_.times().size());
+  rows.add("residual", residual_);
+  rows.add("work", work_);
+  state.emplace("history", std::move(rows));
+  outputs.add("time", fields_.times());
+  state.emplace("field_outputs", std::move(outputs));
+  if (fields_copied_at_ != 0)
+    save_fields(state, "peak", peak_state_);
+  if (broken_time_)
+    save_fields(state, "broken", break_state_);
+}
+
+template <int dim>
+void Recorder<dim>::load(const core::State &state, const CoupledBody<dim> &body, long step)
+{
+  first_step_ = step;
+  next_history_ = core::load_real(state, "recorder", "next_history");
+  next_fields_ = core::load_real(state, "recorder", "next_fields");
+  quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
+  fields_copied_at_ = core::load_real(state, "recorder", "fields_copied_at");
+  broken_time_ = load_optional(state, "recorder", "broken_time");
+  trusted_until_ = load_optional(state, "recorder", "trusted_until");
+  guard_.load(state);
+  path_.load(state);
+  curve_.load(state);
+  snapshots_.load(state);
+  residual_ = core::table(state, "history").reals("residual");
+  work_ = core::table(state, "history").reals("work");
+  fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
+                body.far != nullptr);
+  if (fields_copied_at_ != 0)
+    peak_state_ = load_fields(state, "peak", present_state(body, 0));
+  if (broken_time_)
+    break_state_ = load_fields(state, "broken", present_state(body, 0));
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

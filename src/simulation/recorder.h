@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/background_writer.h"
+#include "core/state.h"
 #include "src/output/history.h"
 #include "src/output/progress.h"
 #include "src/output/run_folder.h"
@@ -38,7 +39,7 @@ class Recorder
 public:
   Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
            core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
-           bool draws_pictures);
+           bool draws_pictures, bool goes_on = false);
 
   /// Looks at the present state; empty while the run goes on. `damping` in J so far.
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -52,6 +53,16 @@ public:
   /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
               RunRecord &record);
+
+  /// Waits for the fields that are being written; throws what kept them from it.
+  void wait() { writer_.wait(); }
+  /// Puts the files that grow onto the disk and says how long they are, by their names in the
+  /// folder; EnvironmentError when it refuses.
+  std::map<std::string, std::int64_t> sync();
+  /// After wait().
+  void save(core::State &state) const;
+  /// The body has its motion already, and the files have been cut back.
+  void load(const core::State &state, const CoupledBody<dim> &body, long step);
 
   /// The first file that finish() could not write, and why; empty: none.
   const std::string &failure() const { return failure_; }
@@ -84,7 +95,7 @@ private:
   HistoryWriter history_;
   Progress progress_;
   FieldSeries fields_;
-  long n_steps_;
+  long n_steps_, first_step_ = 0;
   bool draws_pictures_;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s

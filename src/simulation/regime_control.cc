@@ -1,5 +1,7 @@
 #include "src/simulation/regime_control.h"
 
+#include "src/simulation/kept_tables.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +38,7 @@ RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
     set(Regime::corotated, body);
   else if (choice == RegimeChoice::nonlinear)
     set(Regime::nonlinear, body);
-  history_ = name_of(regime_);
+  history_.emplace_back(regime_, 0);
 }
 
 template <int dim>
@@ -100,7 +102,7 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
     body.coupler->compute_forces(bodies, step);
     const double jump = total() - before;
     body.regime_change -= jump;
-    history_ += fmt::format(", {} from {:.4g} s", name_of(regime_), step.time);
+    history_.emplace_back(regime_, step.time);
     log.info("{} regime from {:.4g} s: rotation {:.2f} degrees, bending {:.2f} degrees, strain "
              "{:.2g}; the energy changes by {:.3g} J",
              name_of(regime_), step.time, std::max(near_.rotation, far_.rotation) / degree,
@@ -111,6 +113,46 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
   const auto reason = excess();
   warned_ = reason.has_value();
   return reason;
+}
+
+template <int dim>
+std::string RegimeControl<dim>::history() const
+{
+  std::string text;
+  for (const auto &[regime, time] : history_)
+    text +=
+        text.empty() ? name_of(regime) : fmt::format(", {} from {:.4g} s", name_of(regime), time);
+  return text;
+}
+
+template <int dim>
+void RegimeControl<dim>::save(core::State &state) const
+{
+  std::vector<std::int64_t> regimes;
+  std::vector<double> times;
+  for (const auto &[regime, time] : history_) {
+    regimes.push_back(std::int64_t(regime));
+    times.push_back(time);
+  }
+  core::Table rows = numbered_rows(history_.size());
+  rows.add("regime", regimes);
+  rows.add("time", times);
+  state.emplace("regimes", std::move(rows));
+  core::save_value(state, "regime", "warned", std::int64_t(warned_));
+}
+
+template <int dim>
+void RegimeControl<dim>::load(const core::State &state, CoupledBody<dim> &body)
+{
+  const core::Table &rows = core::table(state, "regimes");
+  const auto regimes = rows.integers("regime");
+  const auto times = rows.reals("time");
+  history_.clear();
+  for (std::size_t k = 0; k < times.size(); ++k)
+    history_.emplace_back(Regime(regimes[k]), times[k]);
+  if (!history_.empty() && history_.back().first != regime_)
+    set(history_.back().first, body);
+  warned_ = core::load_integer(state, "regime", "warned") != 0;
 }
 
 template class RegimeControl<2>;

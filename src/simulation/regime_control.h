@@ -2,6 +2,7 @@
 // needs.
 #pragma once
 
+#include "core/state.h"
 #include "src/simulation/coupled_body.h"
 
 namespace ligament::program
@@ -22,7 +23,11 @@ public:
                                   core::Log &log);
 
   /// Which regime acted, and since when: "linear, corotated from 0.0012 s"; empty without mesh.
-  const std::string &history() const { return history_; }
+  std::string history() const;
+
+  void save(core::State &state) const;
+  /// The body has its motion, and the regime of its coupler, already.
+  void load(const core::State &state, CoupledBody<dim> &body);
 
 private:
   coupling::Regime needed() const;
@@ -35,6 +40,6 @@ private:
   coupling::NearMotion near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;
   bool warned_ = false;
-  std::string history_;
+  std::vector<std::pair<coupling::Regime, double>> history_; // and since when, s
 };
 } // namespace ligament::program

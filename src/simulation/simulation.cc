@@ -3,7 +3,9 @@
 #include "core/check.h"
 #include "core/version.h"
 #include "packings/packing_file.h"
+#include "particles/instruction_set.h"
 #include "src/analysis/verdict.h"
+#include "src/simulation/body_state.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -13,16 +15,104 @@
 
 namespace ligament::program
 {
+namespace
+{
+// Files of a checkpoint.
+const std::string body_state = "body", run_state = "run";
+} // namespace
+
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
-                            bool draws_pictures, const ForceMaker<dim> &make_force)
+                            bool draws_pictures, const Checkpoint *from,
+                            const ForceMaker<dim> &make_force)
     : scene_(scene), folder_(folder), log_(folder.log(), progress),
-      body_(make_body<dim>(scene_, log_, timers_, make_force)),
+      reference_(from ? from->reference : core::State()),
+      body_(make_body<dim>(scene_, log_, timers_, reference_, make_force)),
       regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
-      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures)
+      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures,
+                from != nullptr),
+      started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
-  if (body_.seeds)
+  setup_seconds_ = timers_.total();
+  if (from)
+    go_on_from(*from);
+  else if (body_.seeds)
     packings::write_packing_file(folder_.packing(), *body_.seeds);
+}
+
+template <int dim>
+void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
+{
+  const CheckpointManifest &manifest = checkpoint.manifest;
+  core::require(
+      body_.dt == manifest.dt,
+      fmt::format("the step was {} s when the run began, and is {} s now", manifest.dt, body_.dt));
+  for (const std::string &name : {body_state, run_state})
+    core::require(checkpoint.states.count(name) > 0, "the checkpoint has no state '" + name + "'");
+  let_rest(); // what moves comes with the state
+  give_state(checkpoint.states.at(body_state), body_);
+  clock_.now.step = long(manifest.step);
+  clock_.now.time = manifest.time;
+  const core::State &run = checkpoint.states.at(run_state);
+  regime_.load(run, body_);
+  damping_.load(run);
+  recorder_.load(run, body_, clock_.now.step);
+  setup_seconds_ += manifest.setup_seconds;
+  timers_.add(manifest.timing);
+  started_ = manifest.started;
+  if (checkpoint.reference_lost.empty())
+    reference_sum_ = manifest.reference;
+  log_.info("goes on from checkpoint {}, step {} of {}, {:.4g} s", manifest.number, manifest.step,
+            clock_.n_steps, manifest.time);
+  log_.set_warnings(manifest.warnings);
+}
+
+template <int dim>
+void Simulation<dim>::keep_checkpoints(const nlohmann::ordered_json &resolved)
+{
+  keeper_.emplace(Checkpoints(folder_.checkpoints()), scene_.output.checkpoint_interval,
+                  clock_.now.step > 0);
+  resolved_ = resolved;
+}
+
+template <int dim>
+void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
+{
+  CheckpointManifest manifest;
+  manifest.positions = recorder_.sync();
+  manifest.step = clock_.now.step;
+  manifest.time = clock_.now.time;
+  manifest.dt = clock_.now.dt;
+  manifest.started = started_;
+  manifest.setup_seconds = setup_seconds_;
+  manifest.wall_seconds = timers_.total() - setup_seconds_;
+  manifest.timing = timers_.rows();
+  manifest.warnings = log_.warnings();
+  manifest.version = core::version();
+  manifest.commit = core::commit();
+  manifest.instructions = particles::instruction_set();
+  manifest.scene = resolved_;
+  if (!reference_sum_)
+    reference_sum_ = checkpoints.write_reference(reference_.tables());
+  manifest.reference = reference_sum_;
+  core::State run;
+  regime_.save(run);
+  damping_.save(run);
+  recorder_.save(run);
+  checkpoints.write(std::move(manifest), {{body_state, take_state(body_)}, {run_state, run}});
+}
+
+template <int dim>
+void Simulation<dim>::look_at_the_clock(const EndRequest &request)
+{
+  asked_by_ = request.reason();
+  // A run that is at its end may be prolonged from there.
+  const bool ends = !asked_by_.empty() || (clock_.is_at_end() && keeper_ && keeper_->has_some());
+  if (!keeper_ || (!ends && !keeper_->is_due()))
+    return;
+  const auto timing = timers_.scope(timers_.section("checkpoints"));
+  recorder_.wait(); // a disk that refuses results ends the run, other than one for checkpoints
+  keeper_->attempt(log_, [&](const Checkpoints &checkpoints) { write_checkpoint(checkpoints); });
 }
 
 template <int dim>
@@ -65,12 +155,13 @@ void Simulation<dim>::report_rest(RunRecord &record)
 }
 
 template <int dim>
-std::optional<Stop> Simulation<dim>::loop(const core::Interruption *interruption)
+std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
 {
   auto bodies = body_.bodies();
   auto &coupler = *body_.coupler;
   coupler.compute_forces(bodies, clock_.now);
-  let_rest();
+  if (clock_.now.step == 0)
+    let_rest();
   while (!clock_.is_at_end()) {
     if (clock_.now.step % coupler.step_ratio() == 0) {
       if (const auto reason = regime_.look(body_, clock_.now, log_))
@@ -78,7 +169,7 @@ std::optional<Stop> Simulation<dim>::loop(const core::Interruption *interruption
           return stop;
       if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
         return stop;
-      if (interruption && interruption->signal() != 0)
+      if (!asked_by_.empty())
         return {};
     }
     damping_.before_kick(body_, clock_.now);
@@ -86,6 +177,8 @@ std::optional<Stop> Simulation<dim>::loop(const core::Interruption *interruption
     damping_.after_kick(body_, clock_.now);
     coupler.drift(bodies, clock_.now); // positions
     clock_.advance();
+    if (clock_.now.step % coupler.step_ratio() == 0)
+      look_at_the_clock(request);
     coupler.compute_forces(bodies, clock_.now);
   }
   return {};
@@ -98,7 +191,7 @@ RunRecord Simulation<dim>::make_record() const
   r.title = scene_.title;
   r.version = core::version();
   r.commit = core::commit();
-  r.started = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
+  r.started = started_;
   r.kind = !body_.far ? "pure_dem" : !body_.zone ? "pure_fem" : "coupled";
   r.dimension = dim;
   if (dim == 2)
@@ -124,16 +217,15 @@ RunRecord Simulation<dim>::make_record() const
 }
 
 template <int dim>
-void Simulation<dim>::run_loop(const core::Interruption *interruption, RunRecord &record)
+void Simulation<dim>::run_loop(const EndRequest &request, RunRecord &record)
 {
   try {
-    const auto stop = loop(interruption);
+    const auto stop = loop(request);
     record.status = stop && stop->by_guard ? "stopped" : "done";
     record.reason = stop ? stop->reason : "end of the scene's duration";
     if (!stop && !clock_.is_at_end()) {
       record.status = "interrupted";
-      record.reason = fmt::format("{} at {:.4g} s, in step {} of {}",
-                                  core::Interruption::name(interruption->signal()), clock_.now.time,
+      record.reason = fmt::format("{} at {:.4g} s, in step {} of {}", asked_by_, clock_.now.time,
                                   clock_.now.step, clock_.n_steps);
     }
   } catch (const core::EnvironmentError &error) {
@@ -144,16 +236,16 @@ void Simulation<dim>::run_loop(const core::Interruption *interruption, RunRecord
 }
 
 template <int dim>
-RunRecord Simulation<dim>::run(const core::Interruption *interruption)
+RunRecord Simulation<dim>::run(const EndRequest &request)
 {
   log_.info("ligament {}, commit {}", core::version(), core::commit());
   RunRecord record = make_record();
-  record.setup_seconds = timers_.total();
+  record.setup_seconds = setup_seconds_;
   write_run_record(folder_.record(), record);
   for (const auto &part : body_.skipped)
     log_.info("not needed: {} ({})", part.what, part.why);
 
-  run_loop(interruption, record);
+  run_loop(request, record);
   record.regime = regime_.history();
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;

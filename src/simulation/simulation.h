@@ -1,10 +1,11 @@
 // One run: the time loop, and who watches it.
 #pragma once
 
-#include "core/interruption.h"
 #include "core/timers.h"
 #include "src/output/run_folder.h"
+#include "src/simulation/checkpoint_keeper.h"
 #include "src/simulation/damping.h"
+#include "src/simulation/end_request.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/recorder.h"
 #include "src/simulation/regime_control.h"
@@ -30,18 +31,23 @@ class Simulation
 {
 public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
-  /// scenes take less time than their pictures, which may be left out.
+  /// scenes take less time than their pictures, which may be left out. With a checkpoint the run
+  /// goes on from it: the files that grow have been cut back to its positions.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
-             bool draws_pictures = true,
+             bool draws_pictures = true, const Checkpoint *from = nullptr,
              const ForceMaker<dim> &make_force = make_many_body_force<dim>);
+
+  /// From now on the run writes checkpoints: by the interval of the scene, and where it ends before
+  /// its time. `resolved`: the scene.
+  void keep_checkpoints(const nlohmann::ordered_json &resolved);
 
   /// A warning about the input, which log and record repeat.
   void warn(const std::string &text) { log_.warning(text); }
 
-  /// Runs to the end of the scene, or until a signal asks for the end; writes all outputs and
-  /// returns the record. A guard's stop, a signal and a disk that refuses are in the record (status
-  /// "stopped", "interrupted", "failed"), not exceptions: what was computed is kept.
-  RunRecord run(const core::Interruption *interruption = nullptr);
+  /// Runs to the end of the scene, or until the end is asked for; writes all outputs and returns
+  /// the record. A guard's stop, an end that was asked for and a disk that refuses are in the
+  /// record (status "stopped", "interrupted", "failed"), not exceptions: what was computed is kept.
+  RunRecord run(const EndRequest &request = {});
 
 private:
   Clock clock_of() const;
@@ -50,19 +56,33 @@ private:
   void let_rest();
   /// What was left out of the steps, for log and record.
   void report_rest(RunRecord &record);
+  /// Takes what a checkpoint has, before the first step.
+  void go_on_from(const Checkpoint &checkpoint);
   /// The time loop; the reason when it ends early.
-  std::optional<Stop> loop(const core::Interruption *interruption);
+  std::optional<Stop> loop(const EndRequest &request);
+  /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
+  /// for, and writes a checkpoint if it is, if one is due, or behind others at the end.
+  void look_at_the_clock(const EndRequest &request);
+  void write_checkpoint(const Checkpoints &checkpoints);
   /// Runs the loop and says in the record how it ended.
-  void run_loop(const core::Interruption *interruption, RunRecord &record);
+  void run_loop(const EndRequest &request, RunRecord &record);
 
   const Scene scene_;
   RunFolder folder_;
   core::Log log_;
   core::Timers timers_;
+  Reference reference_; // of the body
   CoupledBody<dim> body_;
   RegimeControl<dim> regime_;
   BodyDamping<dim> damping_;
   Clock clock_;
   Recorder<dim> recorder_;
+
+  std::optional<CheckpointKeeper> keeper_;
+  std::optional<core::StateFileSum> reference_sum_; // once it is on the disk
+  nlohmann::ordered_json resolved_;                 // the scene, for checkpoints
+  std::string started_;                             // date and time
+  double setup_seconds_ = 0;
+  std::string asked_by_; // who asked for the end; empty: nobody
 };
 } // namespace ligament::program

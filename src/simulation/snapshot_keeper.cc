@@ -1,6 +1,7 @@
 #include "src/simulation/snapshot_keeper.h"
 
 #include "src/simulation/body_fields.h"
+#include "src/simulation/kept_tables.h"
 
 #include <algorithm>
 
@@ -12,6 +13,35 @@ template <int dim>
 Motion<dim> motion(const CoupledBody<dim> &body, double time)
 {
   return {time, body.zone->state.displacement, body.zone->state.velocity};
+}
+
+template <int dim>
+void save_motion(core::State &state, const std::string &name, const std::optional<Motion<dim>> &m)
+{
+  if (!m)
+    return;
+  core::save_value(state, name + "_time", "time", m->time);
+  core::Table rows = numbered_rows(m->displacement[0].size());
+  for (int c = 0; c < dim; ++c) {
+    rows.add("displacement_" + std::to_string(c), m->displacement[c]);
+    rows.add("velocity_" + std::to_string(c), m->velocity[c]);
+  }
+  state.emplace(name, std::move(rows));
+}
+
+template <int dim>
+std::optional<Motion<dim>> load_motion(const core::State &state, const std::string &name)
+{
+  if (!state.count(name))
+    return {};
+  Motion<dim> m;
+  m.time = core::load_real(state, name + "_time", "time");
+  const core::Table &rows = core::table(state, name);
+  for (int c = 0; c < dim; ++c) {
+    m.displacement[c] = rows.reals("displacement_" + std::to_string(c));
+    m.velocity[c] = rows.reals("velocity_" + std::to_string(c));
+  }
+  return m;
 }
 } // namespace
 
@@ -67,6 +97,24 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
       write_snapshot(
           folder.snapshots()[i],
           snapshot<dim>(body, kept_[i]->time, kept_[i]->displacement, kept_[i]->velocity));
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::save(core::State &state) const
+{
+  for (std::size_t i = 0; i < kept_.size(); ++i)
+    save_motion(state, "snapshot_" + std::to_string(i), kept_[i]);
+  save_motion(state, "before_snapshot", before_);
+  core::save_value(state, "recorder", "next_snapshot", next_);
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::load(const core::State &state)
+{
+  for (std::size_t i = 0; i < kept_.size(); ++i)
+    kept_[i] = load_motion<dim>(state, "snapshot_" + std::to_string(i));
+  before_ = load_motion<dim>(state, "before_snapshot");
+  next_ = core::load_real(state, "recorder", "next_snapshot");
 }
 
 template Motion<2> between(const Motion<2> &, const Motion<2> &, double, double);

@@ -1,6 +1,7 @@
 // The motion of the particles at the last common times, for comparisons with other runs.
 #pragma once
 
+#include "core/state.h"
 #include "src/output/run_folder.h"
 #include "src/output/snapshot.h"
 #include "src/simulation/coupled_body.h"
@@ -39,6 +40,9 @@ public:
 
   /// Writes what was kept, the latest first.
   void write(const CoupledBody<dim> &body, const RunFolder &folder) const;
+
+  void save(core::State &state) const;
+  void load(const core::State &state);
 
 private:
   std::array<std::optional<Motion<dim>>, 3> kept_; // the later one first

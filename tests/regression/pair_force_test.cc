@@ -110,7 +110,7 @@ RunRecord run(const std::string &folder, const std::vector<std::string> &overrid
   place.create();
   std::FILE *quiet = std::fopen("/dev/null", "w");
   const RunRecord record =
-      Simulation<2>(small_scene(overrides), place, quiet, true, make_force).run();
+      Simulation<2>(small_scene(overrides), place, quiet, true, nullptr, make_force).run();
   std::fclose(quiet);
   return record;
 }

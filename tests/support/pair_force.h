@@ -114,13 +114,13 @@ public:
       pad_[i] = true;
   }
 
-  void
-  add_tangent(const Particles &,
-              const std::function<void(const particles::QuadraticTerm<2> &)> &add) const override
+  void add_tangent(const Particles &,
+                   const std::function<void(const particles::QuadraticTerm<2> &)> &add,
+                   const std::vector<int> *of = nullptr) const override
   {
     using Term = particles::QuadraticTerm<2>;
     for (const Spring &s : springs_)
-      if (s.intact) {
+      if (s.intact && (is_asked(s.i, of) || is_asked(s.j, of))) {
         Term term{Term::Kind::bond,
                   s.place,
                   {s.i, s.j},
@@ -131,6 +131,8 @@ public:
         add(term);
       }
     for (const Wall &w : walls_) {
+      if (!is_asked(w.i, of))
+        continue;
       Term term{Term::Kind::wall,
                 Vector<2>::Zero(),
                 {w.i},
@@ -141,16 +143,19 @@ public:
     }
   }
 
-  void
-  for_each_face(const Particles &p,
-                const std::function<void(const particles::FaceView<2> &)> &visit) const override
+  void for_each_face(const Particles &p,
+                     const std::function<void(const particles::FaceView<2> &)> &visit,
+                     const std::vector<int> *of = nullptr) const override
   {
     for (const Spring &s : springs_) {
-      visit({s.i, s.j, s.normal, s.area, s.place, s.intact});
-      visit({s.j, s.i, -s.normal, s.area, s.place, s.intact});
+      if (is_asked(s.i, of))
+        visit({s.i, s.j, s.normal, s.area, s.place, s.intact});
+      if (is_asked(s.j, of))
+        visit({s.j, s.i, -s.normal, s.area, s.place, s.intact});
     }
     for (const auto &f : outer_)
-      visit({f.i, -1, f.normal, f.area, get(p.reference, f.i) + f.lever, false});
+      if (is_asked(f.i, of))
+        visit({f.i, -1, f.normal, f.area, get(p.reference, f.i) + f.lever, false});
   }
 
   particles::ForceLosses losses() const override { return {fracture_, 0, 0, 0}; }
@@ -181,6 +186,10 @@ public:
   const std::vector<particles::BrokenBond<2>> &broken_bonds() const override { return broken_; }
 
 private:
+  static bool is_asked(int i, const std::vector<int> *of)
+  {
+    return !of || std::binary_search(of->begin(), of->end(), i);
+  }
   struct Spring
   {
     int i, j;

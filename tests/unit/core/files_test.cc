@@ -104,4 +104,16 @@ TEST(Log, LinesArriveAtOnceWithLevelAndMessage)
   EXPECT_EQ(message_of([] { Log("/dev/full").info("a log less costs no run"); }), "no error");
   Log().info("goes nowhere");
 }
+
+TEST(CutFile, TakesOffWhatFollows)
+{
+  write_file("cut.txt", "0123456789");
+  cut_file("cut.txt", 10);
+  EXPECT_EQ(read_file("cut.txt"), "0123456789");
+  cut_file("cut.txt", 4);
+  EXPECT_EQ(read_file("cut.txt"), "0123");
+  EXPECT_THROW(cut_file("cut.txt", 5), InputError);
+  EXPECT_EQ(read_file("cut.txt"), "0123");
+  EXPECT_THROW(cut_file("no_such_file.txt", 0), InputError);
+}
 } // namespace

@@ -12,6 +12,21 @@ namespace
 constexpr std::chrono::milliseconds nap(20);
 const double nap_seconds = std::chrono::duration<double>(nap).count();
 
+TEST(Timers, GoOnWithWhatPassedBefore)
+{
+  Timers timers;
+  timers.section("forces");
+  timers.add({{"forces", 2, 7}, {"output", 1, 3}, {"rest", 4, 0}});
+  const auto rows = timers.rows();
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].name, "forces");
+  EXPECT_EQ(rows[0].seconds, 2);
+  EXPECT_EQ(rows[0].calls, 7);
+  EXPECT_EQ(rows[1].seconds, 1);
+  EXPECT_GE(rows[2].seconds, 4);
+  EXPECT_NEAR(timers.total(), 7, 1);
+}
+
 TEST(Timers, InnerSectionsAreNotCountedTwice)
 {
   Timers timers;

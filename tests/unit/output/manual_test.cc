@@ -3,6 +3,7 @@
 #include "packings/packing_file.h"
 #include "src/drawing/shown_field.h"
 #include "src/output/broken_bonds.h"
+#include "src/output/checkpoint_manifest.h"
 #include "src/output/fields.h"
 #include "src/output/history.h"
 #include "src/output/run_record.h"
@@ -104,5 +105,15 @@ TEST(Manual, NamesTheKeysOfTheRecord)
   write_run_record("keys.json", record);
   expect_keys(nlohmann::json::parse(core::read_file("keys.json")),
               section("Figures of the report, keys of run.json"));
+}
+
+TEST(Manual, NamesTheKeysOfAManifest)
+{
+  CheckpointManifest manifest;
+  manifest.states["body"] = {};
+  const std::string text = section("Checkpoints");
+  const auto json = nlohmann::json::parse(manifest_text(manifest));
+  for (const auto &[key, value] : json.items())
+    expect_named(text, key);
 }
 } // namespace

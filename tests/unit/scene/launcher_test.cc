@@ -59,7 +59,9 @@ bool has(const std::string &text, const std::string &part)
 TEST(Launcher, HelpVersionAndExplain)
 {
   EXPECT_EQ(start("--help").code, 0);
-  for (const char *command : {"run", "check", "compare", "sweep", "explain", "report", "verify"}) {
+  for (const char *command :
+       {"run", "resume", "check", "compare", "sweep", "explain", "report", "verify"})
+  {
     EXPECT_TRUE(has(start("--help").text, command));
     EXPECT_EQ(start(std::string(command) + " --help").code, 0);
   }

@@ -1,0 +1,128 @@
+#include "core/check.h"
+#include "core/files.h"
+#include "core/tell.h"
+#include "core/version.h"
+#include "particles/instruction_set.h"
+#include "src/commands/commands.h"
+#include "src/commands/run_end.h"
+#include "src/commands/simulate.h"
+#include "src/launcher/program.h"
+#include "src/scene/scene_difference.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace ligament::program
+{
+namespace
+{
+Checkpoint newest_checkpoint(const RunFolder &folder)
+{
+  FoundCheckpoint found = Checkpoints(folder.checkpoints()).newest_good();
+  for (const std::string &reason : found.passed_over)
+    core::tell(stderr, fmt::format("warning: a checkpoint cannot be used: {}\n", reason));
+  core::require(found.checkpoint.has_value(),
+                folder.path + ": there is no checkpoint to go on from; repeat the run");
+  if (const std::string &lost = found.checkpoint->reference_lost; !lost.empty())
+    core::tell(stderr,
+               fmt::format("warning: what the set-up had found is lost, and is sought again: "
+                           "{}\n",
+                           lost));
+  return std::move(*found.checkpoint);
+}
+
+/// The run's own scene unless another one is named. Particles that the run read from a file, or
+/// packed itself, lie in its folder.
+ReadResult scene_of(const CommandLine &line, const RunFolder &folder,
+                    const CheckpointManifest &manifest)
+{
+  ReadResult input = line.scene.empty() ? parse_scene(json_text(manifest.scene, 2),
+                                                      folder.resolved_scene(), line.overrides)
+                                        : read_scene(line.scene, line.overrides);
+  if (input.scene && input.scene->zone.packing == "file")
+    input.scene->zone.packing_file = folder.packing();
+  return input;
+}
+
+void refuse_another_scene(const nlohmann::ordered_json &was, const nlohmann::ordered_json &is)
+{
+  std::string list;
+  for (const KeyDifference &d : differences_that_matter(was, is))
+    list += fmt::format("\n  {}: {}, was {}", d.key, d.is, d.was);
+  core::require(list.empty(), "the scene is not the one of the run; only a longer /time/duration "
+                              "and /output may differ, but so do" +
+                                  list);
+}
+
+/// A run that came to its end goes on only where there is more to do.
+void refuse_what_has_ended(const RunFolder &folder, const nlohmann::ordered_json &was,
+                           const nlohmann::ordered_json &is)
+{
+  const nlohmann::ordered_json::json_pointer duration("/time/duration");
+  if (is.at(duration) > was.at(duration))
+    return;
+  bool done = false;
+  try {
+    done = read_run_record(folder.record()).is_complete();
+  } catch (const core::InputError &) {
+    // A record that the disk lost says nothing; it is written again.
+  }
+  core::require(!done, folder.path + ": the run has come to its end; give a longer one with --set "
+                                     "/time/duration=...");
+}
+
+std::vector<std::string> what_is_new(const CheckpointManifest &manifest)
+{
+  std::vector<std::string> warnings;
+  const std::string same = "; its last digits may not be those of a run without a break";
+  if (manifest.version != core::version() || manifest.commit != core::commit())
+    warnings.push_back(fmt::format("the run began with version {}, commit {}, and goes on with "
+                                   "version {}, commit {}{}",
+                                   manifest.version, manifest.commit, core::version(),
+                                   core::commit(), same));
+  if (manifest.instructions != particles::instruction_set())
+    warnings.push_back(fmt::format("the run began on a processor with {}, and goes on with {}{}",
+                                   manifest.instructions, particles::instruction_set(), same));
+  return warnings;
+}
+
+/// Takes off what the run wrote behind the checkpoint.
+void cut_back(const RunFolder &folder, const CheckpointManifest &manifest)
+{
+  Checkpoints(folder.checkpoints()).remove_newer_than(manifest.number);
+  for (const auto &[name, bytes] : manifest.positions) {
+    const std::string file = folder.path + "/" + name;
+    std::error_code none;
+    // A power failure may have taken the end of the log, which nobody waited for.
+    if (file != folder.log() || std::int64_t(std::filesystem::file_size(file, none)) > bytes)
+      core::cut_file(file, bytes);
+  }
+  std::error_code none; // without states there is no collection
+  std::filesystem::remove(folder.pvd(), none);
+}
+} // namespace
+
+int resume_command(const CommandLine &line)
+{
+  core::Interruption interruption;
+  const EndRequest request = end_request(line, interruption);
+  OpenRun run(RunFolder{line.run});
+  const Checkpoint checkpoint = newest_checkpoint(run.folder());
+  const CheckpointManifest &manifest = checkpoint.manifest;
+  const ReadResult input = scene_of(line, run.folder(), manifest);
+  if (!input.scene)
+    return refuse(line, line.scene.empty() ? run.folder().resolved_scene() : line.scene,
+                  input.errors, input.warnings);
+  refuse_another_scene(manifest.scene, input.resolved);
+  refuse_what_has_ended(run.folder(), manifest.scene, input.resolved);
+  const std::vector<std::string> warnings = what_is_new(manifest);
+
+  RunRecord first = first_record(*input.scene);
+  first.started = manifest.started;
+  run.go_on(first);
+  cut_back(run.folder(), manifest);
+  const RunRecord record = simulate(input, warnings, run, interruption, request, &checkpoint);
+  return end_of_run(line, line.run, run.folder(), record, interruption);
+}
+} // namespace ligament::program

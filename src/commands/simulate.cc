@@ -1,0 +1,62 @@
+#include "src/commands/simulate.h"
+
+#include "core/files.h"
+#include "core/version.h"
+#include "src/launcher/command_line.h"
+#include "src/simulation/simulation.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+
+namespace ligament::program
+{
+RunRecord first_record(const Scene &scene)
+{
+  RunRecord record;
+  record.title = scene.title;
+  record.version = core::version();
+  record.commit = core::commit();
+  record.started = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
+  record.dimension = scene.dimension;
+  record.reason = "it is being set up, or was killed then";
+  return record;
+}
+
+namespace
+{
+template <int dim>
+RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &warnings,
+                      const RunFolder &folder, core::Interruption &interruption,
+                      const EndRequest &request, const Checkpoint *from)
+{
+  Simulation<dim> simulation(*input.scene, folder, stderr, true, from);
+  for (const std::string &text : warnings)
+    simulation.warn(text);
+  simulation.keep_checkpoints(input.resolved);
+  interruption.leave_to_caller();
+  return simulation.run(request);
+}
+} // namespace
+
+RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
+                   core::Interruption &interruption, const EndRequest &request,
+                   const Checkpoint *from)
+{
+  interruption.end_at_once([&run](int signal) {
+    run.end("interrupted", std::string(core::Interruption::name(signal)) + " asked for the end");
+  });
+  try {
+    core::write_file(run.folder().resolved_scene(), json_text(input.resolved, 2) + "\n");
+    const auto &in_space = input.scene->dimension == 2 ? simulate_in<2> : simulate_in<3>;
+    return in_space(input, warnings, run.folder(), interruption, request, from);
+  } catch (const core::GuardStop &error) {
+    run.end("stopped", error.what());
+    throw;
+  } catch (const std::exception &error) {
+    run.end("failed", error.what());
+    throw;
+  }
+}
+} // namespace ligament::program

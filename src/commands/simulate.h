@@ -1,0 +1,19 @@
+// The run of a scene in its open folder, from the start or from a checkpoint.
+#pragma once
+
+#include "core/interruption.h"
+#include "src/output/checkpoints.h"
+#include "src/output/open_run.h"
+#include "src/scene/read_scene.h"
+#include "src/simulation/end_request.h"
+
+namespace ligament::program
+{
+/// What the record says before the body is built.
+RunRecord first_record(const Scene &scene);
+
+/// With checkpoints; what stops it is in its record, and warnings in its log.
+RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
+                   core::Interruption &interruption, const EndRequest &request,
+                   const Checkpoint *from = nullptr);
+} // namespace ligament::program

@@ -1,0 +1,174 @@
+#include "src/output/checkpoints.h"
+
+#include "core/check.h"
+#include "core/files.h"
+#include "core/folders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <unistd.h>
+
+namespace ligament::program
+{
+namespace
+{
+const std::string reference_name = "reference", prefix = "checkpoint_",
+                  manifest_file = "manifest.json", unfinished = ".tmp";
+
+/// Of a name checkpoint_NNNNNN; 0: it is none.
+std::int64_t number_of(const std::string &name)
+{
+  if (name.rfind(prefix, 0) != 0 || name.size() > prefix.size() + 18)
+    return 0;
+  std::int64_t number = 0;
+  for (std::size_t c = prefix.size(); c < name.size(); ++c) {
+    if (name[c] < '0' || name[c] > '9')
+      return 0;
+    number = 10 * number + (name[c] - '0');
+  }
+  return number;
+}
+
+bool is_unfinished(const std::string &name)
+{
+  return name.size() > unfinished.size() &&
+         name.compare(name.size() - unfinished.size(), unfinished.size(), unfinished) == 0 &&
+         number_of(name.substr(0, name.size() - unfinished.size())) > 0;
+}
+
+bool is_there(const std::string &path)
+{
+  return ::access(path.c_str(), F_OK) == 0;
+}
+
+std::string state_file(const std::string &folder, const std::string &name)
+{
+  return folder + "/" + name + ".bin";
+}
+} // namespace
+
+Checkpoints::Checkpoints(std::string folder) : folder_(std::move(folder))
+{
+}
+
+std::string Checkpoints::path(std::int64_t number) const
+{
+  return fmt::format("{}/{}{:06}", folder_, prefix, number);
+}
+
+std::vector<std::int64_t> Checkpoints::numbers() const
+{
+  std::vector<std::int64_t> numbers;
+  for (const std::string &name : core::folder_entries(folder_))
+    if (const std::int64_t number = number_of(name); number > 0)
+      numbers.push_back(number);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+void Checkpoints::clean() const
+{
+  for (const std::string &name : core::folder_entries(folder_)) {
+    const std::string entry = folder_ + "/" + name;
+    if (is_unfinished(name) || (number_of(name) > 0 && !is_there(entry + "/" + manifest_file)))
+      core::remove_folder(entry);
+  }
+}
+
+void Checkpoints::make() const
+{
+  if (!is_there(folder_))
+    core::make_new_folder(folder_);
+}
+
+core::StateFileSum Checkpoints::write_reference(const core::State &state) const
+{
+  make();
+  const core::StateFileSum sum = core::write_state_file(state_file(folder_, reference_name), state);
+  core::sync_folder(folder_);
+  return sum;
+}
+
+void Checkpoints::write(CheckpointManifest manifest,
+                        const std::map<std::string, core::State> &states) const
+{
+  make();
+  clean();
+  const std::vector<std::int64_t> before = numbers();
+  manifest.number = before.empty() ? 1 : before.back() + 1;
+  manifest.states.clear();
+  const std::string whole = path(manifest.number), part = whole + unfinished;
+  try {
+    core::make_new_folder(part);
+    for (const auto &[name, state] : states)
+      manifest.states[name] = core::write_state_file(state_file(part, name), state);
+    core::write_file(part + "/" + manifest_file, manifest_text(manifest));
+    core::sync_folder(part);
+    core::rename_folder(part, whole);
+  } catch (const core::EnvironmentError &) {
+    try {
+      clean(); // gives the room back
+    } catch (const core::EnvironmentError &) {
+      // The next write tries again.
+    }
+    throw;
+  }
+  for (std::size_t k = 0; k + 1 < before.size(); ++k)
+    core::remove_folder(path(before[k]));
+}
+
+Checkpoint Checkpoints::read(std::int64_t number) const
+{
+  const std::string folder = path(number);
+  Checkpoint checkpoint;
+  CheckpointManifest &manifest = checkpoint.manifest;
+  const std::string file = folder + "/" + manifest_file;
+  const std::string text = core::read_file(file);
+  try {
+    manifest = parse_manifest(text);
+  } catch (const core::InputError &error) {
+    throw core::InputError(file + ": " + error.what());
+  }
+  core::require(manifest.number == number,
+                fmt::format("{}: of checkpoint {}, not of this one", file, manifest.number));
+  for (const auto &[name, sum] : manifest.states)
+    checkpoint.states[name] = core::read_state_file(state_file(folder, name), sum);
+  if (manifest.reference)
+    try {
+      checkpoint.reference =
+          core::read_state_file(state_file(folder_, reference_name), manifest.reference);
+    } catch (const core::InputError &error) {
+      checkpoint.reference_lost = error.what();
+    }
+  return checkpoint;
+}
+
+FoundCheckpoint Checkpoints::newest_good() const
+{
+  FoundCheckpoint found;
+  try {
+    const std::vector<std::int64_t> all = numbers();
+    for (auto number = all.rbegin(); number != all.rend(); ++number)
+      try {
+        found.checkpoint = read(*number);
+        return found;
+      } catch (const core::InputError &error) {
+        found.passed_over.push_back(error.what());
+      } catch (const core::EnvironmentError &error) {
+        found.passed_over.push_back(error.what());
+      }
+  } catch (const core::EnvironmentError &error) {
+    found.passed_over.push_back(error.what());
+  }
+  return found;
+}
+
+void Checkpoints::remove_newer_than(std::int64_t number) const
+{
+  const std::vector<std::int64_t> all = numbers();
+  for (auto newer = all.rbegin(); newer != all.rend() && *newer > number; ++newer)
+    core::remove_folder(path(*newer));
+}
+} // namespace ligament::program

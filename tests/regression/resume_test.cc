@@ -1,0 +1,390 @@
+// Runs that are killed, stopped or short of time, and go on: byte for byte what a run without a
+// break writes. Through the programs.
+#include "tests/support/program.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <random>
+
+using namespace ligament::tests;
+namespace fs = std::filesystem;
+
+namespace
+{
+const std::string program = LIGAMENT_PROGRAM;
+
+// A plate with a crack is torn apart: bonds break from the middle of the run on, in units of d = 1,
+// E = 1, rho = 1. Checkpoints as often as the disk takes them.
+const std::string torn = R"({
+  "title": "torn",
+  "dimension": 2,
+  "specimen": {"size": [24, 120], "cracks": [{"points": [[-4, 0], [4, 0]]}]},
+  "material": {
+    "youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1, "friction": 0.4,
+    "fracture": {"criterion": "maximum_tension", "strength": 1e-3}
+  },
+  "discrete_zone": {
+    "region": {"lower": [null, -20], "upper": [null, 20]}, "packing": "hexagonal", "spacing": 1
+  },
+  "far_field": {"cell_size": 4.1},
+  "coupling": {"overlap_cells": 2, "transition_cells": 3, "step_ratio": 2},
+  "loads": [
+    {"boundary": "top", "velocity": [null, 2e-4], "ramp": 100},
+    {"boundary": "bottom", "velocity": [null, -2e-4], "ramp": 100}
+  ],
+  "time": {"duration": 400},
+  "output": {
+    "history_interval": 1.7, "field_interval": 50, "progress_interval": 1000,
+    "checkpoint_interval": 0.01
+  }
+})";
+
+Outcome ligament(const std::string &arguments, const std::string &environment = "")
+{
+  return run_shell(environment + " exec " + program + " " + arguments);
+}
+
+/// Of the newest checkpoint; empty: there is none.
+std::string newest_checkpoint(const std::string &run)
+{
+  std::string newest;
+  std::error_code none;
+  for (const auto &entry : fs::directory_iterator(run + "/checkpoints", none))
+    if (entry.is_directory() && entry.path().extension() != ".tmp")
+      newest = std::max(newest, entry.path().string());
+  return newest;
+}
+
+/// What a run computed: tables, fields, motion of the particles, its last state.
+std::map<std::string, std::string> results(const std::string &run)
+{
+  std::map<std::string, std::string> files;
+  for (const char *name : {"history.csv", "broken_bonds.csv", "cut_faces.csv", "packing.csv",
+                           "fields.pvd", "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
+    if (fs::exists(run + "/" + name))
+      files[name] = file_text(run + "/" + name);
+  for (const auto &entry : fs::directory_iterator(run + "/fields"))
+    files["fields/" + entry.path().filename().string()] = file_text(entry.path());
+  files["body.bin"] = file_text(newest_checkpoint(run) + "/body.bin");
+  return files;
+}
+
+void expect_same(const std::string &run, const std::string &reference)
+{
+  const auto found = results(run), expected = results(reference);
+  EXPECT_EQ(found.size(), expected.size());
+  for (const auto &[name, content] : expected) {
+    EXPECT_FALSE(content.empty()) << name;
+    EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
+  }
+  const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
+  for (const char *key : {"status", "reason", "steps", "broken_bonds", "crack_length", "peak_load",
+                          "external_work", "energy_residual", "regime", "states", "warnings",
+                          "magnification", "stiffness", "broken_time", "figures"})
+    EXPECT_EQ(record.value(key, nlohmann::json()), wanted.value(key, nlohmann::json())) << key;
+}
+
+bool has(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+/// In a folder of its own, in which the run "whole" had no break.
+class Resume : public testing::Test
+{
+protected:
+  static void SetUpTestSuite()
+  {
+    fs::remove_all("resume");
+    fs::create_directory("resume");
+    fs::current_path("resume");
+    std::ofstream("torn.json") << torn;
+    ASSERT_EQ(ligament("run torn.json -o whole").code, 0);
+    // A test that ends before the first broken bond proves little.
+    const auto record = file_json("whole/run.json");
+    ASSERT_GE(record["broken_bonds"], 10);
+    ASSERT_FALSE(newest_checkpoint("whole").empty());
+  }
+  static void TearDownTestSuite() { fs::current_path(".."); }
+
+  void SetUp() override
+  {
+    for (const auto &entry : fs::directory_iterator("."))
+      if (entry.path().filename() != "whole" && entry.is_directory())
+        fs::remove_all(entry.path());
+  }
+
+  /// A run that SIGTERM ends about where the one without a break has half of its rows.
+  static void make_half(const std::string &run, const std::string &whole = "whole",
+                        const std::string &overrides = "", int least_checkpoints = 2)
+  {
+    const std::size_t half = fs::file_size(whole + "/history.csv") / 2;
+    // On a fast machine it may come to its end before the signal does.
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      fs::remove_all(run);
+      Process process("exec " + program + " run torn.json -o " + run + overrides);
+      std::error_code none;
+      while (!fs::exists(run + "/history.csv", none) ||
+             fs::file_size(run + "/history.csv", none) < half)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      process.send(SIGTERM);
+      if (process.wait().code == 128 + SIGTERM &&
+          newest_checkpoint(run) >=
+              run + "/checkpoints/checkpoint_00000" + std::to_string(least_checkpoints))
+        return;
+    }
+    FAIL() << "always at its end before it can be stopped";
+  }
+};
+
+/// Kills so many times at random moments, begins and resumes as often as it takes. Returns how many
+/// of the kills hit a process.
+int kill_and_resume(const std::string &run, int n_kills, std::mt19937_64 &random)
+{
+  std::uniform_real_distribution<double> seconds(0.02, 0.5);
+  int hits = 0;
+  for (int k = 0; k < n_kills; ++k) {
+    const bool begun = !newest_checkpoint(run).empty();
+    if (!begun)
+      fs::remove_all(run);
+    Process process("exec " + program + (begun ? " resume " + run : " run torn.json -o " + run));
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds(random)));
+    process.send(SIGKILL);
+    hits += process.wait().code == 128 + SIGKILL;
+  }
+  if (newest_checkpoint(run).empty()) {
+    fs::remove_all(run);
+    EXPECT_EQ(ligament("run torn.json -o " + run).code, 0);
+  } else if (file_json(run + "/run.json").value("status", "") != "done") {
+    const Outcome outcome = ligament("resume " + run);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  }
+  return hits;
+}
+
+void kill_in_chains(int n_wanted, int n_per_chain)
+{
+  std::mt19937_64 random(std::random_device{}());
+  int hits = 0;
+  for (int chain = 0; hits < n_wanted && !testing::Test::HasFailure(); ++chain) {
+    ASSERT_LT(chain, n_wanted);
+    fs::remove_all("killed");
+    hits += kill_and_resume("killed", n_per_chain, random);
+    expect_same("killed", "whole");
+  }
+  std::printf("%d kills\n", hits);
+}
+
+TEST_F(Resume, AfterKillsAtAnyMomentNothingDiffers)
+{
+  kill_in_chains(20, 4);
+}
+
+TEST_F(Resume, SlowAfterTwoHundredKillsNothingDiffers)
+{
+  kill_in_chains(200, 4);
+}
+
+TEST_F(Resume, SignalsLeaveACheckpoint)
+{
+  const std::string never = " --set /output/checkpoint_interval=never ";
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const std::string run = "signal_" + std::to_string(signal);
+    Process process("exec " + program + " run torn.json --set /time/duration=1e6 -o " + run +
+                    never);
+    ASSERT_TRUE(eventually([&] { return file_text(run + "/history.csv").size() > 20000; }));
+    EXPECT_TRUE(newest_checkpoint(run).empty());
+    process.send(signal);
+    EXPECT_EQ(process.wait().code, 128 + signal);
+    EXPECT_FALSE(newest_checkpoint(run).empty());
+    EXPECT_EQ(file_json(run + "/run.json")["status"], "interrupted");
+  }
+  make_half("half", "whole", never, 1);
+  const Outcome outcome = ligament("resume half --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.json()["status"], "done");
+  expect_same("half", "whole");
+}
+
+TEST_F(Resume, AnEndOfTheWallTimeLeavesACheckpoint)
+{
+  const std::string longer = " --set /time/duration=1e6 --set /output/field_interval=never ";
+  const auto outcome = ligament("run torn.json --wall-time 1 --json -o short" + longer);
+  EXPECT_EQ(outcome.code, 124) << outcome.errors;
+  EXPECT_EQ(outcome.json()["status"], "interrupted");
+  EXPECT_TRUE(has(outcome.json()["reason"], "--wall-time at "));
+  EXPECT_FALSE(newest_checkpoint("short").empty());
+  const long steps = outcome.json()["steps"];
+  const auto more = ligament("resume short --wall-time 0.8 --json");
+  EXPECT_EQ(more.code, 124) << more.errors;
+  EXPECT_GT(more.json()["steps"], steps);
+}
+
+/// The same damage as in tests/unit/output/checkpoints_test.cc, which has all of it.
+TEST_F(Resume, ADamagedCheckpointIsPassedOver)
+{
+  make_half("half");
+  const auto damage = [](const std::string &file, const std::string &older, int kind) {
+    std::string content = file_text(file);
+    if (kind == 0)
+      content[content.size() / 2] = char(content[content.size() / 2] ^ 4);
+    else if (kind == 1)
+      content.resize(content.size() / 3);
+    else if (kind == 2)
+      content.clear();
+    else if (kind == 3)
+      content = file_text(older);
+    fs::remove(file);
+    if (kind < 4)
+      std::ofstream(file, std::ios::binary) << content;
+  };
+  for (const auto &[name, kinds] : {std::pair("body.bin", std::vector<int>{0, 1, 2, 3, 4}),
+                                    std::pair("run.bin", std::vector<int>{0}),
+                                    std::pair("manifest.json", std::vector<int>{0, 4})})
+    for (const int kind : kinds) {
+      fs::remove_all("damaged");
+      fs::copy("half", "damaged", fs::copy_options::recursive);
+      const std::string newest = newest_checkpoint("damaged");
+      fs::path older = newest;
+      for (const auto &entry : fs::directory_iterator("damaged/checkpoints"))
+        if (entry.is_directory() && entry.path() != newest)
+          older = entry.path();
+      damage(newest + "/" + name, older / name, kind);
+      const Outcome outcome = ligament("resume damaged");
+      EXPECT_EQ(outcome.code, 0) << outcome.errors;
+      EXPECT_TRUE(has(outcome.errors, "warning: a checkpoint cannot be used: "));
+      EXPECT_TRUE(has(outcome.errors, newest + "/" + name)) << outcome.errors;
+      expect_same("damaged", "whole");
+    }
+}
+
+TEST_F(Resume, AnotherSceneIsRefused)
+{
+  make_half("half");
+  const auto before = file_text("half/history.csv");
+  const auto outcome = ligament("resume half --json --set /material/density=2 "
+                                "--set /loads/1/ramp=90 --set /output/magnification=3");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.json()["status"], "wrong input");
+  EXPECT_TRUE(has(outcome.errors, "/material/density: 2.0, was 1.0")) << outcome.errors;
+  EXPECT_TRUE(has(outcome.errors, "/loads/1/ramp: 90.0, was 100.0")) << outcome.errors;
+  EXPECT_FALSE(has(outcome.errors, "/output/magnification")) << outcome.errors;
+  EXPECT_TRUE(has(ligament("resume half --set /time/duration=300").errors,
+                  "/time/duration: 300.0, was 400.0"));
+  EXPECT_EQ(ligament("resume half --set /time/duratoin=500").code, 2);
+  std::ofstream("other.json") << std::string(torn).replace(torn.find("0.22"), 4, "0.30");
+  EXPECT_TRUE(has(ligament("resume half --scene other.json").errors, "/material/poissons_ratio"));
+  EXPECT_EQ(file_text("half/history.csv"), before); // nothing was touched
+  EXPECT_EQ(ligament("resume half --scene torn.json --set /output/checkpoint_interval=1").code, 0);
+  expect_same("half", "whole");
+}
+
+TEST_F(Resume, FoldersWithoutCheckpointAreRefused)
+{
+  EXPECT_TRUE(has(ligament("resume nothing").errors, "nothing is not the output folder of a run"));
+  ASSERT_EQ(ligament("run torn.json --set /time/duration=5 -o none "
+                     "--set /output/checkpoint_interval=never")
+                .code,
+            0);
+  const auto outcome = ligament("resume none");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(has(outcome.errors, "no checkpoint to go on from")) << outcome.errors;
+  EXPECT_EQ(file_json("none/run.json")["status"], "done");
+}
+
+TEST_F(Resume, ARunThatIsUnderWayIsLeftAlone)
+{
+  Process process("exec " + program + " run torn.json -o busy --set /time/duration=1e6",
+                  "busy_run");
+  ASSERT_TRUE(eventually([] { return !newest_checkpoint("busy").empty(); }));
+  const auto outcome = ligament("resume busy");
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_TRUE(has(outcome.errors, "is under way in this folder")) << outcome.errors;
+}
+
+TEST_F(Resume, ARunCanBeProlonged)
+{
+  ASSERT_EQ(ligament("run torn.json --set /time/duration=200 -o first").code, 0);
+  const auto nothing = ligament("resume first");
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_TRUE(has(nothing.errors, "the run has come to its end")) << nothing.errors;
+  const auto outcome = ligament("resume first --set /time/duration=400");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  expect_same("first", "whole");
+}
+
+/// What bodies and loops may be made of, in overrides of the scene.
+const std::vector<std::pair<std::string, std::string>> other_scenes = {
+    {"random", " --set /discrete_zone/packing=random --set /discrete_zone/relaxation_sweeps=4 "},
+    {"file", " --set /discrete_zone/packing=file --set /discrete_zone/packing_file=packing.csv "},
+    {"damped", " --set /damping/kinetic=true --set /coupling/step_ratio=4 "},
+    {"resting", " --set /time/rest_threshold=1e-5 --set /far_field=none --set /damping/local=0.2 "},
+    {"mesh", " --set /discrete_zone=none --set '/specimen/cracks=[]' --set /damping/mass=1e-3 "
+             "--set /time/duration=5000 "},
+    {"weighted", " --set /coupling/scheme=acceleration --set /coupling/step_ratio=1 "},
+    {"cube", " --set /dimension=3 --set '/specimen={\"size\": [10, 30, 10]}' --set /far_field=none "
+             "--set '/discrete_zone={\"extent\": \"all\", \"packing\": \"fcc\", \"spacing\": 1}' "
+             "--set '/loads=[{\"boundary\": \"top\", \"velocity\": [null, 2e-3, null]}, "
+             "{\"boundary\": \"bottom\", \"velocity\": [null, -2e-3, null]}]' "
+             "--set /time/duration=60 "}};
+
+TEST_F(Resume, SlowOtherScenesGoOnAsWell)
+{
+  for (const auto &[name, overrides] : other_scenes) {
+    SCOPED_TRACE(name);
+    const auto outcome = ligament("run torn.json -o " + name + "_whole" + overrides);
+    ASSERT_EQ(outcome.code, 0) << outcome.errors;
+    if (name == "random")
+      fs::copy("random_whole/packing.csv", "packing.csv", fs::copy_options::overwrite_existing);
+    if (name != "mesh") {
+      EXPECT_GE(file_json(name + "_whole/run.json")["broken_bonds"], 5);
+    }
+    make_half(name, name + "_whole", overrides);
+    fs::rename(name, "moved_" + name);   // nothing depends on the place
+    const bool is_lost = name == "file"; // then the set-up seeks again
+    if (is_lost)
+      std::ofstream("moved_" + name + "/checkpoints/reference.bin") << "nothing";
+    const Outcome more = ligament("resume moved_" + name);
+    EXPECT_EQ(more.code, 0) << more.errors;
+    EXPECT_EQ(has(more.errors, "warning: what the set-up had found is lost"), is_lost);
+    expect_same("moved_" + name, name + "_whole");
+  }
+}
+
+/// The disk below the checkpoints of a run, which begins to refuse at a call.
+std::string faulty_disk(const std::string &run, const std::string &action, int call)
+{
+  return "FAULTY_DISK_FOLDER=" + fs::absolute(run + "/checkpoints").string() +
+         " FAULTY_DISK_ACTION=" + action + " FAULTY_DISK_CALL=" + std::to_string(call) +
+         " FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) + " LD_PRELOAD=" + LIGAMENT_FAULTY_DISK +
+         " ASAN_OPTIONS=verify_asan_link_order=0";
+}
+
+const std::string often = " --set /output/checkpoint_interval=0.001";
+
+TEST_F(Resume, AFailedWriteIsAWarning)
+{
+  const auto outcome =
+      ligament("run torn.json -o once --json" + often, faulty_disk("once", "fail", 30));
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_TRUE(has(outcome.errors, "warning: a checkpoint could not be written: "));
+  EXPECT_EQ(outcome.json()["warnings"].size(), file_json("whole/run.json")["warnings"].size() + 1);
+}
+
+TEST_F(Resume, TheThirdFailureInARowEndsTheRun)
+{
+  const auto outcome =
+      ligament("run torn.json -o full --json" + often, faulty_disk("full", "fail_on", 30));
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_EQ(outcome.json()["status"], "failed");
+  EXPECT_TRUE(has(outcome.errors, "3 checkpoints in a row could not be written: "))
+      << outcome.errors;
+  EXPECT_TRUE(has(outcome.errors, "No space left on device")) << outcome.errors;
+  const Outcome more = ligament("resume full");
+  EXPECT_EQ(more.code, 0) << more.errors;
+  expect_same("full", "whole");
+}
+} // namespace

@@ -1,0 +1,31 @@
+// States that tell by a number which they are.
+#pragma once
+
+#include "core/state.h"
+
+#include <map>
+#include <random>
+#include <string>
+
+namespace ligament::tests
+{
+/// Two files of different sizes, the larger one of several writes.
+inline std::map<std::string, core::State> sample_states(int seed)
+{
+  std::mt19937_64 random(seed);
+  core::State body, run;
+  std::vector<std::int64_t> keys;
+  for (int k = 0; k < 6000; ++k)
+    keys.push_back(3 * k + seed);
+  core::Table particles(keys);
+  for (const char *name : {"x", "y"}) {
+    std::vector<std::int64_t> words(keys.size());
+    for (std::int64_t &word : words)
+      word = std::int64_t(random());
+    particles.add(name, words);
+  }
+  body.emplace("particles", particles);
+  core::save_value(run, "run", "energy", 1. / seed);
+  return {{"body", body}, {"run", run}};
+}
+} // namespace ligament::tests
