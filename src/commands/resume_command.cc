@@ -40,7 +40,7 @@ ReadResult scene_of(const CommandLine &line, const RunFolder &folder,
   ReadResult input = line.scene.empty() ? parse_scene(json_text(manifest.scene, 2),
                                                       folder.resolved_scene(), line.overrides)
                                         : read_scene(line.scene, line.overrides);
-  if (input.scene && input.scene->zone.packing == "file")
+  if (input.scene && input.scene->zone.packing == PackingKind::file)
     input.scene->zone.packing_file = folder.packing();
   return input;
 }
