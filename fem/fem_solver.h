@@ -134,8 +134,8 @@ public:
   Vector<dim> reaction(int load) const;
 
   /// Motion, absorbing sides and what the next work is booked against, between drift and
-  /// compute_forces, as the tables "nodes", "held", "far_dashpots" and "far_field". Names of nodes:
-  /// node_names(). Nodes without rows stay as they are.
+  /// compute_forces, as the tables "nodes", "loaded_nodes", "far_dashpots" and "far_field". Names of
+  /// nodes: node_names(). Nodes without rows stay as they are.
   void save(core::State &state, const core::Names &names) const;
   void load(const core::State &state, const core::Names &names);
 
