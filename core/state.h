@@ -10,8 +10,8 @@
 namespace ligament::core
 {
 /// Rows of 64-bit words, doubles or integers, kept bit by bit. Rows have ascending names of
-/// `n_keys` integers each: a particle or node (1), a loaded face (2), a contact or dashpot (3); tables
-/// of single values have one row called 0.
+/// `n_keys` integers each: a particle or node (1), a loaded face (2), a contact or dashpot (3);
+/// tables of single values have one row called 0.
 class Table
 {
 public:
