@@ -436,6 +436,15 @@ void Recorder<dim>::load(const core::State &state, const CoupledBody<dim> &body,
     break_state_ = load_fields(state, "broken", present_state(body, 0));
 }
 
+template <int dim>
+void Recorder<dim>::watch(const CoupledBody<dim> &body)
+{
+  core::State seen;
+  guard_.save(seen);
+  guard_ = OverlapGuard<dim>(body);
+  guard_.load(seen);
+}
+
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);
 template double output_seconds(const Scene &, const CoupledBody<3> &, long);
 template class Recorder<2>;

@@ -64,6 +64,9 @@ public:
   /// The body has its motion already, and the files have been cut back.
   void load(const core::State &state, const CoupledBody<dim> &body, long step);
 
+  /// A new body with the state of the one that it took the place of.
+  void watch(const CoupledBody<dim> &body);
+
   /// The first file that finish() could not write, and why; empty: none.
   const std::string &failure() const { return failure_; }
 
