@@ -29,6 +29,10 @@ Checkpoint newest_checkpoint(const RunFolder &folder)
                fmt::format("warning: what the set-up had found is lost, and is sought again: "
                            "{}\n",
                            lost));
+  for (const std::string &lost : found.checkpoint->kept_lost)
+    core::tell(stderr, fmt::format("warning: a picture or a snapshot of the run so far is lost: "
+                                   "{}\n",
+                                   lost));
   return std::move(*found.checkpoint);
 }
 

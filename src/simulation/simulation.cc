@@ -54,7 +54,7 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   clock_.now.step = long(manifest.step);
   clock_.now.time = manifest.time;
   damping_.load(run);
-  recorder_.load(run, body_, clock_.now.step);
+  recorder_.load(run, checkpoint.kept, body_, clock_.now.step);
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
   started_ = manifest.started;
@@ -126,7 +126,8 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   if (!reference_sum_)
     reference_sum_ = checkpoints.write_reference(reference_.tables());
   manifest.reference = reference_sum_;
-  checkpoints.write(std::move(manifest), {{body_file, take_state(body_)}, {run_file, run_state()}});
+  checkpoints.write(std::move(manifest), {{body_file, take_state(body_)}, {run_file, run_state()}},
+                    recorder_.kept(body_));
 }
 
 template <int dim>
