@@ -66,6 +66,13 @@ void remove_folder(const std::string &path)
   sync_folder(parent_of(path));
 }
 
+void remove_file(const std::string &path)
+{
+  if (::unlink(path.c_str()) != 0)
+    fail("remove", path);
+  sync_folder(parent_of(path));
+}
+
 std::vector<std::string> folder_entries(const std::string &path)
 {
   std::vector<std::string> names;

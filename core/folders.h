@@ -18,6 +18,8 @@ void rename_folder(const std::string &from, const std::string &to);
 /// Removes a folder of files.
 void remove_folder(const std::string &path);
 
+void remove_file(const std::string &path);
+
 /// The names in a folder, sorted; none where there is no folder.
 std::vector<std::string> folder_entries(const std::string &path);
 } // namespace ligament::core

@@ -36,6 +36,8 @@ Table::Table(std::vector<std::int64_t> keys, int n_keys) : n_keys_(n_keys), keys
 void Table::add_words(const std::string &column, const std::uint64_t *values)
 {
   require(!has(column), "state: column '" + column + "' twice");
+  if (columns_.empty()) // most tables have fewer columns, and memory that nobody touches is free
+    words_.reserve(16 * n_rows());
   columns_.push_back(column);
   words_.insert(words_.end(), values, values + n_rows());
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace ligament::core
@@ -184,10 +185,15 @@ StateFileSum write_state_file(const std::string &path, const State &state)
     keys.push_back(pack_keys(table.keys(), table.n_keys()));
   OutputFile file(path);
   StateFileSum sum;
+  // Slice by slice, which is in the cache still when its sum is formed.
+  constexpr std::size_t slice = std::size_t(1) << 19;
   const auto write = [&](std::string_view bytes) {
-    file.write(bytes);
     sum.bytes += std::int64_t(bytes.size());
-    sum.checksum = std::int64_t(checksum(bytes, sum.checksum));
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(slice, bytes.size()))) {
+      const std::string_view part = bytes.substr(0, slice);
+      file.write(part);
+      sum.checksum = std::int64_t(checksum(part, sum.checksum));
+    }
   };
   write(header_of(state, keys));
   auto packed = keys.begin();

@@ -29,6 +29,10 @@ Checkpoint newest_checkpoint(const RunFolder &folder)
                fmt::format("warning: what the set-up had found is lost, and is sought again: "
                            "{}\n",
                            lost));
+  for (const std::string &lost : found.checkpoint->kept_lost)
+    core::tell(stderr, fmt::format("warning: a picture or a snapshot of the run so far is lost: "
+                                   "{}\n",
+                                   lost));
   return std::move(*found.checkpoint);
 }
 
@@ -106,9 +110,10 @@ void cut_back(const RunFolder &folder, const CheckpointManifest &manifest)
 int resume_command(const CommandLine &line)
 {
   core::Interruption interruption;
-  const EndRequest request = end_request(line, interruption);
+  RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval};
   OpenRun run(RunFolder{line.run});
   const Checkpoint checkpoint = newest_checkpoint(run.folder());
+  options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
   const ReadResult input = scene_of(line, run.folder(), manifest);
   if (!input.scene)
@@ -122,7 +127,7 @@ int resume_command(const CommandLine &line)
   first.started = manifest.started;
   run.go_on(first);
   cut_back(run.folder(), manifest);
-  const RunRecord record = simulate(input, warnings, run, interruption, request, &checkpoint);
+  const RunRecord record = simulate(input, warnings, run, interruption, options);
   return end_of_run(line, line.run, run.folder(), record, interruption);
 }
 } // namespace ligament::program

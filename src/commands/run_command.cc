@@ -28,12 +28,12 @@ std::string output_folder(const CommandLine &line)
 int run_command(const CommandLine &line, const ReadResult &input)
 {
   core::Interruption interruption;
-  const EndRequest request = end_request(line, interruption);
+  const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval};
   OpenRun run(RunFolder{output_folder(line)}, first_record(*input.scene), stderr);
   std::vector<std::string> warnings;
   for (const core::Diagnostic &d : input.warnings)
     warnings.push_back(fmt::format("{}: {}", to_string(d.place), d.message));
-  const RunRecord record = simulate(input, warnings, run, interruption, request);
+  const RunRecord record = simulate(input, warnings, run, interruption, options);
   return end_of_run(line, line.scene, run.folder(), record, interruption);
 }
 } // namespace ligament::program

@@ -29,20 +29,20 @@ namespace
 template <int dim>
 RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &warnings,
                       const RunFolder &folder, core::Interruption &interruption,
-                      const EndRequest &request, const Checkpoint *from)
+                      const RunOptions &options)
 {
-  Simulation<dim> simulation(*input.scene, folder, stderr, true, from);
+  Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from);
   for (const std::string &text : warnings)
     simulation.warn(text);
   simulation.keep_checkpoints(input.resolved);
+  simulation.rebuild_every(options.rebuild_interval);
   interruption.leave_to_caller();
-  return simulation.run(request);
+  return simulation.run(options.end_request);
 }
 } // namespace
 
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
-                   core::Interruption &interruption, const EndRequest &request,
-                   const Checkpoint *from)
+                   core::Interruption &interruption, const RunOptions &options)
 {
   interruption.end_at_once([&run](int signal) {
     run.end("interrupted", std::string(core::Interruption::name(signal)) + " asked for the end");
@@ -50,7 +50,7 @@ RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warn
   try {
     core::write_file(run.folder().resolved_scene(), json_text(input.resolved, 2) + "\n");
     const auto &in_space = input.scene->dimension == 2 ? simulate_in<2> : simulate_in<3>;
-    return in_space(input, warnings, run.folder(), interruption, request, from);
+    return in_space(input, warnings, run.folder(), interruption, options);
   } catch (const core::GuardStop &error) {
     run.end("stopped", error.what());
     throw;

@@ -12,8 +12,14 @@ namespace ligament::program
 /// What the record says before the body is built.
 RunRecord first_record(const Scene &scene);
 
+struct RunOptions
+{
+  EndRequest end_request;
+  const Checkpoint *from = nullptr; // where it goes on
+  int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
+};
+
 /// With checkpoints; what stops it is in its record, and warnings in its log.
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
-                   core::Interruption &interruption, const EndRequest &request,
-                   const Checkpoint *from = nullptr);
+                   core::Interruption &interruption, const RunOptions &options);
 } // namespace ligament::program

@@ -35,6 +35,14 @@ void add_wall_time_option(CLI::App &app, CommandLine &line)
       ->check(CLI::PositiveNumber);
 }
 
+/// For tests of the program itself: help and manual leave it out.
+void add_rebuild_option(CLI::App &app, CommandLine &line)
+{
+  app.add_option("--rebuild-interval", line.rebuild_interval)
+      ->check(CLI::PositiveNumber)
+      ->group("");
+}
+
 void add_scene_options(CLI::App &app, CommandLine &line)
 {
   app.add_option("scene", line.scene, "scene file")->required()->type_name("SCENE");
@@ -53,6 +61,7 @@ void declare(CLI::App &app, CommandLine &line)
   CLI::App &run = *app.add_subcommand("run", "computes a scene");
   add_scene_options(run, line);
   add_wall_time_option(run, line);
+  add_rebuild_option(run, line);
 
   CLI::App &resume = *app.add_subcommand("resume", "goes on with a run from its newest checkpoint");
   resume.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");
@@ -63,6 +72,7 @@ void declare(CLI::App &app, CommandLine &line)
       ->type_name("SCENE");
   add_override_option(resume, line);
   add_wall_time_option(resume, line);
+  add_rebuild_option(resume, line);
 
   CLI::App &check =
       *app.add_subcommand("check", "everything but time stepping: errors, sizes, steps, cost");

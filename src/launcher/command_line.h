@@ -23,6 +23,7 @@ struct CommandLine
   int jobs = 1;                       // sweep: runs at the same time
   bool dry_run = false;               // sweep: list the cases only
   double wall_time = 0;               // run, resume: s until it ends; 0: no limit
+  int rebuild_interval = 0;           // run, resume: see Simulation::rebuild_every; 0: never
   std::string run, reference; // resume, compare, report: folders (the reference may be a curve)
   std::vector<std::string> fields; // report: of its pictures; empty: those of the run
   std::string key;                 // explain; empty: all keys

@@ -10,7 +10,7 @@ namespace
 {
 using Json = nlohmann::ordered_json; // keeps the file readable
 
-constexpr int format = 1;
+constexpr int format = 2;
 
 // The fields, once for both directions.
 template <typename Manifest, typename Visit>
@@ -41,6 +41,24 @@ core::StateFileSum sum_of(const Json &json)
   return {json.at("bytes").get<std::int64_t>(), json.at("checksum").get<std::int64_t>()};
 }
 
+using Sums = std::map<std::string, core::StateFileSum>;
+
+Json json_of(const Sums &sums)
+{
+  Json json = Json::object();
+  for (const auto &[name, sum] : sums)
+    json[name] = json_of(sum);
+  return json;
+}
+
+Sums sums_of(const Json &json)
+{
+  Sums sums;
+  for (const auto &[name, sum] : json.items())
+    sums[name] = sum_of(sum);
+  return sums;
+}
+
 std::string text_of(const Json &json)
 {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -61,9 +79,8 @@ std::string manifest_text(const CheckpointManifest &manifest)
   Json &timing = json["timing"] = Json::array();
   for (const core::Timers::Row &row : manifest.timing)
     timing.push_back({{"name", row.name}, {"seconds", row.seconds}, {"calls", row.calls}});
-  Json &states = json["states"] = Json::object();
-  for (const auto &[name, sum] : manifest.states)
-    states[name] = json_of(sum);
+  json["states"] = json_of(manifest.states);
+  json["kept"] = json_of(manifest.kept);
   json["reference"] = manifest.reference ? json_of(*manifest.reference) : Json();
   json["checksum"] = checksum(json);
   return text_of(json);
@@ -87,8 +104,8 @@ CheckpointManifest parse_manifest(const std::string &text)
     for (const Json &row : json.at("timing"))
       manifest.timing.push_back({row.at("name").get<std::string>(), row.at("seconds").get<double>(),
                                  row.at("calls").get<std::int64_t>()});
-    for (const auto &[name, sum] : json.at("states").items())
-      manifest.states[name] = sum_of(sum);
+    manifest.states = sums_of(json.at("states"));
+    manifest.kept = sums_of(json.at("kept"));
     if (const Json &reference = json.at("reference"); !reference.is_null())
       manifest.reference = sum_of(reference);
   } catch (const Json::exception &error) {

@@ -37,6 +37,7 @@ struct CheckpointManifest
   /// written later.
   std::map<std::string, std::int64_t> positions;
   std::map<std::string, core::StateFileSum> states; // by name
+  std::map<std::string, core::StateFileSum> kept;   // likewise, see KeptState
   std::optional<core::StateFileSum> reference;      // see Checkpoints::write_reference
 };
 

@@ -15,7 +15,8 @@ namespace ligament::program
 namespace
 {
 const std::string reference_name = "reference", prefix = "checkpoint_",
-                  manifest_file = "manifest.json", unfinished = ".tmp";
+                  manifest_file = "manifest.json", unfinished = ".tmp", kept_prefix = "kept_",
+                  ending = ".bin";
 
 /// Of a name checkpoint_NNNNNN; 0: it is none.
 std::int64_t number_of(const std::string &name)
@@ -43,9 +44,16 @@ bool is_there(const std::string &path)
   return ::access(path.c_str(), F_OK) == 0;
 }
 
+/// The name of the kept state in this file.
+std::string kept_of(const std::string &file)
+{
+  const std::size_t size = file.size() - std::min(file.size(), ending.size());
+  return file.substr(kept_prefix.size(), size - std::min(size, kept_prefix.size()));
+}
+
 std::string state_file(const std::string &folder, const std::string &name)
 {
-  return folder + "/" + name + ".bin";
+  return folder + "/" + name + ending;
 }
 } // namespace
 
@@ -68,6 +76,19 @@ std::vector<std::int64_t> Checkpoints::numbers() const
   return numbers;
 }
 
+std::map<std::string, core::StateFileSum> Checkpoints::all_kept() const
+{
+  std::map<std::string, core::StateFileSum> kept;
+  for (const std::int64_t number : numbers())
+    try {
+      const CheckpointManifest manifest = read_manifest(number);
+      kept.insert(manifest.kept.begin(), manifest.kept.end());
+    } catch (const core::InputError &) {
+      // A checkpoint that cannot be used keeps nothing.
+    }
+  return kept;
+}
+
 void Checkpoints::clean() const
 {
   for (const std::string &name : core::folder_entries(folder_)) {
@@ -75,6 +96,10 @@ void Checkpoints::clean() const
     if (is_unfinished(name) || (number_of(name) > 0 && !is_there(entry + "/" + manifest_file)))
       core::remove_folder(entry);
   }
+  const auto kept = all_kept();
+  for (const std::string &name : core::folder_entries(folder_))
+    if (name.rfind(kept_prefix, 0) == 0 && !kept.count(kept_of(name)))
+      core::remove_file(folder_ + "/" + name);
 }
 
 void Checkpoints::make() const
@@ -91,8 +116,28 @@ core::StateFileSum Checkpoints::write_reference(const core::State &state) const
   return sum;
 }
 
+void Checkpoints::write_kept(CheckpointManifest &manifest, const std::vector<KeptState> &kept) const
+{
+  const auto there = all_kept();
+  manifest.kept.clear();
+  bool is_new = false;
+  for (const KeptState &state : kept) {
+    const std::string file = state_file(folder_, kept_prefix + state.name);
+    const auto found = there.find(state.name);
+    if (found != there.end() && is_there(file)) {
+      manifest.kept.insert(*found);
+      continue;
+    }
+    manifest.kept[state.name] = core::write_state_file(file, state.take());
+    is_new = true;
+  }
+  if (is_new)
+    core::sync_folder(folder_);
+}
+
 void Checkpoints::write(CheckpointManifest manifest,
-                        const std::map<std::string, core::State> &states) const
+                        const std::map<std::string, core::State> &states,
+                        const std::vector<KeptState> &kept) const
 {
   make();
   clean();
@@ -101,6 +146,7 @@ void Checkpoints::write(CheckpointManifest manifest,
   manifest.states.clear();
   const std::string whole = path(manifest.number), part = whole + unfinished;
   try {
+    write_kept(manifest, kept);
     core::make_new_folder(part);
     for (const auto &[name, state] : states)
       manifest.states[name] = core::write_state_file(state_file(part, name), state);
@@ -117,14 +163,13 @@ void Checkpoints::write(CheckpointManifest manifest,
   }
   for (std::size_t k = 0; k + 1 < before.size(); ++k)
     core::remove_folder(path(before[k]));
+  clean();
 }
 
-Checkpoint Checkpoints::read(std::int64_t number) const
+CheckpointManifest Checkpoints::read_manifest(std::int64_t number) const
 {
-  const std::string folder = path(number);
-  Checkpoint checkpoint;
-  CheckpointManifest &manifest = checkpoint.manifest;
-  const std::string file = folder + "/" + manifest_file;
+  CheckpointManifest manifest;
+  const std::string file = path(number) + "/" + manifest_file;
   const std::string text = core::read_file(file);
   try {
     manifest = parse_manifest(text);
@@ -133,8 +178,23 @@ Checkpoint Checkpoints::read(std::int64_t number) const
   }
   core::require(manifest.number == number,
                 fmt::format("{}: of checkpoint {}, not of this one", file, manifest.number));
+  return manifest;
+}
+
+Checkpoint Checkpoints::read(std::int64_t number) const
+{
+  const std::string folder = path(number);
+  Checkpoint checkpoint;
+  CheckpointManifest &manifest = checkpoint.manifest;
+  manifest = read_manifest(number);
   for (const auto &[name, sum] : manifest.states)
     checkpoint.states[name] = core::read_state_file(state_file(folder, name), sum);
+  for (const auto &[name, sum] : manifest.kept)
+    try {
+      checkpoint.kept[name] = core::read_state_file(state_file(folder_, kept_prefix + name), sum);
+    } catch (const core::InputError &error) {
+      checkpoint.kept_lost.push_back(error.what());
+    }
   if (manifest.reference)
     try {
       checkpoint.reference =
@@ -148,20 +208,34 @@ Checkpoint Checkpoints::read(std::int64_t number) const
 FoundCheckpoint Checkpoints::newest_good() const
 {
   FoundCheckpoint found;
+  std::optional<Checkpoint> with_losses; // the newest
+  std::vector<std::string> passed_over;  // without it
   try {
     const std::vector<std::int64_t> all = numbers();
     for (auto number = all.rbegin(); number != all.rend(); ++number)
       try {
-        found.checkpoint = read(*number);
-        return found;
+        Checkpoint checkpoint = read(*number);
+        if (checkpoint.kept_lost.empty()) {
+          found.checkpoint = std::move(checkpoint);
+          return found;
+        }
+        const auto &lost = checkpoint.kept_lost;
+        found.passed_over.insert(found.passed_over.end(), lost.begin(), lost.end());
+        if (!with_losses)
+          with_losses = std::move(checkpoint);
       } catch (const core::InputError &error) {
         found.passed_over.push_back(error.what());
+        passed_over.push_back(error.what());
       } catch (const core::EnvironmentError &error) {
         found.passed_over.push_back(error.what());
+        passed_over.push_back(error.what());
       }
   } catch (const core::EnvironmentError &error) {
     found.passed_over.push_back(error.what());
+    passed_over.push_back(error.what());
   }
+  if (with_losses)
+    return {std::move(with_losses), std::move(passed_over)};
   return found;
 }
 

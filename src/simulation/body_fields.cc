@@ -1,5 +1,7 @@
 #include "src/simulation/body_fields.h"
 
+#include "src/simulation/kept_tables.h"
+
 #include <cmath>
 #include <unordered_map>
 
@@ -191,6 +193,35 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
 }
 
 template <int dim>
+core::State save_fields(const BodyState &kept, BodyNames<dim> &names)
+{
+  core::State state;
+  const auto save = [&](const std::string &table, const core::Names &rows, const auto &fields) {
+    if (fields.empty())
+      return;
+    core::Table values(rows.sorted());
+    for (const Field &field : fields)
+      add_items(values, rows, field.name, field.n_components(), field.values);
+    state.emplace(table, std::move(values));
+  };
+  save("particles", names.particles(), kept.particles.fields);
+  save("nodes", names.nodes(), kept.cells.node_fields);
+  return state;
+}
+
+template <int dim>
+BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState like)
+{
+  const auto load = [&](const std::string &table, const core::Names &rows, auto &fields) {
+    for (Field &field : fields)
+      field.values = items(core::table(state, table), rows, field.name, field.n_components());
+  };
+  load("particles", names.particles(), like.particles.fields);
+  load("nodes", names.nodes(), like.cells.node_fields);
+  return like;
+}
+
+template <int dim>
 Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
                   const Components<dim> &velocity)
 {
@@ -247,6 +278,10 @@ template ParticleFields particle_fields(const CoupledBody<2> &);
 template ParticleFields particle_fields(const CoupledBody<3> &);
 template CellFields cell_fields(const CoupledBody<2> &);
 template CellFields cell_fields(const CoupledBody<3> &);
+template core::State save_fields(const BodyState &, BodyNames<2> &);
+template core::State save_fields(const BodyState &, BodyNames<3> &);
+template BodyState load_fields(const core::State &, BodyNames<2> &, BodyState);
+template BodyState load_fields(const core::State &, BodyNames<3> &, BodyState);
 template class StateFields<2>;
 template class StateFields<3>;
 template Snapshot snapshot<2>(const CoupledBody<2> &, double, const Components<2> &,

@@ -3,7 +3,7 @@
 
 #include "src/output/fields.h"
 #include "src/output/snapshot.h"
-#include "src/simulation/coupled_body.h"
+#include "src/simulation/body_names.h"
 
 namespace ligament::program
 {
@@ -30,6 +30,13 @@ private:
 
   std::vector<std::uint8_t> n_faces_; // per particle, shared with others; found when first needed
 };
+
+/// The values of all fields as tables "particles" and "nodes" whose rows have names.
+template <int dim>
+core::State save_fields(const BodyState &kept, BodyNames<dim> &names);
+/// `like`: the fields of the same body at another time, which receive the values.
+template <int dim>
+BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState like);
 
 /// A motion of the particles at `time` in s: m and m/s.
 template <int dim>

@@ -43,6 +43,16 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   return ledger;
 }
 
+template <int dim>
+double motion_energy(const CoupledBody<dim> &body, const coupling::StepTime &step)
+{
+  const auto e = body.coupler->energy(body.bodies(), step);
+  return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended +
+         e.impulses;
+}
+
 template EnergyLedger read_ledger(const CoupledBody<2> &, const coupling::StepTime &, double);
 template EnergyLedger read_ledger(const CoupledBody<3> &, const coupling::StepTime &, double);
+template double motion_energy(const CoupledBody<2> &, const coupling::StepTime &);
+template double motion_energy(const CoupledBody<3> &, const coupling::StepTime &);
 } // namespace ligament::program

@@ -36,4 +36,9 @@ struct EnergyLedger
 template <int dim>
 EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime &step,
                          double damping);
+
+/// In J, of motion and deformation alone; valid at the same time. What it changes by where nothing
+/// moves is to be booked.
+template <int dim>
+double motion_energy(const CoupledBody<dim> &body, const coupling::StepTime &step);
 } // namespace ligament::program

@@ -358,8 +358,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   if (fields_copied_at_ != 0)
     keep(std::move(peak_state_), "peak",
          record.peak_load ? "near the peak load" : "near the largest load");
-  if (broken_time_)
-    keep(std::move(break_state_), "broken", "when the load path is gone");
+  if (break_state_)
+    keep(std::move(*break_state_), "broken", "when the load path is gone");
   keep(present_state(body, step.time), "end", "at the end");
   keep_states(body, std::move(states), record);
   record.broken_time = broken_time_;
@@ -406,14 +406,31 @@ void Recorder<dim>::save(core::State &state) const
   state.emplace("history", std::move(rows));
   outputs.add("time", fields_.times());
   state.emplace("field_outputs", std::move(outputs));
-  if (fields_copied_at_ != 0)
-    save_fields(state, "peak", peak_state_);
-  if (broken_time_)
-    save_fields(state, "broken", break_state_);
+  save_optional(state, "recorder", "peak",
+                fields_copied_at_ != 0 ? std::optional(peak_state_.time) : std::nullopt);
+  save_optional(state, "recorder", "broken",
+                break_state_ ? std::optional(break_state_->time) : std::nullopt);
 }
 
 template <int dim>
-void Recorder<dim>::load(const core::State &state, const CoupledBody<dim> &body, long step)
+std::vector<KeptState> Recorder<dim>::kept(const CoupledBody<dim> &body) const
+{
+  const auto names = std::make_shared<BodyNames<dim>>(body);
+  std::vector<KeptState> states = snapshots_.kept(names);
+  const auto add = [&](const char *kind, const BodyState &state) {
+    states.push_back(
+        {kept_name(kind, state.time), [&state, names] { return save_fields<dim>(state, *names); }});
+  };
+  if (fields_copied_at_ != 0)
+    add("peak", peak_state_);
+  if (break_state_)
+    add("broken", *break_state_);
+  return states;
+}
+
+template <int dim>
+void Recorder<dim>::load(const core::State &state, const std::map<std::string, core::State> &kept,
+                         const CoupledBody<dim> &body, long step)
 {
   first_step_ = step;
   next_history_ = core::load_real(state, "recorder", "next_history");
@@ -425,15 +442,35 @@ void Recorder<dim>::load(const core::State &state, const CoupledBody<dim> &body,
   guard_.load(state);
   path_.load(state);
   curve_.load(state);
-  snapshots_.load(state);
+  BodyNames<dim> names(body);
+  snapshots_.load(state, kept, names);
   residual_ = core::table(state, "history").reals("residual");
   work_ = core::table(state, "history").reals("work");
   fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
                 body.far != nullptr);
-  if (fields_copied_at_ != 0)
-    peak_state_ = load_fields(state, "peak", present_state(body, 0));
-  if (broken_time_)
-    break_state_ = load_fields(state, "broken", present_state(body, 0));
+  const auto take = [&](const char *kind) -> std::optional<BodyState> {
+    const auto time = load_optional(state, "recorder", kind);
+    const auto found = time ? kept.find(kept_name(kind, *time)) : kept.end();
+    if (found == kept.end())
+      return {};
+    BodyState taken = load_fields(found->second, names, present_state(body, 0));
+    taken.time = *time;
+    return taken;
+  };
+  if (auto peak = take("peak"))
+    peak_state_ = std::move(*peak);
+  else
+    fields_copied_at_ = 0; // another copy is due
+  break_state_ = take("broken");
+}
+
+template <int dim>
+void Recorder<dim>::watch(const CoupledBody<dim> &body)
+{
+  core::State seen;
+  guard_.save(seen);
+  guard_ = OverlapGuard<dim>(body);
+  guard_.load(seen);
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

@@ -61,8 +61,16 @@ public:
   std::map<std::string, std::int64_t> sync();
   /// After wait().
   void save(core::State &state) const;
-  /// The body has its motion already, and the files have been cut back.
-  void load(const core::State &state, const CoupledBody<dim> &body, long step);
+  /// The copies of earlier times, which checkpoints keep beside it; to be taken before the next
+  /// look.
+  std::vector<KeptState> kept(const CoupledBody<dim> &body) const;
+  /// The body has its motion already, and the files have been cut back. Copies that are lost are
+  /// missing in the outputs.
+  void load(const core::State &state, const std::map<std::string, core::State> &kept,
+            const CoupledBody<dim> &body, long step);
+
+  /// A new body with the state of the one that it took the place of.
+  void watch(const CoupledBody<dim> &body);
 
   /// The first file that finish() could not write, and why; empty: none.
   const std::string &failure() const { return failure_; }
@@ -108,10 +116,10 @@ private:
   LoadCurve curve_;
   std::vector<double> residual_, work_; // J, of the rows of the history
   SnapshotKeeper<dim> snapshots_;
-  bool quasi_static_ = true;    // at the last row
-  double fields_copied_at_ = 0; // N, load of the copies below
-  BodyState peak_state_;        // without bonds until the end
-  BodyState break_state_;       // when the load path was found gone
+  bool quasi_static_ = true;             // at the last row
+  double fields_copied_at_ = 0;          // N, load of the copies below
+  BodyState peak_state_;                 // without bonds until the end
+  std::optional<BodyState> break_state_; // when the load path was found gone
   StateFields<dim> state_fields_;
   core::BackgroundWriter writer_; // of fields_; last, so that its jobs end before what they use
 };

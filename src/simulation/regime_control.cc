@@ -1,5 +1,6 @@
 #include "src/simulation/regime_control.h"
 
+#include "src/simulation/energy_ledger.h"
 #include "src/simulation/kept_tables.h"
 
 #include <fmt/format.h>
@@ -92,15 +93,10 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
   const Regime needed = automatic_ ? this->needed() : regime_;
   if (needed > regime_) {
     auto bodies = body.bodies();
-    const auto total = [&] {
-      const auto e = body.coupler->energy(bodies, step);
-      return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far +
-             e.blended + e.impulses;
-    };
-    const double before = total();
+    const double before = motion_energy(body, step);
     set(needed, body);
     body.coupler->compute_forces(bodies, step);
-    const double jump = total() - before;
+    const double jump = motion_energy(body, step) - before;
     body.regime_change -= jump;
     history_.emplace_back(regime_, step.time);
     log.info("{} regime from {:.4g} s: rotation {:.2f} degrees, bending {:.2f} degrees, strain "

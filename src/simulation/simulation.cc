@@ -18,14 +18,14 @@ namespace ligament::program
 namespace
 {
 // Files of a checkpoint.
-const std::string body_state = "body", run_state = "run";
+const std::string body_file = "body", run_file = "run";
 } // namespace
 
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
                             bool draws_pictures, const Checkpoint *from,
                             const ForceMaker<dim> &make_force)
-    : scene_(scene), folder_(folder), log_(folder.log(), progress),
+    : scene_(scene), folder_(folder), log_(folder.log(), progress), make_force_(make_force),
       reference_(from ? from->reference : core::State()),
       body_(make_body<dim>(scene_, log_, timers_, reference_, make_force)),
       regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
@@ -47,16 +47,14 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   core::require(
       body_.dt == manifest.dt,
       fmt::format("the step was {} s when the run began, and is {} s now", manifest.dt, body_.dt));
-  for (const std::string &name : {body_state, run_state})
+  for (const std::string &name : {body_file, run_file})
     core::require(checkpoint.states.count(name) > 0, "the checkpoint has no state '" + name + "'");
-  let_rest(); // what moves comes with the state
-  give_state(checkpoint.states.at(body_state), body_);
+  const core::State &run = checkpoint.states.at(run_file);
+  give(checkpoint.states.at(body_file), run);
   clock_.now.step = long(manifest.step);
   clock_.now.time = manifest.time;
-  const core::State &run = checkpoint.states.at(run_state);
-  regime_.load(run, body_);
   damping_.load(run);
-  recorder_.load(run, body_, clock_.now.step);
+  recorder_.load(run, checkpoint.kept, body_, clock_.now.step);
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
   started_ = manifest.started;
@@ -65,6 +63,39 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   log_.info("goes on from checkpoint {}, step {} of {}, {:.4g} s", manifest.number, manifest.step,
             clock_.n_steps, manifest.time);
   log_.set_warnings(manifest.warnings);
+}
+
+template <int dim>
+void Simulation<dim>::give(const core::State &body, const core::State &run)
+{
+  let_rest(); // what moves comes with the state
+  give_state(body, body_);
+  regime_.load(run, body_);
+}
+
+template <int dim>
+core::State Simulation<dim>::run_state() const
+{
+  core::State run;
+  regime_.save(run);
+  damping_.save(run);
+  recorder_.save(run);
+  return run;
+}
+
+template <int dim>
+void Simulation<dim>::build_anew()
+{
+  const core::State body = take_state(body_);
+  core::State run;
+  regime_.save(run);
+  core::Log nothing_new;
+  body_ = make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_);
+  regime_ = RegimeControl<dim>(scene_.coupling.regime, body_);
+  give(body, run);
+  recorder_.watch(body_);
+  ++n_rebuilt_;
+  n_broken_at_rebuild_ = body_.force() ? long(body_.force()->broken_bonds().size()) : 0;
 }
 
 template <int dim>
@@ -95,11 +126,8 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   if (!reference_sum_)
     reference_sum_ = checkpoints.write_reference(reference_.tables());
   manifest.reference = reference_sum_;
-  core::State run;
-  regime_.save(run);
-  damping_.save(run);
-  recorder_.save(run);
-  checkpoints.write(std::move(manifest), {{body_state, take_state(body_)}, {run_state, run}});
+  checkpoints.write(std::move(manifest), {{body_file, take_state(body_)}, {run_file, run_state()}},
+                    recorder_.kept(body_));
 }
 
 template <int dim>
@@ -158,12 +186,12 @@ template <int dim>
 std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
 {
   auto bodies = body_.bodies();
-  auto &coupler = *body_.coupler;
-  coupler.compute_forces(bodies, clock_.now);
+  body_.coupler->compute_forces(bodies, clock_.now);
+  const int ratio = body_.coupler->step_ratio();
   if (clock_.now.step == 0)
     let_rest();
   while (!clock_.is_at_end()) {
-    if (clock_.now.step % coupler.step_ratio() == 0) {
+    if (clock_.now.step % ratio == 0) {
       if (const auto reason = regime_.look(body_, clock_.now, log_))
         if (const auto stop = recorder_.report_excess(*reason, clock_.now))
           return stop;
@@ -173,13 +201,17 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
         return {};
     }
     damping_.before_kick(body_, clock_.now);
-    coupler.kick(bodies, clock_.now); // velocities, one body in the overlap
+    body_.coupler->kick(bodies, clock_.now); // velocities, one body in the overlap
     damping_.after_kick(body_, clock_.now);
-    coupler.drift(bodies, clock_.now); // positions
+    body_.coupler->drift(bodies, clock_.now); // positions
     clock_.advance();
-    if (clock_.now.step % coupler.step_ratio() == 0)
+    if (clock_.now.step % ratio == 0)
       look_at_the_clock(request);
-    coupler.compute_forces(bodies, clock_.now);
+    if (rebuild_interval_ > 0 && clock_.now.step % (long(ratio) * rebuild_interval_) == 0) {
+      build_anew();
+      bodies = body_.bodies();
+    }
+    body_.coupler->compute_forces(bodies, clock_.now);
   }
   return {};
 }
@@ -272,6 +304,9 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
     record.status = "failed";
     record.reason = error.what();
   }
+  if (n_rebuilt_ > 0)
+    log_.info("built anew {} times, the last time with {} broken bonds", n_rebuilt_,
+              n_broken_at_rebuild_);
   log_.info("{} after {} steps: {}", record.status, record.steps, record.reason);
   log_.info("time by section\n{}", core::timing_table(record.timing));
   log_.info("{}", record.verdict);

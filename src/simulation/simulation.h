@@ -41,6 +41,10 @@ public:
   /// its time. `resolved`: the scene.
   void keep_checkpoints(const nlohmann::ordered_json &resolved);
 
+  /// Every so many steps of the far field the body is built anew and takes the state of the one
+  /// before, which must change nothing; the log says how often. 0: never.
+  void rebuild_every(int interval) { rebuild_interval_ = interval; }
+
   /// A warning about the input, which log and record repeat.
   void warn(const std::string &text) { log_.warning(text); }
 
@@ -58,6 +62,10 @@ private:
   void report_rest(RunRecord &record);
   /// Takes what a checkpoint has, before the first step.
   void go_on_from(const Checkpoint &checkpoint);
+  /// To a body that no step has moved.
+  void give(const core::State &body, const core::State &run);
+  core::State run_state() const;
+  void build_anew();
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop(const EndRequest &request);
   /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
@@ -71,6 +79,7 @@ private:
   RunFolder folder_;
   core::Log log_;
   core::Timers timers_;
+  const ForceMaker<dim> make_force_;
   Reference reference_; // of the body
   CoupledBody<dim> body_;
   RegimeControl<dim> regime_;
@@ -84,5 +93,7 @@ private:
   std::string started_;                             // date and time
   double setup_seconds_ = 0;
   std::string asked_by_; // who asked for the end; empty: nobody
+  int rebuild_interval_ = 0;
+  long n_rebuilt_ = 0, n_broken_at_rebuild_ = 0;
 };
 } // namespace ligament::program

@@ -15,32 +15,30 @@ Motion<dim> motion(const CoupledBody<dim> &body, double time)
   return {time, body.zone->state.displacement, body.zone->state.velocity};
 }
 
+/// Names and slots of what is kept.
+const std::array<std::string, 4> slots = {"snapshot_0", "snapshot_1", "snapshot_2",
+                                          "before_snapshot"};
+
 template <int dim>
-void save_motion(core::State &state, const std::string &name, const std::optional<Motion<dim>> &m)
+core::State state_of(const Motion<dim> &m, BodyNames<dim> &names)
 {
-  if (!m)
-    return;
-  core::save_value(state, name + "_time", "time", m->time);
-  core::Table rows = numbered_rows(m->displacement[0].size());
-  for (int c = 0; c < dim; ++c) {
-    rows.add("displacement_" + std::to_string(c), m->displacement[c]);
-    rows.add("velocity_" + std::to_string(c), m->velocity[c]);
-  }
-  state.emplace(name, std::move(rows));
+  core::Table rows(names.particles().sorted());
+  names.particles().save(rows, "displacement", m.displacement);
+  names.particles().save(rows, "velocity", m.velocity);
+  return {{"particles", std::move(rows)}};
 }
 
 template <int dim>
-std::optional<Motion<dim>> load_motion(const core::State &state, const std::string &name)
+Motion<dim> motion_of(const core::State &state, double time, BodyNames<dim> &names)
 {
-  if (!state.count(name))
-    return {};
   Motion<dim> m;
-  m.time = core::load_real(state, name + "_time", "time");
-  const core::Table &rows = core::table(state, name);
-  for (int c = 0; c < dim; ++c) {
-    m.displacement[c] = rows.reals("displacement_" + std::to_string(c));
-    m.velocity[c] = rows.reals("velocity_" + std::to_string(c));
-  }
+  m.time = time;
+  for (auto *values : {&m.displacement, &m.velocity})
+    for (auto &component : *values)
+      component.assign(names.particles().size(), 0.);
+  const core::Table &rows = core::table(state, "particles");
+  names.particles().load(rows, "displacement", m.displacement);
+  names.particles().load(rows, "velocity", m.velocity);
   return m;
 }
 } // namespace
@@ -102,18 +100,42 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
 template <int dim>
 void SnapshotKeeper<dim>::save(core::State &state) const
 {
-  for (std::size_t i = 0; i < kept_.size(); ++i)
-    save_motion(state, "snapshot_" + std::to_string(i), kept_[i]);
-  save_motion(state, "before_snapshot", before_);
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    const auto &m = s < kept_.size() ? kept_[s] : before_;
+    save_optional(state, "recorder", slots[s], m ? std::optional(m->time) : std::nullopt);
+  }
   core::save_value(state, "recorder", "next_snapshot", next_);
 }
 
 template <int dim>
-void SnapshotKeeper<dim>::load(const core::State &state)
+std::vector<KeptState> SnapshotKeeper<dim>::kept(const std::shared_ptr<BodyNames<dim>> &names) const
 {
-  for (std::size_t i = 0; i < kept_.size(); ++i)
-    kept_[i] = load_motion<dim>(state, "snapshot_" + std::to_string(i));
-  before_ = load_motion<dim>(state, "before_snapshot");
+  std::vector<KeptState> states;
+  const auto add = [&](const char *kind, const std::optional<Motion<dim>> &m) {
+    if (m)
+      states.push_back({kept_name(kind, m->time), [&m, names] { return state_of(*m, *names); }});
+  };
+  for (const auto &m : kept_)
+    add("snapshot", m);
+  add("before", before_);
+  return states;
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::load(const core::State &state,
+                               const std::map<std::string, core::State> &kept,
+                               BodyNames<dim> &names)
+{
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    auto &m = s < kept_.size() ? kept_[s] : before_;
+    m.reset();
+    const auto time = load_optional(state, "recorder", slots[s]);
+    if (!time)
+      continue;
+    const auto found = kept.find(kept_name(s < kept_.size() ? "snapshot" : "before", *time));
+    if (found != kept.end())
+      m = motion_of(found->second, *time, names);
+  }
   next_ = core::load_real(state, "recorder", "next_snapshot");
 }
 

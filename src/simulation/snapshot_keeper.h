@@ -1,12 +1,13 @@
 // The motion of the particles at the last common times, for comparisons with other runs.
 #pragma once
 
-#include "core/state.h"
+#include "src/output/checkpoints.h"
 #include "src/output/run_folder.h"
 #include "src/output/snapshot.h"
-#include "src/simulation/coupled_body.h"
+#include "src/simulation/body_names.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 
 namespace ligament::program
@@ -42,7 +43,11 @@ public:
   void write(const CoupledBody<dim> &body, const RunFolder &folder) const;
 
   void save(core::State &state) const;
-  void load(const core::State &state);
+  /// The motions, which checkpoints keep beside it; the names must live until they are taken.
+  std::vector<KeptState> kept(const std::shared_ptr<BodyNames<dim>> &names) const;
+  /// Motions that are lost are missing.
+  void load(const core::State &state, const std::map<std::string, core::State> &kept,
+            BodyNames<dim> &names);
 
 private:
   std::array<std::optional<Motion<dim>>, 3> kept_; // the later one first

@@ -1,12 +1,8 @@
 // Runs that are killed, stopped or short of time, and go on: byte for byte what a run without a
 // break writes. Through the programs.
-#include "tests/support/program.h"
+#include "tests/support/run_results.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cerrno>
-#include <filesystem>
 #include <random>
 
 using namespace ligament::tests;
@@ -42,51 +38,6 @@ const std::string torn = R"({
   }
 })";
 
-Outcome ligament(const std::string &arguments, const std::string &environment = "")
-{
-  return run_shell(environment + " exec " + program + " " + arguments);
-}
-
-/// Of the newest checkpoint; empty: there is none.
-std::string newest_checkpoint(const std::string &run)
-{
-  std::string newest;
-  std::error_code none;
-  for (const auto &entry : fs::directory_iterator(run + "/checkpoints", none))
-    if (entry.is_directory() && entry.path().extension() != ".tmp")
-      newest = std::max(newest, entry.path().string());
-  return newest;
-}
-
-/// What a run computed: tables, fields, motion of the particles, its last state.
-std::map<std::string, std::string> results(const std::string &run)
-{
-  std::map<std::string, std::string> files;
-  for (const char *name : {"history.csv", "broken_bonds.csv", "cut_faces.csv", "packing.csv",
-                           "fields.pvd", "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
-    if (fs::exists(run + "/" + name))
-      files[name] = file_text(run + "/" + name);
-  for (const auto &entry : fs::directory_iterator(run + "/fields"))
-    files["fields/" + entry.path().filename().string()] = file_text(entry.path());
-  files["body.bin"] = file_text(newest_checkpoint(run) + "/body.bin");
-  return files;
-}
-
-void expect_same(const std::string &run, const std::string &reference)
-{
-  const auto found = results(run), expected = results(reference);
-  EXPECT_EQ(found.size(), expected.size());
-  for (const auto &[name, content] : expected) {
-    EXPECT_FALSE(content.empty()) << name;
-    EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
-  }
-  const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
-  for (const char *key : {"status", "reason", "steps", "broken_bonds", "crack_length", "peak_load",
-                          "external_work", "energy_residual", "regime", "states", "warnings",
-                          "magnification", "stiffness", "broken_time", "figures"})
-    EXPECT_EQ(record.value(key, nlohmann::json()), wanted.value(key, nlohmann::json())) << key;
-}
-
 bool has(const std::string &text, const std::string &part)
 {
   return text.find(part) != std::string::npos;
@@ -102,7 +53,7 @@ protected:
     fs::create_directory("resume");
     fs::current_path("resume");
     std::ofstream("torn.json") << torn;
-    ASSERT_EQ(ligament("run torn.json -o whole").code, 0);
+    ASSERT_EQ(run_ligament("run torn.json -o whole").code, 0);
     // A test that ends before the first broken bond proves little.
     const auto record = file_json("whole/run.json");
     ASSERT_GE(record["broken_bonds"], 10);
@@ -157,9 +108,9 @@ int kill_and_resume(const std::string &run, int n_kills, std::mt19937_64 &random
   }
   if (newest_checkpoint(run).empty()) {
     fs::remove_all(run);
-    EXPECT_EQ(ligament("run torn.json -o " + run).code, 0);
+    EXPECT_EQ(run_ligament("run torn.json -o " + run).code, 0);
   } else if (file_json(run + "/run.json").value("status", "") != "done") {
-    const Outcome outcome = ligament("resume " + run);
+    const Outcome outcome = run_ligament("resume " + run);
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
   }
   return hits;
@@ -203,7 +154,7 @@ TEST_F(Resume, SignalsLeaveACheckpoint)
     EXPECT_EQ(file_json(run + "/run.json")["status"], "interrupted");
   }
   make_half("half", "whole", never, 1);
-  const Outcome outcome = ligament("resume half --json");
+  const Outcome outcome = run_ligament("resume half --json");
   EXPECT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_EQ(outcome.json()["status"], "done");
   expect_same("half", "whole");
@@ -212,13 +163,13 @@ TEST_F(Resume, SignalsLeaveACheckpoint)
 TEST_F(Resume, AnEndOfTheWallTimeLeavesACheckpoint)
 {
   const std::string longer = " --set /time/duration=1e6 --set /output/field_interval=never ";
-  const auto outcome = ligament("run torn.json --wall-time 1 --json -o short" + longer);
+  const auto outcome = run_ligament("run torn.json --wall-time 1 --json -o short" + longer);
   EXPECT_EQ(outcome.code, 124) << outcome.errors;
   EXPECT_EQ(outcome.json()["status"], "interrupted");
   EXPECT_TRUE(has(outcome.json()["reason"], "--wall-time at "));
   EXPECT_FALSE(newest_checkpoint("short").empty());
   const long steps = outcome.json()["steps"];
-  const auto more = ligament("resume short --wall-time 0.8 --json");
+  const auto more = run_ligament("resume short --wall-time 0.8 --json");
   EXPECT_EQ(more.code, 124) << more.errors;
   EXPECT_GT(more.json()["steps"], steps);
 }
@@ -253,7 +204,7 @@ TEST_F(Resume, ADamagedCheckpointIsPassedOver)
         if (entry.is_directory() && entry.path() != newest)
           older = entry.path();
       damage(newest + "/" + name, older / name, kind);
-      const Outcome outcome = ligament("resume damaged");
+      const Outcome outcome = run_ligament("resume damaged");
       EXPECT_EQ(outcome.code, 0) << outcome.errors;
       EXPECT_TRUE(has(outcome.errors, "warning: a checkpoint cannot be used: "));
       EXPECT_TRUE(has(outcome.errors, newest + "/" + name)) << outcome.errors;
@@ -265,31 +216,34 @@ TEST_F(Resume, AnotherSceneIsRefused)
 {
   make_half("half");
   const auto before = file_text("half/history.csv");
-  const auto outcome = ligament("resume half --json --set /material/density=2 "
-                                "--set /loads/1/ramp=90 --set /output/magnification=3");
+  const auto outcome = run_ligament("resume half --json --set /material/density=2 "
+                                    "--set /loads/1/ramp=90 --set /output/magnification=3");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.json()["status"], "wrong input");
   EXPECT_TRUE(has(outcome.errors, "/material/density: 2.0, was 1.0")) << outcome.errors;
   EXPECT_TRUE(has(outcome.errors, "/loads/1/ramp: 90.0, was 100.0")) << outcome.errors;
   EXPECT_FALSE(has(outcome.errors, "/output/magnification")) << outcome.errors;
-  EXPECT_TRUE(has(ligament("resume half --set /time/duration=300").errors,
+  EXPECT_TRUE(has(run_ligament("resume half --set /time/duration=300").errors,
                   "/time/duration: 300.0, was 400.0"));
-  EXPECT_EQ(ligament("resume half --set /time/duratoin=500").code, 2);
+  EXPECT_EQ(run_ligament("resume half --set /time/duratoin=500").code, 2);
   std::ofstream("other.json") << std::string(torn).replace(torn.find("0.22"), 4, "0.30");
-  EXPECT_TRUE(has(ligament("resume half --scene other.json").errors, "/material/poissons_ratio"));
+  EXPECT_TRUE(
+      has(run_ligament("resume half --scene other.json").errors, "/material/poissons_ratio"));
   EXPECT_EQ(file_text("half/history.csv"), before); // nothing was touched
-  EXPECT_EQ(ligament("resume half --scene torn.json --set /output/checkpoint_interval=1").code, 0);
+  EXPECT_EQ(run_ligament("resume half --scene torn.json --set /output/checkpoint_interval=1").code,
+            0);
   expect_same("half", "whole");
 }
 
 TEST_F(Resume, FoldersWithoutCheckpointAreRefused)
 {
-  EXPECT_TRUE(has(ligament("resume nothing").errors, "nothing is not the output folder of a run"));
-  ASSERT_EQ(ligament("run torn.json --set /time/duration=5 -o none "
-                     "--set /output/checkpoint_interval=never")
+  EXPECT_TRUE(
+      has(run_ligament("resume nothing").errors, "nothing is not the output folder of a run"));
+  ASSERT_EQ(run_ligament("run torn.json --set /time/duration=5 -o none "
+                         "--set /output/checkpoint_interval=never")
                 .code,
             0);
-  const auto outcome = ligament("resume none");
+  const auto outcome = run_ligament("resume none");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(has(outcome.errors, "no checkpoint to go on from")) << outcome.errors;
   EXPECT_EQ(file_json("none/run.json")["status"], "done");
@@ -300,18 +254,18 @@ TEST_F(Resume, ARunThatIsUnderWayIsLeftAlone)
   Process process("exec " + program + " run torn.json -o busy --set /time/duration=1e6",
                   "busy_run");
   ASSERT_TRUE(eventually([] { return !newest_checkpoint("busy").empty(); }));
-  const auto outcome = ligament("resume busy");
+  const auto outcome = run_ligament("resume busy");
   EXPECT_EQ(outcome.code, 4);
   EXPECT_TRUE(has(outcome.errors, "is under way in this folder")) << outcome.errors;
 }
 
 TEST_F(Resume, ARunCanBeProlonged)
 {
-  ASSERT_EQ(ligament("run torn.json --set /time/duration=200 -o first").code, 0);
-  const auto nothing = ligament("resume first");
+  ASSERT_EQ(run_ligament("run torn.json --set /time/duration=200 -o first").code, 0);
+  const auto nothing = run_ligament("resume first");
   EXPECT_EQ(nothing.code, 2);
   EXPECT_TRUE(has(nothing.errors, "the run has come to its end")) << nothing.errors;
-  const auto outcome = ligament("resume first --set /time/duration=400");
+  const auto outcome = run_ligament("resume first --set /time/duration=400");
   EXPECT_EQ(outcome.code, 0) << outcome.errors;
   expect_same("first", "whole");
 }
@@ -335,7 +289,7 @@ TEST_F(Resume, SlowOtherScenesGoOnAsWell)
 {
   for (const auto &[name, overrides] : other_scenes) {
     SCOPED_TRACE(name);
-    const auto outcome = ligament("run torn.json -o " + name + "_whole" + overrides);
+    const auto outcome = run_ligament("run torn.json -o " + name + "_whole" + overrides);
     ASSERT_EQ(outcome.code, 0) << outcome.errors;
     if (name == "random")
       fs::copy("random_whole/packing.csv", "packing.csv", fs::copy_options::overwrite_existing);
@@ -347,7 +301,7 @@ TEST_F(Resume, SlowOtherScenesGoOnAsWell)
     const bool is_lost = name == "file"; // then the set-up seeks again
     if (is_lost)
       std::ofstream("moved_" + name + "/checkpoints/reference.bin") << "nothing";
-    const Outcome more = ligament("resume moved_" + name);
+    const Outcome more = run_ligament("resume moved_" + name);
     EXPECT_EQ(more.code, 0) << more.errors;
     EXPECT_EQ(has(more.errors, "warning: what the set-up had found is lost"), is_lost);
     expect_same("moved_" + name, name + "_whole");
@@ -368,7 +322,7 @@ const std::string often = " --set /output/checkpoint_interval=0.001";
 TEST_F(Resume, AFailedWriteIsAWarning)
 {
   const auto outcome =
-      ligament("run torn.json -o once --json" + often, faulty_disk("once", "fail", 30));
+      run_ligament("run torn.json -o once --json" + often, faulty_disk("once", "fail", 30));
   EXPECT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_TRUE(has(outcome.errors, "warning: a checkpoint could not be written: "));
   EXPECT_EQ(outcome.json()["warnings"].size(), file_json("whole/run.json")["warnings"].size() + 1);
@@ -377,13 +331,13 @@ TEST_F(Resume, AFailedWriteIsAWarning)
 TEST_F(Resume, TheThirdFailureInARowEndsTheRun)
 {
   const auto outcome =
-      ligament("run torn.json -o full --json" + often, faulty_disk("full", "fail_on", 30));
+      run_ligament("run torn.json -o full --json" + often, faulty_disk("full", "fail_on", 30));
   EXPECT_EQ(outcome.code, 4);
   EXPECT_EQ(outcome.json()["status"], "failed");
   EXPECT_TRUE(has(outcome.errors, "3 checkpoints in a row could not be written: "))
       << outcome.errors;
   EXPECT_TRUE(has(outcome.errors, "No space left on device")) << outcome.errors;
-  const Outcome more = ligament("resume full");
+  const Outcome more = run_ligament("resume full");
   EXPECT_EQ(more.code, 0) << more.errors;
   expect_same("full", "whole");
 }

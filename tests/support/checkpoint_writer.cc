@@ -1,7 +1,6 @@
 // A process that writes one checkpoint of sample_states(): FOLDER SEED. Ends with 0, or with 4 when
 // the disk refuses.
 #include "core/check.h"
-#include "src/output/checkpoints.h"
 #include "tests/support/sample_states.h"
 
 #include <cstdio>
@@ -16,7 +15,8 @@ int main(int argc, char **argv)
   program::CheckpointManifest manifest;
   manifest.step = seed;
   try {
-    program::Checkpoints(argv[1]).write(manifest, tests::sample_states(seed));
+    program::Checkpoints(argv[1]).write(manifest, tests::sample_states(seed),
+                                        tests::kept_states(seed));
   } catch (const core::EnvironmentError &error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

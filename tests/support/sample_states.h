@@ -1,7 +1,7 @@
 // States that tell by a number which they are.
 #pragma once
 
-#include "core/state.h"
+#include "src/output/checkpoints.h"
 
 #include <map>
 #include <random>
@@ -27,5 +27,23 @@ inline std::map<std::string, core::State> sample_states(int seed)
   body.emplace("particles", particles);
   core::save_value(run, "run", "energy", 1. / seed);
   return {{"body", body}, {"run", run}};
+}
+
+/// What a checkpoint of this number keeps of earlier times: one state that the one before kept,
+/// too, and a new one.
+inline std::map<std::string, core::State> sample_kept(int seed)
+{
+  const auto number = [](int k) { return "copy_" + std::to_string(k); };
+  return {{number(seed), sample_states(seed + 100).at("body")},
+          {number(seed - 1), sample_states(seed + 99).at("body")}};
+}
+
+/// The same as a checkpoint takes it.
+inline std::vector<program::KeptState> kept_states(int seed)
+{
+  std::vector<program::KeptState> kept;
+  for (const auto &[name, state] : sample_kept(seed))
+    kept.push_back({name, [state = state] { return state; }});
+  return kept;
 }
 } // namespace ligament::tests

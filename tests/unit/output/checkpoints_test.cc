@@ -14,6 +14,8 @@
 
 using namespace ligament;
 using namespace ligament::program;
+using tests::kept_states;
+using tests::sample_kept;
 using tests::sample_states;
 namespace fs = std::filesystem;
 
@@ -40,7 +42,7 @@ protected:
   {
     CheckpointManifest manifest;
     manifest.step = k;
-    checkpoints.write(manifest, sample_states(k));
+    checkpoints.write(manifest, sample_states(k), kept_states(k));
   }
   /// The seed of the states that are found; 0: none. Wrong states fail.
   int newest(Names *passed_over = nullptr)
@@ -52,6 +54,7 @@ protected:
       return 0;
     const int seed = int(found.checkpoint->manifest.step);
     EXPECT_EQ(found.checkpoint->states, sample_states(seed));
+    EXPECT_EQ(found.checkpoint->kept, sample_kept(seed));
     return seed;
   }
   static std::string file(int number, const std::string &name)
@@ -100,7 +103,9 @@ TEST_F(CheckpointsTest, TwoAreKept)
     write_one(k);
     EXPECT_EQ(newest(), k);
   }
-  EXPECT_EQ(core::folder_entries(folder), (Names{"checkpoint_000003", "checkpoint_000004"}));
+  EXPECT_EQ(core::folder_entries(folder),
+            (Names{"checkpoint_000003", "checkpoint_000004", "kept_copy_2.bin", "kept_copy_3.bin",
+                   "kept_copy_4.bin"}));
   EXPECT_EQ(core::folder_entries(folder + "/checkpoint_000004"),
             (Names{"body.bin", "manifest.json", "run.bin"}));
 }
@@ -112,10 +117,12 @@ TEST_F(CheckpointsTest, WhatIsUnfinishedIsIgnoredAndRemovedByTheNextOne)
   fs::create_directory(folder + "/checkpoint_000004"); // without manifest
   std::ofstream(folder + "/checkpoint_000004/body.bin") << "x";
   std::ofstream(folder + "/notes.txt") << "somebody's";
+  std::ofstream(folder + "/kept_copy_9.bin") << "of the unfinished one";
   EXPECT_EQ(newest(), 2);
   write_one(3);
   EXPECT_EQ(core::folder_entries(folder),
-            (Names{"checkpoint_000002", "checkpoint_000003", "notes.txt"}));
+            (Names{"checkpoint_000002", "checkpoint_000003", "kept_copy_1.bin", "kept_copy_2.bin",
+                   "kept_copy_3.bin", "notes.txt"}));
   EXPECT_EQ(newest(), 3);
 }
 
@@ -125,7 +132,26 @@ TEST_F(CheckpointsTest, NewerOnesCanBeGivenUp)
   checkpoints.remove_newer_than(2);
   EXPECT_EQ(newest(), 2);
   write_one(3);
-  EXPECT_EQ(core::folder_entries(folder), (Names{"checkpoint_000002", "checkpoint_000003"}));
+  EXPECT_EQ(core::folder_entries(folder),
+            (Names{"checkpoint_000002", "checkpoint_000003", "kept_copy_1.bin", "kept_copy_2.bin",
+                   "kept_copy_3.bin"}));
+}
+
+TEST_F(CheckpointsTest, WriteWhatTheyKeepOnce)
+{
+  write(1);
+  int n_taken = 0;
+  std::vector<KeptState> kept = kept_states(2); // the one before keeps one of them
+  for (KeptState &state : kept)
+    state.take = [&n_taken, take = state.take] {
+      ++n_taken;
+      return take();
+    };
+  CheckpointManifest manifest;
+  manifest.step = 2;
+  checkpoints.write(manifest, sample_states(2), kept);
+  EXPECT_EQ(n_taken, 1);
+  EXPECT_EQ(newest(), 2);
 }
 
 TEST_F(CheckpointsTest, DoWithoutALostReference)
@@ -202,6 +228,34 @@ TEST_F(CheckpointsTest, DamageOfAnyFileIsFoundAndTheOlderOneUsed)
           << name << " " << damage.name;
       ASSERT_EQ(passed_over.size(), damage.name == "swapped" ? 2u : 1u);
       EXPECT_NE(passed_over[0].find(file(2, name)), std::string::npos) << passed_over[0];
+    }
+}
+
+// Where only the newest one names what is lost the older one is used; where both do, a run goes on
+// from the newest without it.
+TEST_F(CheckpointsTest, DoWithoutLostCopies)
+{
+  write(2);
+  fs::rename(folder, copy);
+  for (const std::string name : {"copy_2", "copy_1"})
+    for (const Damage &damage : all_damages()) {
+      fs::remove_all(folder);
+      fs::copy(copy, folder, fs::copy_options::recursive);
+      const std::string file = folder + "/kept_" + name + ".bin";
+      damage.do_it(file, folder + "/kept_copy_0.bin");
+      const auto found = checkpoints.newest_good();
+      ASSERT_TRUE(found.checkpoint);
+      const auto seed = found.checkpoint->manifest.step;
+      const bool all_lose = name == "copy_1" || damage.name == "swapped";
+      EXPECT_EQ(seed, all_lose ? 2 : 1) << name << " " << damage.name;
+      EXPECT_EQ(found.checkpoint->states, sample_states(int(seed)));
+      auto left = sample_kept(int(seed));
+      if (all_lose)
+        left.erase(name);
+      EXPECT_EQ(found.checkpoint->kept, left);
+      const Names &told = all_lose ? found.checkpoint->kept_lost : found.passed_over;
+      ASSERT_EQ(told.size(), 1u);
+      EXPECT_NE(told[0].find(file), std::string::npos) << told[0];
     }
 }
 

@@ -1,10 +1,13 @@
 // A body that is built anew again and again, and given the state of the one before, goes on to the
 // last bit: motion, broken bonds, every energy.
 #include "src/simulation/body_state.h"
+
+#include "dem/many_body_force.h"
 #include "src/simulation/damping.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/regime_control.h"
 #include "tests/support/small_plate.h"
+#include "tests/support/von_mises.h"
 
 #include <cstring>
 
@@ -20,8 +23,9 @@ template <int dim>
 class Course
 {
 public:
-  Course(const Scene &scene, bool rests)
-      : scene_(scene), body_(make_body<dim>(scene_, log_, timers_)), damping_(scene.damping),
+  Course(const Scene &scene, bool rests, const ForceMaker<dim> &make_force)
+      : scene_(scene), make_force_(make_force),
+        body_(make_body<dim>(scene_, log_, timers_, make_force_)), damping_(scene.damping),
         regime_(scene.coupling.regime, body_), rests_(rests)
   {
     now_.dt = body_.dt;
@@ -78,7 +82,7 @@ private:
   void build_anew()
   {
     const core::State state = take_state(body_);
-    body_ = make_body<dim>(scene_, log_, timers_);
+    body_ = make_body<dim>(scene_, log_, timers_, make_force_);
     if (rests_)
       let_rest();
     give_state(state, body_);
@@ -87,6 +91,7 @@ private:
   Scene scene_;
   core::Log log_;
   core::Timers timers_;
+  ForceMaker<dim> make_force_;
   CoupledBody<dim> body_;
   BodyDamping<dim> damping_;
   RegimeControl<dim> regime_;
@@ -99,14 +104,14 @@ bool same_bits(const std::vector<double> &a, const std::vector<double> &b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-/// Rebuilt every k far steps from `from` (s) on, until `to`; in every step for a while. Something
-/// must have broken by then.
+/// Rebuilt every k far steps from `from` (s) on, until `to`; in every step for a while, from the
+/// first broken bond on where something must have broken by then.
 template <int dim>
-void expect_same_course(const std::vector<std::string> &overrides, double from, double to,
-                        long least_broken, bool rests = false)
+void expect_same_course(const Scene &scene, double from, double to, long least_broken,
+                        bool rests = false,
+                        const ForceMaker<dim> &make_force = make_many_body_force<dim>)
 {
-  const Scene scene = small_scene(overrides);
-  Course<dim> plain(scene, rests);
+  Course<dim> plain(scene, rests, make_force);
   std::vector<std::vector<double>> ledgers; // after each far step
   for (; plain.time() < to; ledgers.push_back(plain.ledger()))
     plain.step(false);
@@ -115,21 +120,34 @@ void expect_same_course(const std::vector<std::string> &overrides, double from, 
 
   for (const int interval : {1, 7, 100}) {
     SCOPED_TRACE(interval);
-    Course<dim> rebuilt(scene, rests);
+    Course<dim> rebuilt(scene, rests, make_force);
     int steps = 0, n_rebuilt = 0;
+    long n_broken = 0; // when the last new body was built
     const int most = interval == 1 ? 30 : 100;
     for (const auto &ledger : ledgers) {
-      const bool due = rebuilt.time() >= from && ++steps % interval == 0 && n_rebuilt < most;
+      const bool begun =
+          interval == 1 && least_broken > 0 ? rebuilt.n_broken() > 0 : rebuilt.time() >= from;
+      const bool due = begun && ++steps % interval == 0 && n_rebuilt < most;
       n_rebuilt += due;
+      if (due)
+        n_broken = rebuilt.n_broken();
       rebuilt.step(due);
       ASSERT_TRUE(!due || same_bits(ledger, rebuilt.ledger())) << "at " << rebuilt.time();
     }
     EXPECT_GT(n_rebuilt, 0);
+    EXPECT_TRUE(n_broken > 0 || least_broken == 0);
     const core::State state = rebuilt.state();
     ASSERT_EQ(state.size(), last.size());
     for (const auto &[name, table] : last)
       EXPECT_TRUE(state.count(name) && table == state.at(name)) << name;
   }
+}
+
+template <int dim>
+void expect_same_course(const std::vector<std::string> &overrides, double from, double to,
+                        long least_broken, bool rests = false)
+{
+  expect_same_course<dim>(small_scene(overrides), from, to, least_broken, rests);
 }
 
 // Bonds break at a strain of 1e-3 while the plate is torn apart.
@@ -165,7 +183,7 @@ TEST(BodyState, EveryDampingGoesOnToTheLastBit)
   for (const char *damping : {"/damping/mass=1e-3", "/damping/local=0.3", "/damping/kinetic=true"})
   {
     SCOPED_TRACE(damping);
-    expect_same_course<2>(torn + std::vector<std::string>{damping}, 60, 200, 1);
+    expect_same_course<2>(torn + std::vector<std::string>{damping}, 60, 320, 1);
   }
 }
 
@@ -226,6 +244,52 @@ TEST(BodyState, RegionsAtRestGoOnToTheLastBit)
     expect_same_course<2>(torn + std::vector<std::string>{threshold, "/far_field=none"}, 10, 200, 1,
                           true);
   }
+}
+
+// Flow at a third of the stress that breaks: the zones at the tips of the crack have yielded, and
+// bonds break in them.
+TEST(BodyState, PlasticFlowGoesOnToTheLastBit)
+{
+  const ForceMaker<2> make_plastic = [](const Scene &scene, auto packing, const auto &loads,
+                                        auto &figures, core::Log &log) {
+    auto force = make_many_body_force<2>(scene, std::move(packing), loads, figures, log);
+    auto &many_body = dynamic_cast<dem::ManyBodyForce<2> &>(*force);
+    many_body.set_yield(std::make_unique<tests::VonMises>(0.41, 3e-4, 0.3));
+    return force;
+  };
+  for (const char *far : {R"(/far_field={"cell_size": 4.1})", "/far_field=none"}) {
+    SCOPED_TRACE(far);
+    const Scene scene = small_scene(torn + std::vector<std::string>{far, friction});
+    expect_same_course<2>(scene, 120, 300, 5, false, make_plastic);
+    Course<2> course(scene, false, make_plastic);
+    while (course.time() < 120)
+      course.step(false);
+    const auto &force = dynamic_cast<dem::ManyBodyForce<2> &>(*course.body().force());
+    EXPECT_GT(force.plastic_dissipation(), 0); // before the first rebuild
+  }
+}
+
+// In three dimensions, with a turned lattice.
+TEST(BodyState, ABreakingBarGoesOnToTheLastBit)
+{
+  const auto result = parse_scene(R"({
+    "dimension": 3,
+    "specimen": {"size": [8, 64, 6], "cracks": [
+      {"points": [[-4, 0, -3], [-1, 0, -3], [-1, 0, 3], [-4, 0, 3]]}]},
+    "material": {"youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1, "friction": 0.4,
+      "fracture": {"criterion": "maximum_tension", "strength": 1e-3}},
+    "discrete_zone": {"region": {"lower": [null, -12.1, null], "upper": [null, 12.1, null]},
+      "packing": "fcc", "spacing": 1, "orientation": [0, "10 deg", 0]},
+    "far_field": {"cell_size": 3},
+    "coupling": {"overlap_cells": 2, "transition_cells": 2, "step_ratio": 2},
+    "loads": [{"boundary": "top", "velocity": [null, 4e-4, null]},
+              {"boundary": "bottom", "velocity": [null, -4e-4, null]}],
+    "time": {"duration": 1000}
+  })",
+                                  "bar");
+  for (const auto &error : result.errors)
+    ADD_FAILURE() << core::to_string(error);
+  expect_same_course<3>(result.scene.value(), 60, 200, 5);
 }
 
 TEST(BodyState, RandomPackingsOfTwoMaterialsGoOnToTheLastBit)
