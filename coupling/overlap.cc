@@ -286,7 +286,7 @@ Overlap<dim>::shape_gradients(const Cell &cell, const Vector<dim> &x) const
 }
 
 template <int dim>
-particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Nodal<dim> &u) const
+particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Components<dim> &displacement) const
 {
   particles::CoupledEdge<dim> coupled{edge, {}, {}};
   std::vector<int> open; // members
@@ -295,11 +295,11 @@ particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Nodal<dim> &u) cons
       open.push_back(int(k));
       coupled.open.push_back(members[k].particle);
     }
-  coupled.gradient = [this, &u, open = std::move(open)](int k) {
+  coupled.gradient = [this, &displacement, open = std::move(open)](int k) {
     const Member &m = members[open[k]];
     Eigen::Matrix<double, dim, dim> gradient = Eigen::Matrix<double, dim, dim>::Zero();
     for (int a = 0; a < n_cell_nodes; ++a)
-      gradient += u.row(m.nodes[a]).transpose() * m.gradient.col(a).transpose();
+      gradient += get(displacement, near_nodes[m.nodes[a]]) * m.gradient.col(a).transpose();
     return gradient;
   };
   return coupled;
