@@ -31,9 +31,9 @@ program::StripParameters strip_parameters(Scheme scheme)
 program::Strip<2> make_strip(const program::StripParameters &p)
 {
   return program::make_strip<2>(p,
-                                program::make_periodic_packing<2>(packings::LatticeKind::square,
-                                                                  p.cells_across * p.cell_size,
-                                                                  n_layers, false),
+                                packings::make_periodic_packing<2>(packings::LatticeKind::square,
+                                                                   p.cells_across * p.cell_size,
+                                                                   n_layers, false),
                                 n_layers - 0.2);
 }
 
