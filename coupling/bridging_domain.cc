@@ -366,7 +366,7 @@ double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
     compute_near_force(bodies, force_);
   const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
   const double loss = scaling_loss(still, moving, factor) +
-                      bodies.zone->damp_velocities(factor, step.dt) +
+                      bodies.zone->damp_velocities(factor, step.dt).value() +
                       bodies.far->damp_velocities(step.dt);
   velocity_ *= factor;
   write_near_velocities(*bodies.far);
