@@ -413,6 +413,28 @@ particles::Particles<dim> pull(const packings::Packing<dim> &packing)
   return p;
 }
 
+/// Median of the seconds of `first` over those of `second`.
+double ratio_in_turns(const std::function<void()> &first, const std::function<void()> &second)
+{
+  const auto seconds = [](const std::function<void()> &call) {
+    const double start = bench::seconds_now();
+    call();
+    return bench::seconds_now() - start;
+  };
+  std::vector<double> ratios;
+  seconds(first);
+  // Strictly in turns: what is called twice finds its arrays in the cache.
+  double before = seconds(second);
+  for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
+    const double now = seconds(first), after = seconds(second);
+    spent += now + after;
+    ratios.push_back(2 * now / (before + after));
+    before = after;
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
 /// What a fracture criterion costs: forces with it over forces without, call by call in turns; far
 /// from breaking, and where the whole body bears some share of its strength. Value: what it costs,
 /// median of the pairs; reference: what it may.
@@ -430,25 +452,11 @@ void measure_criterion(const std::string &name, const packings::Packing<dim> &pa
     const auto without = make({}),
                with = make({dem::FractureLaw::Criterion::maximum_tension, strength});
     double time = 0;
-    const auto seconds = [&](dem::ManyBodyForce<dim> &force) {
-      const double start = bench::seconds_now();
-      force.compute(p, time += 1);
-      return bench::seconds_now() - start;
-    };
-    std::vector<double> ratios;
-    seconds(*with);
-    // Strictly in turns: a force that is called twice finds its arrays in the cache.
-    double before = seconds(*without);
-    for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
-      const double now = seconds(*with), after = seconds(*without);
-      spent += now + after;
-      ratios.push_back(2 * now / (before + after));
-      before = after;
-    }
-    std::sort(ratios.begin(), ratios.end());
+    const double ratio = ratio_in_turns([&] { with->compute(p, time += 1); },
+                                        [&] { without->compute(p, time += 1); });
     print(fmt::format("{}, {} particles, forces with a criterion over forces without, {}", name,
                       packing.size(), what),
-          ratios[ratios.size() / 2], "-", 1.05);
+          ratio, "-", 1.05);
     if (!with->broken_bonds().empty())
       throw core::InputError("bonds broke in a body below its strength");
   };
@@ -462,26 +470,6 @@ void measure_criterion(const std::string &name, const packings::Packing<dim> &pa
                           .utilisation; // of packings that are not relaxed above 1e-4
   for (const double share : {0.5, 0.7, 0.95})
     compare(fmt::format("uniform tension of {} of the strength", share), uniform, most / share);
-}
-/// Median of the seconds of `first` over those of `second`, strictly in turns.
-double ratio_in_turns(const std::function<void()> &first, const std::function<void()> &second)
-{
-  const auto seconds = [](const std::function<void()> &call) {
-    const double start = bench::seconds_now();
-    call();
-    return bench::seconds_now() - start;
-  };
-  std::vector<double> ratios;
-  seconds(first);
-  double before = seconds(second);
-  for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
-    const double now = seconds(first), after = seconds(second);
-    spent += now + after;
-    ratios.push_back(2 * now / (before + after));
-    before = after;
-  }
-  std::sort(ratios.begin(), ratios.end());
-  return ratios[ratios.size() / 2];
 }
 
 /// What the sums over all particles cost: a row of the history, and mass damping in every step.

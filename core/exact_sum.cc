@@ -119,31 +119,4 @@ ExactSum ExactSum::from_words(const std::vector<std::int64_t> &words)
   sum.carry(); // words may be sums of several
   return sum;
 }
-
-void save_sum(State &state, const std::string &name, const ExactSum &sum)
-{
-  const std::vector<std::int64_t> words = sum.words();
-  std::vector<std::int64_t> keys, values;
-  for (std::size_t k = 0; k < words.size(); ++k)
-    if (words[k] != 0) {
-      keys.push_back(std::int64_t(k));
-      values.push_back(words[k]);
-    }
-  Table table(std::move(keys));
-  table.add("word", values);
-  state[name] = std::move(table);
-}
-
-ExactSum load_sum(const State &state, const std::string &name)
-{
-  const Table &rows = table(state, name);
-  const std::vector<std::int64_t> values = rows.integers("word");
-  std::vector<std::int64_t> words(ExactSum::n_words);
-  for (std::size_t r = 0; r < rows.n_rows(); ++r) {
-    const std::int64_t k = rows.keys()[r];
-    require(k >= 0 && k < ExactSum::n_words, "state: an exact sum with a word that it has not");
-    words[k] = values[r];
-  }
-  return ExactSum::from_words(words);
-}
 } // namespace ligament::core

@@ -1,8 +1,6 @@
 // Sums without an order: every term is kept exactly, the sum is rounded once, when it is read.
 #pragma once
 
-#include "core/state.h"
-
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -77,19 +75,4 @@ inline void ExactSum::add(double term)
   digit[0] += (low ^ sign) - sign;
   digit[1] += (high ^ sign) - sign;
 }
-
-/// Of term(0) to term(n - 1).
-template <typename Term>
-ExactSum exact_sum(std::size_t n, Term &&term)
-{
-  ExactSum sum;
-  for (std::size_t i = 0; i < n; ++i)
-    sum.add(term(i));
-  return sum;
-}
-
-/// The words that are not zero as a table of their own; rows are called by their numbers, so that
-/// tables of parts are merged by adding rows of one name.
-void save_sum(State &state, const std::string &table, const ExactSum &sum);
-ExactSum load_sum(const State &state, const std::string &table);
 } // namespace ligament::core

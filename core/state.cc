@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace ligament::core
 {
@@ -95,6 +96,20 @@ void save_value(State &state, const std::string &table, const std::string &colum
                 std::int64_t value)
 {
   values_of(state, table).add(column, std::vector<std::int64_t>{value});
+}
+
+void save_sum(State &state, const std::string &name, const ExactSum &sum)
+{
+  std::vector<std::int64_t> digits(ExactSum::n_words);
+  std::iota(digits.begin(), digits.end(), 0);
+  Table table(std::move(digits));
+  table.add("word", sum.words());
+  state[name] = std::move(table);
+}
+
+ExactSum load_sum(const State &state, const std::string &name)
+{
+  return ExactSum::from_words(table(state, name).integers("word"));
 }
 
 double load_real(const State &state, const std::string &name, const std::string &column)

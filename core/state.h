@@ -2,6 +2,8 @@
 // by names that no numbering, partition or zone changes.
 #pragma once
 
+#include "core/exact_sum.h"
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -58,6 +60,9 @@ const Table &table(const State &state, const std::string &name);
 void save_value(State &state, const std::string &table, const std::string &column, double value);
 void save_value(State &state, const std::string &table, const std::string &column,
                 std::int64_t value);
+/// A sum with all its digits, as a table of its own.
+void save_sum(State &state, const std::string &table, const ExactSum &sum);
+ExactSum load_sum(const State &state, const std::string &table);
 double load_real(const State &state, const std::string &table, const std::string &column);
 std::int64_t load_integer(const State &state, const std::string &table, const std::string &column);
 } // namespace ligament::core

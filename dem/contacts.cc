@@ -1,7 +1,5 @@
 #include "dem/contacts.h"
 
-#include "dem/surface_loads.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -182,7 +180,7 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
     const Vector<dim> slid = c.slip * (1 - limit / trial);
     c.slip -= slid;
     // Work of the mean force less the change of stored energy.
-    frictional_work_ += 0.5 * s.stiffness * (carried + c.slip).dot(slid);
+    frictional_work_.add(0.5 * s.stiffness * (carried + c.slip).dot(slid));
   }
   remember(c, s, p);
 }
@@ -207,7 +205,7 @@ void Contacts<dim>::correct_step(Contact<dim> &c, const State &s, double dt, con
 {
   if (c.last_overlap && *c.last_overlap != s.overlap) {
     const double last = *c.last_overlap, moved = s.overlap - last;
-    step_error_ += 0.5 * c.correction * moved;
+    step_error_.add(0.5 * c.correction * moved);
     c.correction = 0;
     if ((s.overlap > 0) != (last > 0)) {
       const double error = std::copysign(0.5, s.overlap) * s.stiffness * s.overlap * last;
@@ -215,7 +213,7 @@ void Contacts<dim>::correct_step(Contact<dim> &c, const State &s, double dt, con
       c.correction = correcting_force(
           error, moved, outlook<dim>(p, c.face.i, c.face.j, s.normal, s.lever, lever_j, dt),
           s.stiffness * std::max(std::abs(last), std::abs(s.overlap)));
-      step_error_ += 0.5 * c.correction * moved - error;
+      step_error_.add(0.5 * c.correction * moved - error);
     }
   }
   c.last_overlap = s.overlap;
@@ -248,20 +246,11 @@ double Contacts<dim>::compression_energy(const Contact<dim> &c, const Particles 
 }
 
 template <int dim>
-double Contacts<dim>::energy(const Particles &p) const
+double Contacts<dim>::energy(const Contact<dim> &c, const Particles &p) const
 {
-  double sum = 0;
-  for (const auto &c : contacts_)
-    sum += compression_energy(c, p) + 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
-  return sum;
-}
-
-template <int dim>
-void Contacts<dim>::add_moments(const Particles &p, Components<n_strains<dim>> &moments) const
-{
-  for_each_moment(p, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
-    ligament::add(moments, i, symmetric_product<dim>(a, f));
-  });
+  const State s = state(c, p);
+  const double overlap = std::max(s.overlap, 0.);
+  return 0.5 * s.stiffness * (overlap * overlap + c.slip.squaredNorm());
 }
 
 template <int dim>
@@ -307,7 +296,7 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
     update_slip(c, state(c, p), p);
   const double before = compression_energy(c, p);
   if (j < 0) {
-    frictional_work_ += before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
+    frictional_work_.add(before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm());
     contacts_.erase(contacts_.begin() + k);
     return;
   }
@@ -319,7 +308,7 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
   if (c.known)
     remember(c, s, p);
   c.last_overlap = s.overlap;
-  frictional_work_ += before - compression_energy(c, p);
+  frictional_work_.add(before - compression_energy(c, p));
 }
 
 template class Contacts<2>;

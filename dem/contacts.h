@@ -1,6 +1,8 @@
 // Touching faces: a penalty without tension, Coulomb friction, and the joints of initial cuts.
 #pragma once
 
+#include "core/exact_sum.h"
+#include "core/names.h"
 #include "dem/bond.h"
 #include "dem/materials.h"
 
@@ -68,20 +70,15 @@ public:
   /// state changes neither.
   void add_forces(Particles &particles, double dt);
 
-  /// Compression and elastic slip, in J.
-  double energy(const Particles &particles) const;
-
-  /// Energy of one contact's compression, in J.
+  /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
   double compression_energy(const Contact<dim> &contact, const Particles &particles) const;
+  double energy(const Contact<dim> &contact, const Particles &particles) const;
 
-  double frictional_work() const { return frictional_work_; }
+  double frictional_work() const { return frictional_work_.value(); }
 
   /// Energy in J that the leap-frog lost (above 0) where contacts opened and closed between two
   /// steps, after the correction: exactly what (E1) misses.
-  double step_error() const { return step_error_; }
-
-  /// Adds S a (x) t (N m, Voigt order) of the present normal and frictional forces.
-  void add_moments(const Particles &particles, Components<n_strains<dim>> &moments) const;
+  double step_error() const { return step_error_.value(); }
 
   /// visit(i, a, f): lever (m) and force (N) on particle i of every contact that is closed.
   template <typename Visit>
@@ -128,7 +125,7 @@ private:
   Materials materials_;
   particles::GlobalIds ids_;
   std::vector<Contact<dim>> contacts_;
-  double frictional_work_ = 0, step_error_ = 0;
+  core::ExactSum frictional_work_, step_error_;
 };
 
 template <int dim>

@@ -67,8 +67,8 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
   for (const auto &[column, values] : numbers)
     table.add(column, values);
   state["contacts"] = std::move(table);
-  core::save_value(state, "contact_energies", "frictional_work", frictional_work_);
-  core::save_value(state, "contact_energies", "step_error", step_error_);
+  core::save_sum(state, "frictional_work", frictional_work_);
+  core::save_sum(state, "contact_step_error", step_error_);
 }
 
 template <int dim>
@@ -111,8 +111,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
     if (!std::binary_search(old.keys().begin(), old.keys().end(), name[0]) ||
         !std::binary_search(old.keys().begin(), old.keys().end(), name[1]))
       insert(c);
-  frictional_work_ = core::load_real(state, "contact_energies", "frictional_work");
-  step_error_ = core::load_real(state, "contact_energies", "step_error");
+  frictional_work_ = core::load_sum(state, "frictional_work");
+  step_error_ = core::load_sum(state, "contact_step_error");
 }
 
 template void Contacts<2>::save(core::State &, const core::Names &) const;

@@ -1,6 +1,7 @@
 #include "dem/edge_cells.h"
 
-#include "dem/surface_loads.h"
+#include "dem/tensors.h"
+#include "dem/turn.h"
 
 #include <algorithm>
 

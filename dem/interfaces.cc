@@ -1,5 +1,6 @@
 #include "dem/interfaces.h"
 
+#include "core/exact_sum.h"
 #include "dem/bond_law.h"
 #include "dem/laws/series_bond.h"
 
@@ -102,22 +103,25 @@ Interfaces<dim>::Interfaces(const BondNetwork<dim> &bonds)
 }
 
 template <int dim>
-void Interfaces<dim>::remove(int index)
+void Interfaces<dim>::remove(const BondId &id, const Bond<dim> &b, const Particles &)
 {
-  bonds_.erase(std::find_if(bonds_.begin(), bonds_.end(),
-                            [&](const IndexedBond &b) { return b.index == index; }));
+  if (b.joins_materials)
+    bonds_.erase(std::find_if(bonds_.begin(), bonds_.end(),
+                              [&](const IndexedBond &bond) { return bond.index == id.index; }));
 }
 
 template <int dim>
-void Interfaces<dim>::add_own_part(const Particles &p, const std::vector<double> &lambda_per_volume,
-                                   std::vector<double> &pressure) const
+void Interfaces<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) const
 {
+  if (empty() || !e.body.has_dilatation())
+    return;
+  const auto &lambda_per_volume = e.body.lambda_per_volume();
   const std::size_t n = members_.size();
   std::vector<double> diagonal(n, 0.), b(n, 0.);
   for (std::size_t k = 0; k < n; ++k) {
     const double stiffness = lambda_per_volume[members_[k]];
     diagonal[k] = stiffness > 0 ? 1 / stiffness : 0;
-    b[k] = diagonal[k] * pressure[members_[k]];
+    b[k] = diagonal[k] * e.pressure[members_[k]];
   }
   std::vector<Coupling> couplings;
   for (const auto &[bond, index] : bonds_) {
@@ -130,32 +134,31 @@ void Interfaces<dim>::add_own_part(const Particles &p, const std::vector<double>
   }
   const std::vector<double> solution = solve(diagonal, couplings, b);
   for (std::size_t k = 0; k < n; ++k)
-    pressure[members_[k]] = solution[k];
+    e.pressure[members_[k]] = solution[k];
 }
 
 template <int dim>
-void Interfaces<dim>::take_own_part(const Particles &p,
-                                    const std::vector<double> &lambda_per_volume,
-                                    std::vector<double> &pressure) const
+void Interfaces<dim>::take_pressures(const Particles &p, Evaluation<dim> &e) const
 {
+  const auto &lambda_per_volume = e.body.lambda_per_volume();
   std::vector<double> part(members_.size(), 0.);
   for (const auto &[bond, index] : bonds_) {
     const auto s = series_of(bond, p);
-    const double p_i = pressure[bond.i], p_j = pressure[bond.j];
+    const double p_i = e.pressure[bond.i], p_j = e.pressure[bond.j];
     const Vector<dim> t = s.traction(p_i, p_j);
     part[member_[bond.i]] += lambda_per_volume[bond.i] * s.dilatation_i(t, p_i);
     part[member_[bond.j]] += lambda_per_volume[bond.j] * s.dilatation_j(t, p_j);
   }
   for (std::size_t k = 0; k < members_.size(); ++k)
-    pressure[members_[k]] -= part[k];
+    e.pressure[members_[k]] -= part[k];
 }
 
 template <int dim>
-void Interfaces<dim>::add_forces(Particles &p, const std::vector<double> &pressure) const
+void Interfaces<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
 {
   for (const auto &[b, index] : bonds_) {
     const auto s = series_of(b, p);
-    const double p_i = pressure[b.i], p_j = pressure[b.j];
+    const double p_i = e.pressure[b.i], p_j = e.pressure[b.j];
     const Vector<dim> t = s.traction(p_i, p_j), f = b.area * t;
     const Spin<dim> bend = bending_torque(b, p);
     add(p.force, b.i, f);
@@ -166,26 +169,28 @@ void Interfaces<dim>::add_forces(Particles &p, const std::vector<double> &pressu
 }
 
 template <int dim>
-double Interfaces<dim>::energy(const Particles &p, const std::vector<double> &pressure) const
+void Interfaces<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
+                                   std::vector<double> &energy) const
 {
-  double sum = 0;
   for (const auto &[b, index] : bonds_) {
     const auto s = series_of(b, p);
-    const double p_i = pressure[b.i], p_j = pressure[b.j];
-    sum += s.energy(s.traction(p_i, p_j), p_i, p_j) + bending_energy(b, p);
+    const double p_i = e.pressure[b.i], p_j = e.pressure[b.j];
+    energy[b.i] += s.energy(s.traction(p_i, p_j), p_i, p_j) + bending_energy(b, p);
   }
-  return sum;
 }
 
 template <int dim>
-double Interfaces<dim>::volume_energy(const std::vector<double> &lambda_per_volume,
-                                      const std::vector<double> &pressure) const
+double Interfaces<dim>::energy(const Particles &p, const Evaluation<dim> &e) const
 {
-  double sum = 0;
+  core::ExactSum sum;
+  for (const auto &[b, index] : bonds_) {
+    const auto s = series_of(b, p);
+    const double p_i = e.pressure[b.i], p_j = e.pressure[b.j];
+    sum.add(s.energy(s.traction(p_i, p_j), p_i, p_j) + bending_energy(b, p));
+  }
   for (const int i : members_)
-    if (lambda_per_volume[i] != 0)
-      sum += 0.5 * pressure[i] * pressure[i] / lambda_per_volume[i];
-  return sum;
+    sum.add(e.body.volume_energy(i, e.pressure[i]));
+  return sum.value();
 }
 
 template class Interfaces<2>;

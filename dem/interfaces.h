@@ -1,7 +1,7 @@
 // Bonds between particles of different materials: both sides of the face carry the same traction.
 #pragma once
 
-#include "dem/bond_network.h"
+#include "dem/parts/force_part.h"
 
 namespace ligament::dem
 {
@@ -11,7 +11,7 @@ namespace ligament::dem
 /// of the particles at interfaces: they solve one sparse, symmetric positive definite system, to
 /// round-off, by conjugate gradients. All other bonds of these particles must be in the table.
 template <int dim>
-class Interfaces
+class Interfaces : public ForcePart<dim>
 {
 public:
   using Particles = particles::Particles<dim>;
@@ -19,31 +19,23 @@ public:
   explicit Interfaces(const BondNetwork<dim> &bonds);
 
   bool empty() const { return bonds_.empty(); }
-  /// Particles that have or had a bond to another material.
+  /// Particles that have or had a bond to another material, ascending.
   const std::vector<int> &members() const { return members_; }
   /// Whether a particle has or had a bond to another material.
   bool is_member(int i) const { return !member_.empty() && member_[i] >= 0; }
 
-  /// Bond `index` of the network's table no longer carries.
-  void remove(int index);
-
-  /// `pressure` of members: from lambda theta of their other bonds and loads to that of all.
-  /// lambda_per_volume: lambda_i / V_i.
-  void add_own_part(const Particles &particles, const std::vector<double> &lambda_per_volume,
-                    std::vector<double> &pressure) const;
+  std::vector<int> particles() const override { return members_; }
+  /// From those of the members' other bonds and loads to those of all: after all other parts.
+  void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
   /// The way back.
-  void take_own_part(const Particles &particles, const std::vector<double> &lambda_per_volume,
-                     std::vector<double> &pressure) const;
+  void take_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
+  void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_energies(const Particles &particles, Evaluation<dim> &evaluation,
+                    std::vector<double> &energy) const override;
+  void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
 
-  /// Forces and torques, bending included.
-  void add_forces(Particles &particles, const std::vector<double> &pressure) const;
-
-  /// Of the bonds, in J, bending included; volumes are the caller's.
-  double energy(const Particles &particles, const std::vector<double> &pressure) const;
-
-  /// Of the volumes of the members, in J.
-  double volume_energy(const std::vector<double> &lambda_per_volume,
-                       const std::vector<double> &pressure) const;
+  /// Of the bonds, bending included, and the volumes of the members, in J.
+  double energy(const Particles &particles, const Evaluation<dim> &evaluation) const;
 
 private:
   struct IndexedBond

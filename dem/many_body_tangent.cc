@@ -36,7 +36,7 @@ void ManyBodyForce<dim>::add_tangent(
     const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
     const std::vector<int> *of) const
 {
-  const Asked asked(of, bonds_.n_particles());
+  const Asked asked(of, body_.n_particles());
   using Term = particles::QuadraticTerm<dim>;
   constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
   const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
@@ -44,7 +44,7 @@ void ManyBodyForce<dim>::add_tangent(
   };
 
   Term term;
-  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
+  body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
     if (b.joins_materials)
       return;
     term.kind = Term::Kind::bond;
@@ -72,7 +72,7 @@ void ManyBodyForce<dim>::add_tangent(
     add(term);
   }
 
-  if (materials_.has_no_dilatation())
+  if (!body_.has_dilatation())
     return;
   std::multimap<int, const WallFace<dim> *> walls_of;
   for (const auto &wall : surface_.walls())
@@ -83,11 +83,11 @@ void ManyBodyForce<dim>::add_tangent(
     term.kind = Term::Kind::volumetric;
     term.location = place(i, Vector<dim>::Zero());
     term.members = {i};
-    bonds_.for_each_bond_of(
+    body_.bonds().for_each_bond_of(
         i, [&](BondId, const Bond<dim> &b) { term.members.push_back(b.i == i ? b.j : b.i); });
     term.rows.setZero(1, term.members.size() * dofs);
     int member = 1;
-    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    body_.bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
       const bool first = b.i == i;
       const Vector<dim> own = first ? b.lever_i : b.lever_j, other = first ? b.lever_j : b.lever_i;
       const auto weight = (law_of(b).area_r / particles.volume[i] * own.transpose()).eval();
@@ -101,17 +101,17 @@ void ManyBodyForce<dim>::add_tangent(
           (law_of(wall).area_r / particles.volume[i] * pressed_along(wall).transpose()).eval();
       term.rows.template middleCols<dofs>(0) += weight * opening_rows<dim>(wall.lever, -1);
     }
-    term.stiffness.setConstant(1,
-                               lambda_per_volume_[i] * particles.volume[i] * particles.volume[i]);
+    term.stiffness.setConstant(1, body_.lambda_per_volume()[i] * particles.volume[i] *
+                                      particles.volume[i]);
     add(term);
   };
   if (!of) {
-    for (int i = 0; i < bonds_.n_particles(); ++i)
+    for (int i = 0; i < body_.n_particles(); ++i)
       add_volume(i);
     return;
   }
   std::vector<int> entered = *of; // neighbours are in the volumes of each other
-  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
+  body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
     entered.insert(entered.end(), {b.i, b.j});
   });
   std::sort(entered.begin(), entered.end());
@@ -125,7 +125,7 @@ void ManyBodyForce<dim>::for_each_face(
     const Particles &particles, const std::function<void(const particles::FaceView<dim> &)> &visit,
     const std::vector<int> *of) const
 {
-  const Asked asked(of, bonds_.n_particles());
+  const Asked asked(of, body_.n_particles());
   const auto both_sides = [&](const Bond<dim> &b, bool bonded) {
     const Vector<dim> centroid = get(particles.reference, b.i) + b.lever_i;
     if (asked.has(b.i))
@@ -133,11 +133,11 @@ void ManyBodyForce<dim>::for_each_face(
     if (asked.has(b.j))
       visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
   };
-  bonds_.for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) { both_sides(b, true); });
+  body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) { both_sides(b, true); });
   for (const auto &contact : contacts_.all())
     if (contact.from_face)
       both_sides(contact.face, false);
-  for (const auto &face : boundary_faces_)
+  for (const auto &face : body_.boundary_faces())
     if (asked.has(face.i))
       visit({face.i, -1, face.normal, face.area,
              Vector<dim>(get(particles.reference, face.i) + face.lever), false});
@@ -148,23 +148,23 @@ std::unique_ptr<particles::PartialForce<dim>>
 ManyBodyForce<dim>::part(const Particles &particles, const std::vector<int> &members,
                          const typename particles::ParticleForce<dim>::TermShare &share) const
 {
-  std::vector<int> index(bonds_.n_particles(), -1);
+  std::vector<int> index(body_.n_particles(), -1);
   for (std::size_t k = 0; k < members.size(); ++k)
     index[members[k]] = int(k);
   std::vector<double> volume_share(members.size(), 0.), lambda_per_volume(members.size(), 0.);
-  if (!materials_.has_no_dilatation())
+  if (body_.has_dilatation())
     for (std::size_t k = 0; k < members.size(); ++k) {
       const int i = members[k];
       std::vector<int> of = {i};
-      bonds_.for_each_bond_of(
+      body_.bonds().for_each_bond_of(
           i, [&](BondId, const Bond<dim> &b) { of.push_back(b.i == i ? b.j : b.i); });
       volume_share[k] = share(get(particles.reference, i), of);
-      lambda_per_volume[k] = lambda_per_volume_[i];
+      lambda_per_volume[k] = body_.lambda_per_volume()[i];
     }
   std::vector<typename PartialManyBody<dim>::SharedBond> bonds;
   std::vector<int> ascending = members;
   std::sort(ascending.begin(), ascending.end());
-  bonds_.for_each_bond_of_some(&ascending, [&](BondId, const Bond<dim> &b) {
+  body_.bonds().for_each_bond_of_some(&ascending, [&](BondId, const Bond<dim> &b) {
     if (index[b.i] < 0 || index[b.j] < 0)
       return;
     Bond<dim> renumbered = b;
@@ -176,47 +176,6 @@ ManyBodyForce<dim>::part(const Particles &particles, const std::vector<int> &mem
   });
   return std::make_unique<PartialManyBody<dim>>(std::move(bonds), std::move(volume_share),
                                                 std::move(lambda_per_volume));
-}
-
-template <int dim>
-void ManyBodyForce<dim>::stresses(const Particles &particles,
-                                  Components<n_strains<dim>> &stress) const
-{
-  Workspace work;
-  find_pressure(particles, work);
-  for (auto &a : stress)
-    a.assign(bonds_.n_particles(), 0.);
-  bonds_.for_each_bond([&](BondId, const Bond<dim> &b) {
-    const BondMotion<dim> m = motion(b, particles, work);
-    const Vector<dim> f = bond_force(b, m, work.pressure);
-    add(stress, b.i, symmetric_product<dim>(m.a_i, f));
-    add(stress, b.j, symmetric_product<dim>(m.a_j, -f));
-  });
-  surface_.add_moments(particles, work.pressure, stress);
-  contacts_.add_moments(particles, stress);
-  for (auto &a : stress)
-    for (int i = 0; i < bonds_.n_particles(); ++i)
-      a[i] /= energy_weight(i) * particles.volume[i];
-  edge_.complete_stresses(particles, stress);
-}
-
-template <int dim>
-double ManyBodyForce<dim>::max_tension(const Particles &particles, const std::vector<int> &of) const
-{
-  Workspace work;
-  find_pressure(particles, work);
-  double largest = 0;
-  for (const int i : of)
-    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-      const Vector<dim> f = bond_force(b, motion(b, particles, work), work.pressure);
-      // No tension is larger than the force: its direction is looked at only where it could count.
-      if (f.norm() > largest * b.weight * b.area) {
-        const Vector<dim> n =
-            present_normal(b, turn(particles, work, b.i), turn(particles, work, b.j));
-        largest = std::max(largest, f.dot(n) / (b.weight * b.area));
-      }
-    });
-  return largest;
 }
 
 // The virtual members are instantiated here, the rest of the class in its own file.
@@ -242,8 +201,4 @@ ManyBodyForce<2>::part(const Particles &, const std::vector<int> &,
 template std::unique_ptr<particles::PartialForce<3>>
 ManyBodyForce<3>::part(const Particles &, const std::vector<int> &,
                        const particles::ParticleForce<3>::TermShare &) const;
-template void ManyBodyForce<2>::stresses(const Particles &, Components<3> &) const;
-template void ManyBodyForce<3>::stresses(const Particles &, Components<6> &) const;
-template double ManyBodyForce<2>::max_tension(const Particles &, const std::vector<int> &) const;
-template double ManyBodyForce<3>::max_tension(const Particles &, const std::vector<int> &) const;
 } // namespace ligament::dem

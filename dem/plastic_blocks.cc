@@ -13,15 +13,13 @@ constexpr int n_saved = 7; // strain and history
 
 template <int dim>
 PlasticBlocks<dim>::PlasticBlocks(const BondNetwork<dim> &bonds,
-                                  std::unique_ptr<const YieldLaw> law, std::vector<int> always)
-    : n_(bonds.n_particles()), law_(std::move(law)), always_(std::move(always)),
-      plastic_((n_ + block - 1) / block, 0), always_blocks_(plastic_.size(), 0),
-      neighbours_(plastic_.size()), numbers_(n_numbers * std::size_t(n_), false),
-      turned_(2 * dim * dim * std::size_t(n_), false)
+                                  std::unique_ptr<const YieldLaw> law,
+                                  const std::vector<int> &always)
+    : n_(bonds.n_particles()), law_(std::move(law)), plastic_((n_ + block - 1) / block, 0),
+      always_blocks_(plastic_.size(), 0), neighbours_(plastic_.size()),
+      numbers_(n_numbers * std::size_t(n_), false), turned_(2 * dim * dim * std::size_t(n_), false)
 {
-  std::sort(always_.begin(), always_.end());
-  always_.erase(std::unique(always_.begin(), always_.end()), always_.end());
-  for (const int i : always_)
+  for (const int i : always)
     always_blocks_[i / block] = 1;
   const auto join = [&](int a, int b) {
     auto &of = neighbours_[a];

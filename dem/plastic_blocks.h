@@ -19,12 +19,10 @@ public:
 
   /// The blocks of the particles `always` are looked at in every step.
   PlasticBlocks(const BondNetwork<dim> &bonds, std::unique_ptr<const YieldLaw> law,
-                std::vector<int> always);
+                const std::vector<int> &always);
 
   const YieldLaw &law() const { return *law_; }
   int n_blocks() const { return int(plastic_.size()); }
-  /// Particles with loaded outer faces, ascending.
-  const std::vector<int> &always() const { return always_; }
 
   /// Blocks that are marked, must always be looked at or have plastic strains, and their
   /// neighbours.
@@ -71,7 +69,6 @@ private:
 
   int n_;
   std::unique_ptr<const YieldLaw> law_;
-  std::vector<int> always_;
   std::vector<std::uint8_t> plastic_, always_blocks_; // of the blocks
   std::vector<std::vector<int>> neighbours_;          // of the blocks
   core::LargeArray numbers_; // strain, history, flowed volume: one stream per number

@@ -43,19 +43,17 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
 template <int dim>
 double ManyBodyForce<dim>::stable_step(const Particles &particles) const
 {
-  core::require(!plastic_ || plastic_->n_plastic_blocks() == 0,
-                "the stable step is that of a body without plastic strains");
+  core::require(!flow_.has_flowed(), "the stable step is that of a body without plastic strains");
   Particles p = particles;
-  SurfaceLoads<dim> surface = surface_;
-  surface.set_zero();
-  Workspace work;
+  Evaluation<dim> evaluation(body_);
+  evaluation.has_loads = false;
   const int size = n_particle_dofs<dim> * p.size();
   // Scaled so that the largest displacement stays far below the spacing, whatever the units.
   double largest = 0;
   for (int i = 0; i < p.size(); ++i)
     largest = std::max(largest, p.inverse_mass(i));
   core::require(largest > 0, "no particle is free to move");
-  const double amplitude = 1e-9 * spacing_ / std::sqrt(largest);
+  const double amplitude = 1e-9 * body_.spacing() / std::sqrt(largest);
 
   Eigen::VectorXd v(size), previous = Eigen::VectorXd::Zero(size), y(size);
   std::uint64_t state = 88172645463325252ull; // xorshift: the same start vector everywhere
@@ -69,7 +67,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
   double beta = 0;
   for (int s = 0; s < steps; ++s) {
     set_motion(p, v, amplitude);
-    elastic_forces(p, surface, false, work);
+    find_forces(p, evaluation);
     get_force(p, y, amplitude);
     diagonal.push_back(v.dot(y));
     y -= diagonal.back() * v + beta * previous;

@@ -1,6 +1,6 @@
 #include "dem/stress_screen.h"
 
-#include "dem/surface_loads.h"
+#include "dem/tensors.h"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dem/bond_law.h"
-#include "dem/surface_loads.h"
+#include "dem/loaded_faces.h"
 
 namespace ligament::dem
 {

@@ -4,13 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ligament::dem
 {
 template <int dim>
 SurfaceLoads<dim>::SurfaceLoads(const packings::Packing<dim> &packing, const Materials &materials,
                                 std::vector<core::BoundaryLoad<dim>> loads)
     : loads_(std::move(loads)), displacement_(loads_.size(), Vector<dim>::Zero()),
-      traction_(displacement_), reaction_(displacement_)
+      traction_(displacement_), has_begun_(loads_.size(), 0)
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;
   for (const auto &face : packing.boundary_faces) {
@@ -62,99 +64,120 @@ void SurfaceLoads<dim>::set_time(double t)
 }
 
 template <int dim>
-void SurfaceLoads<dim>::set_zero()
+void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> &rest)
 {
-  for (auto *values : {&displacement_, &traction_})
-    for (auto &v : *values)
-      v.setZero();
+  for (int l = 0; l < n_loads(); ++l) {
+    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0)))
+      continue;
+    has_begun_[l] = 1;
+    std::vector<int> loaded;
+    for (const auto &wall : walls_)
+      if (std::find(wall.load.begin(), wall.load.end(), l) != wall.load.end())
+        loaded.push_back(wall.i);
+    for (const auto &face : tractions_)
+      if (face.load == l)
+        loaded.push_back(face.i);
+    rest.wake(loaded);
+  }
 }
 
 template <int dim>
-Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall,
-                                        const particles::Particles<dim> &p) const
+Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall, const Particles &p,
+                                        bool has_loads) const
 {
   Vector<dim> du = -get(p.displacement, wall.i) - Turn<dim>::of(p, wall.i).change(wall.lever);
   for (int c = 0; c < dim; ++c)
-    du[c] = wall.load[c] < 0 ? 0. : du[c] + displacement_[wall.load[c]][c];
+    if (wall.load[c] < 0)
+      du[c] = 0;
+    else if (has_loads)
+      du[c] += displacement_[wall.load[c]][c];
   return du - wall.plastic;
 }
 
 template <int dim>
-Vector<dim> SurfaceLoads<dim>::force(const WallFace<dim> &wall, const particles::Particles<dim> &p,
-                                     double pressure) const
+Vector<dim> SurfaceLoads<dim>::force(const WallFace<dim> &wall, const Particles &p,
+                                     const Evaluation<dim> &e) const
 {
-  return law_of(wall).force(relative(wall, p), pressure, pressed_along(wall));
+  return law_of(wall).force(relative(wall, p, e.has_loads), e.pressure[wall.i],
+                            pressed_along(wall));
 }
 
 template <int dim>
-Vector<dim> SurfaceLoads<dim>::force(const TractionFace<dim> &face) const
+Vector<dim> SurfaceLoads<dim>::traction(const TractionFace<dim> &face, bool has_loads) const
 {
-  return law_of(face).force(traction(face));
-}
-
-template <int dim>
-Vector<dim> SurfaceLoads<dim>::traction(const TractionFace<dim> &face) const
-{
+  if (!has_loads)
+    return Vector<dim>::Zero();
   return face.acting.cwiseProduct(traction_[face.load]);
 }
 
 template <int dim>
-void SurfaceLoads<dim>::add_dilatation(const particles::Particles<dim> &particles,
-                                       const std::vector<double> &stiffness_per_volume,
-                                       std::vector<double> &pressure) const
+void SurfaceLoads<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) const
 {
+  if (!e.body.has_dilatation())
+    return;
+  const auto &stiffness = e.body.lambda_per_volume();
   for (const auto &wall : walls_)
-    pressure[wall.i] +=
-        stiffness_per_volume[wall.i] *
-        law_of(wall).add_dilatation(relative(wall, particles), pressed_along(wall), 0);
+    e.pressure[wall.i] +=
+        stiffness[wall.i] *
+        law_of(wall).add_dilatation(relative(wall, p, e.has_loads), pressed_along(wall), 0);
   for (const auto &face : tractions_) {
-    const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
-    pressure[face.i] += stiffness_per_volume[face.i] * law_of(face).dilatation(traction(face), a);
+    const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
+    e.pressure[face.i] +=
+        stiffness[face.i] * law_of(face).dilatation(traction(face, e.has_loads), a);
   }
 }
 
 template <int dim>
-void SurfaceLoads<dim>::add_forces(particles::Particles<dim> &particles,
-                                   const std::vector<double> &pressure)
+void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
 {
-  for (auto &r : reaction_)
-    r.setZero();
+  if (loads_.empty())
+    return;
+  std::vector<std::array<core::ExactSum, dim>> reactions(loads_.size());
+  e.wall_forces.clear();
   for (const auto &wall : walls_) {
-    const Vector<dim> a = wall.lever + Turn<dim>::of(particles, wall.i).change(wall.lever);
-    const Vector<dim> f = force(wall, particles, pressure[wall.i]);
-    add(particles.force, wall.i, f);
-    add(particles.torque, wall.i, cross(a, f));
+    const Vector<dim> a = wall.lever + Turn<dim>::of(p, wall.i).change(wall.lever);
+    const Vector<dim> f = force(wall, p, e);
+    add(p.force, wall.i, f);
+    add(p.torque, wall.i, cross(a, f));
+    e.wall_forces.push_back(f);
     for (int c = 0; c < dim; ++c)
       if (wall.load[c] >= 0)
-        reaction_[wall.load[c]][c] += f[c];
+        reactions[wall.load[c]][c].add(f[c]);
   }
   for (const auto &face : tractions_) {
-    const Vector<dim> a = face.lever + Turn<dim>::of(particles, face.i).change(face.lever);
+    const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
     const TractionLaw<dim> law = law_of(face);
-    const Vector<dim> t = traction(face), f = law.force(t);
-    add(particles.force, face.i, f);
-    add(particles.torque, face.i, law.torque(t, a, pressure[face.i]));
-    reaction_[face.load] += f;
+    const Vector<dim> t = traction(face, e.has_loads), f = law.force(t);
+    add(p.force, face.i, f);
+    add(p.torque, face.i, law.torque(t, a, e.pressure[face.i]));
+    for (int c = 0; c < dim; ++c)
+      reactions[face.load][c].add(f[c]);
   }
+  e.reactions.resize(loads_.size());
+  for (std::size_t l = 0; l < loads_.size(); ++l)
+    for (int c = 0; c < dim; ++c)
+      e.reactions[l][c] = reactions[l][c].value();
 }
 
 template <int dim>
-double SurfaceLoads<dim>::energy(const particles::Particles<dim> &particles) const
+void SurfaceLoads<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
+                                     std::vector<double> &energy) const
 {
-  double sum = 0;
   for (const auto &wall : walls_)
-    sum += law_of(wall).twice_energy(relative(wall, particles)) / 2;
-  return sum;
+    energy[wall.i] += law_of(wall).twice_energy(relative(wall, p, e.has_loads)) / 2;
 }
 
 template <int dim>
-void SurfaceLoads<dim>::add_moments(const particles::Particles<dim> &particles,
-                                    const std::vector<double> &pressure,
-                                    Components<n_strains<dim>> &moments) const
+void SurfaceLoads<dim>::for_each_moment(const Particles &p, const Evaluation<dim> &e,
+                                        const VisitMoment<dim> &visit) const
 {
-  for_each_moment(particles, pressure, [&](int i, const Vector<dim> &a, const Vector<dim> &f) {
-    add(moments, i, symmetric_product<dim>(a, f));
-  });
+  const auto lever = [&](const auto &face) -> Vector<dim> {
+    return face.lever + Turn<dim>::of(p, face.i).change(face.lever);
+  };
+  for (const auto &wall : walls_)
+    visit(wall.i, lever(wall), force(wall, p, e));
+  for (const auto &face : tractions_)
+    visit(face.i, lever(face), law_of(face).force(traction(face, e.has_loads)));
 }
 
 template <int dim>
@@ -165,121 +188,138 @@ void SurfaceLoads<dim>::set_plastic(
     wall.plastic = wall.q * wall.prescribed.cwiseProduct(strain_of(wall.i) * wall.normal);
 }
 
+// Face by face, so that a body in parts books what the whole one does.
 template <int dim>
-void SurfaceLoads<dim>::book_work(const particles::Particles<dim> &particles,
-                                  const std::vector<double> &pressure)
+void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
 {
+  if (loads_.empty())
+    return;
   // The energy depends on the traction itself through theta: its gradient times the change of the
   // traction is work too.
-  std::vector<Vector<dim>> place, gradient;
+  Booked now{displacement_, traction_, e.wall_forces, {}, {}};
   for (const auto &face : tractions_) {
-    const Vector<dim> change = Turn<dim>::of(particles, face.i).change(face.lever);
-    place.push_back(get(particles.displacement, face.i) + change);
-    gradient.push_back(
-        law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), pressure[face.i]));
+    const Vector<dim> change = Turn<dim>::of(p, face.i).change(face.lever);
+    now.place.push_back(get(p.displacement, face.i) + change);
+    now.gradient.push_back(
+        law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), e.pressure[face.i]));
   }
   if (booked_) {
-    for (std::size_t l = 0; l < loads_.size(); ++l)
-      work_ += 0.5 * (reaction_[l] + old_reaction_[l]).dot(displacement_[l] - old_displacement_[l]);
+    const Booked &old = *booked_;
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      for (int c = 0; c < dim; ++c)
+        if (const int l = walls_[w].load[c]; l >= 0)
+          if (const double moved = now.displacement[l][c] - old.displacement[l][c]; moved != 0)
+            work_.add(0.5 * (now.wall_force[w][c] + old.wall_force[w][c]) * moved);
     for (std::size_t f = 0; f < tractions_.size(); ++f) {
       const auto &face = tractions_[f];
-      const Vector<dim> now = traction_[face.load], before = old_traction_[face.load];
-      work_ +=
-          0.5 * face.area * face.acting.cwiseProduct(now + before).dot(place[f] - old_place_[f]);
-      work_ += 0.5 * (gradient[f] + old_gradient_[f]).dot(now - before);
+      const Vector<dim> t = now.traction[face.load], t_old = old.traction[face.load];
+      work_.add(0.5 * face.area *
+                face.acting.cwiseProduct(t + t_old).dot(now.place[f] - old.place[f]));
+      work_.add(0.5 * (now.gradient[f] + old.gradient[f]).dot(t - t_old));
     }
   }
-  booked_ = true;
-  old_displacement_ = displacement_;
-  old_traction_ = traction_;
-  old_reaction_ = reaction_;
-  old_place_ = std::move(place);
-  old_gradient_ = std::move(gradient);
+  booked_ = std::move(now);
 }
 
-template <int dim>
-std::map<std::array<std::int64_t, 2>, std::size_t>
-SurfaceLoads<dim>::face_names(const core::Names &names) const
+namespace
+{
+/// Faces by the name of their particle and their number there.
+template <typename Face>
+std::map<std::array<std::int64_t, 2>, std::size_t> names_of(const std::vector<Face> &faces,
+                                                            const core::Names &names)
 {
   std::map<int, std::int64_t> n_of;
-  std::map<std::array<std::int64_t, 2>, std::size_t> faces;
-  for (std::size_t f = 0; f < tractions_.size(); ++f)
-    faces[{names.name(tractions_[f].i), n_of[tractions_[f].i]++}] = f;
-  return faces;
+  std::map<std::array<std::int64_t, 2>, std::size_t> found;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    found[{names.name(faces[f].i), n_of[faces[f].i]++}] = f;
+  return found;
 }
+
+/// Rows in the order of the faces' names.
+template <int dim, typename Face>
+core::Table
+table_of(const std::vector<Face> &faces, const core::Names &names,
+         const std::vector<std::pair<std::string, const std::vector<Vector<dim>> *>> &columns)
+{
+  const auto rows = names_of(faces, names);
+  std::vector<std::int64_t> keys;
+  for (const auto &[key, f] : rows)
+    keys.insert(keys.end(), key.begin(), key.end());
+  core::Table table(std::move(keys), 2);
+  for (const auto &[name, values] : columns)
+    for (int c = 0; c < dim; ++c) {
+      std::vector<double> column;
+      for (const auto &[key, f] : rows)
+        column.push_back((*values)[f][c]);
+      table.add(name + "_" + std::to_string(c), column);
+    }
+  return table;
+}
+
+/// Of faces without a row: zero.
+template <int dim, typename Face>
+std::vector<Vector<dim>> column_of(const core::Table &table, const std::string &name,
+                                   const std::vector<Face> &faces, const core::Names &names)
+{
+  std::vector<Vector<dim>> values(faces.size(), Vector<dim>::Zero());
+  const auto rows = names_of(faces, names);
+  for (int c = 0; c < dim; ++c) {
+    const auto column = table.reals(name + "_" + std::to_string(c));
+    for (std::size_t r = 0; r < table.n_rows(); ++r)
+      if (const auto f = rows.find({table.keys()[2 * r], table.keys()[2 * r + 1]}); f != rows.end())
+        values[f->second][c] = column[r];
+  }
+  return values;
+}
+} // namespace
 
 template <int dim>
 void SurfaceLoads<dim>::save(core::State &state, const core::Names &names) const
 {
-  core::save_value(state, "surface", "work", work_);
-  core::save_value(state, "surface", "booked", std::int64_t(booked_));
+  core::save_sum(state, "surface_work", work_);
+  core::save_value(state, "surface", "booked", std::int64_t(booked_.has_value()));
   if (!booked_)
     return;
-  const auto add = [](core::Table &table, const std::string &name,
-                      const std::vector<Vector<dim>> &rows) {
-    for (int c = 0; c < dim; ++c) {
-      std::vector<double> values;
-      for (const auto &v : rows)
-        values.push_back(v[c]);
-      table.add(name + "_" + std::to_string(c), values);
-    }
-  };
-  std::vector<std::int64_t> numbers, keys;
-  for (std::size_t l = 0; l < loads_.size(); ++l)
-    numbers.push_back(std::int64_t(l));
+  std::vector<std::int64_t> numbers;
+  for (int l = 0; l < n_loads(); ++l)
+    numbers.push_back(l);
   core::Table loads(std::move(numbers));
-  add(loads, "displacement", old_displacement_);
-  add(loads, "traction", old_traction_);
-  add(loads, "reaction", old_reaction_);
+  for (const auto &[name, values] : {std::pair("displacement", &booked_->displacement),
+                                     std::pair("traction", &booked_->traction)})
+    for (int c = 0; c < dim; ++c) {
+      std::vector<double> column;
+      for (const auto &v : *values)
+        column.push_back(v[c]);
+      loads.add(std::string(name) + "_" + std::to_string(c), column);
+    }
   state["loads"] = std::move(loads);
-  std::vector<Vector<dim>> place, gradient;
-  for (const auto &[key, f] : face_names(names)) {
-    keys.insert(keys.end(), key.begin(), key.end());
-    place.push_back(old_place_[f]);
-    gradient.push_back(old_gradient_[f]);
-  }
-  core::Table faces(std::move(keys), 2);
-  add(faces, "place", place);
-  add(faces, "gradient", gradient);
-  state["loaded_faces"] = std::move(faces);
+  state["walls"] = table_of<dim>(walls_, names, {{"force", &booked_->wall_force}});
+  state["loaded_faces"] = table_of<dim>(
+      tractions_, names, {{"place", &booked_->place}, {"gradient", &booked_->gradient}});
 }
 
 template <int dim>
-void SurfaceLoads<dim>::load(const core::State &state, const core::Names &names)
+void SurfaceLoads<dim>::load(const core::State &state, const core::Names &names, const Particles &)
 {
-  work_ = core::load_real(state, "surface", "work");
-  booked_ = core::load_integer(state, "surface", "booked") != 0;
-  if (!booked_)
+  work_ = core::load_sum(state, "surface_work");
+  booked_.reset();
+  if (core::load_integer(state, "surface", "booked") == 0)
     return;
-  const auto row = [](const core::Table &table, const std::string &name, std::size_t r) {
-    Vector<dim> v;
-    for (int c = 0; c < dim; ++c)
-      v[c] = table.reals(name + "_" + std::to_string(c))[r];
-    return v;
-  };
-  const core::Table &loads = core::table(state, "loads");
-  core::require(loads.n_rows() == loads_.size(), "the state is of another number of loads");
-  old_displacement_ = old_traction_ = old_reaction_ =
-      std::vector<Vector<dim>>(loads_.size(), Vector<dim>::Zero());
-  for (std::size_t l = 0; l < loads_.size(); ++l) {
-    old_displacement_[l] = row(loads, "displacement", l);
-    old_traction_[l] = row(loads, "traction", l);
-    old_reaction_[l] = row(loads, "reaction", l);
-  }
-  const core::Table &faces = core::table(state, "loaded_faces");
-  const auto names_of = face_names(names);
-  old_place_ = old_gradient_ = std::vector<Vector<dim>>(tractions_.size(), Vector<dim>::Zero());
+  const core::Table &loads = core::table(state, "loads"), &walls = core::table(state, "walls"),
+                    &faces = core::table(state, "loaded_faces");
+  core::require(int(loads.n_rows()) == n_loads(), "the state is of another number of loads");
+  Booked old{displacement_, traction_, column_of<dim>(walls, "force", walls_, names),
+             column_of<dim>(faces, "place", tractions_, names),
+             column_of<dim>(faces, "gradient", tractions_, names)};
   for (int c = 0; c < dim; ++c) {
-    const auto place = faces.reals("place_" + std::to_string(c));
-    const auto gradient = faces.reals("gradient_" + std::to_string(c));
-    for (std::size_t r = 0; r < faces.n_rows(); ++r)
-      if (const auto f = names_of.find({faces.keys()[2 * r], faces.keys()[2 * r + 1]});
-          f != names_of.end())
-      {
-        old_place_[f->second][c] = place[r];
-        old_gradient_[f->second][c] = gradient[r];
-      }
+    const auto displacement = loads.reals("displacement_" + std::to_string(c)),
+               traction = loads.reals("traction_" + std::to_string(c));
+    for (int l = 0; l < n_loads(); ++l) {
+      old.displacement[l][c] = displacement[l];
+      old.traction[l][c] = traction[l];
+    }
   }
+  booked_ = std::move(old);
 }
 
 template class SurfaceLoads<2>;

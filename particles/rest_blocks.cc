@@ -1,6 +1,6 @@
 #include "particles/rest_blocks.h"
 
-#include "core/exact_sum.h"
+#include "core/sums.h"
 
 #include <algorithm>
 #include <cmath>

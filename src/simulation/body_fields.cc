@@ -1,6 +1,6 @@
 #include "src/simulation/body_fields.h"
 
-#include "core/exact_sum.h"
+#include "core/sums.h"
 
 #include <cmath>
 #include <unordered_map>

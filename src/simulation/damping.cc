@@ -1,6 +1,6 @@
 #include "src/simulation/damping.h"
 
-#include "core/exact_sum.h"
+#include "core/sums.h"
 #include "src/simulation/energy_ledger.h"
 
 #include <algorithm>

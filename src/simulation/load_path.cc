@@ -1,6 +1,6 @@
 #include "src/simulation/load_path.h"
 
-#include "core/exact_sum.h"
+#include "core/sums.h"
 
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>

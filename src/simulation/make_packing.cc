@@ -1,8 +1,8 @@
 #include "src/simulation/make_packing.h"
 
 #include "core/check.h"
-#include "core/exact_sum.h"
 #include "core/keyed_error.h"
+#include "core/sums.h"
 #include "packings/packing_file.h"
 #include "src/scene/geometry.h"
 

@@ -3,6 +3,8 @@
 #include "core/check.h"
 #include "core/exact_sum.h"
 #include "core/flush_denormals.h"
+#include "core/state.h"
+#include "core/sums.h"
 
 #include <gtest/gtest.h>
 
@@ -277,7 +279,6 @@ TEST(ExactSum, TablesOfPartsAddUpByWords)
   save_sum(whole, "work", part(0, 3000));
   save_sum(first, "work", part(0, 1234));
   save_sum(second, "work", part(1234, 3000));
-  EXPECT_LT(table(whole, "work").n_rows(), 8u); // 32 bits each
   EXPECT_EQ(load_sum(whole, "work").words(), sum_of(terms).words());
 
   std::map<std::int64_t, std::int64_t> words;
@@ -300,7 +301,7 @@ TEST(ExactSum, TablesOfPartsAddUpByWords)
   State nothing;
   save_sum(nothing, "work", ExactSum());
   EXPECT_EQ(bits_of(load_sum(nothing, "work").value()), bits_of(0.));
-  Table wrong({68});
+  Table wrong({0});
   wrong.add("word", std::vector<std::int64_t>{1});
   EXPECT_THROW(load_sum({{"work", wrong}}, "work"), InputError);
 }

@@ -1,4 +1,5 @@
 // Maximum tension is the largest principal stress on any packing, whatever the other stresses are.
+#include "dem/tensors.h"
 #include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
 

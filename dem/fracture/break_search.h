@@ -1,0 +1,86 @@
+// Which bonds break: the criteria of theory.md section 1.6, looked at only where a bound of the
+// kernels says that they could hold.
+#pragma once
+
+#include "dem/fracture_law.h"
+#include "dem/stress_screen.h"
+#include "dem/stressed_body.h"
+
+namespace ligament::dem
+{
+using particles::Utilisation, particles::Watch;
+
+/// A bond under tension as a criterion looks at it.
+template <int dim>
+struct BondTension
+{
+  BondId id;
+  Bond<dim> bond;
+  Vector<dim> normal, traction; // of the face at present; Pa
+  double utilisation;           // tension over strength, or a bound of it; 0 without tension
+};
+
+template <int dim>
+class BreakSearch
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  /// Particles `at_interfaces` have bonds to another material.
+  BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces);
+
+  const FractureLaw &law() const { return law_; }
+  bool can_break() const { return law_.criterion != FractureLaw::Criterion::none; }
+  /// By maximum tension if there was no criterion; in Pa.
+  void set_strength(double strength, const BondedBody<dim> &body);
+  /// See ForceReport::set_noted_share.
+  void set_noted_share(double share);
+
+  /// The next evaluation notes what could break.
+  void ask(Evaluation<dim> &evaluation, const PlasticFlow<dim> &flow) const;
+  /// After it: leaves out what the stresses clear of the particles that it noted.
+  void clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &evaluation);
+
+  /// Those that break now, in this order.
+  std::vector<BondId> exceeding_bonds(const StressedBody<dim> &state) const;
+
+  /// See ForceReport::utilisation.
+  Utilisation<dim> utilisation(const StressedBody<dim> &state,
+                               const std::vector<Watch> &watch) const;
+
+  /// Of the bonds of these particles the one that bears the largest share of its strength by the
+  /// criterion; of utilisation 0 where none is under tension, and without a criterion.
+  BondTension<dim> weakest_bond(const StressedBody<dim> &state, const std::vector<int> &of) const;
+
+  /// Whether the last evaluation's stresses were asked of many particles.
+  bool looks_by_stress() const { return screen_.was_asked(); }
+
+  /// The bond no longer carries.
+  void remove(const Bond<dim> &bond) { screen_.remove(bond); }
+  /// Other bonds, or others' strengths, from now on.
+  void reset(const BondedBody<dim> &body);
+
+private:
+  const CriterionIn<dim> &criterion() const { return law_.criterion.template in<dim>(); }
+  /// What the kernels look for; of the table's bonds in terms of the first material's.
+  BreakScreen screen(const BondedBody<dim> &body, bool of_table) const;
+  /// Of a bond in Pa.
+  double strength_of(const Bond<dim> &bond, const Materials &materials) const;
+  double size_factor(const Bond<dim> &bond) const;
+  /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
+  BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond,
+                                const StressedBody<dim> &state) const;
+  /// The bonds whose bound reaches the noted share, some of them twice.
+  std::vector<BondTension<dim>> suspected_bonds(const StressedBody<dim> &state) const;
+  /// Utilisations by the criterion in place of their bounds; where they stay below `least`,
+  /// something not smaller and below it may stand instead.
+  void find_tensions(std::vector<BondTension<dim>> &bonds, const StressedBody<dim> &state,
+                     double least) const;
+
+  FractureLaw law_;
+  std::vector<int> at_interfaces_; // ascending
+  double noted_share_ = 1;         // of the limit
+  double largest_size_factor_ = 1; // of the bonds
+  StressScreen<dim> screen_;
+};
+} // namespace ligament::dem

@@ -1,0 +1,65 @@
+// The bonds that broke, and what that took from the energy of the body.
+#pragma once
+
+#include "core/exact_sum.h"
+#include "dem/bond.h"
+#include "particles/force_report.h"
+
+#include <optional>
+
+namespace ligament::dem
+{
+using particles::BrokenBond;
+
+template <int dim>
+class BrokenBonds
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  /// All so far, in the order of breaking.
+  const std::vector<BrokenBond<dim>> &all() const { return all_; }
+
+  /// The step of dt (s) after the last break ends.
+  void end_step(const Particles &particles, double dt);
+
+  /// At a time (s) at which bonds have been looked at already, none breaks any more.
+  bool have_broken_at(double time) const { return broken_at_ == time; }
+
+  /// `energy` in J, released.
+  void add(const Bond<dim> &bond, const Particles &particles, double time, double energy);
+
+  /// Forces and torques of the particles, those after the break, become the mean with those before
+  /// it. Over the step before, the force before would have made the work exact, over the next one
+  /// that after: theory.md eq. (E10).
+  void take_mean(Particles &particles, const Components<dim> &force_before,
+                 const Components<n_spins<dim>> &torque_before, double dt);
+
+  /// Released, in J.
+  double energy() const { return energy_.value(); }
+  /// Energy in J by which the leap-frog's invariant (kinetic energy 1/2 v(-) m v(+)) fell because
+  /// forces jumped.
+  double step_error() const { return step_error_.value(); }
+
+  void save(core::State &state, const core::Names &names) const;
+  /// all() is there already.
+  void load(const core::State &state, const core::Names &names);
+
+private:
+  struct Jump
+  {
+    int i;
+    Vector<dim> force = Vector<dim>::Zero(); // N, after less before
+    Spin<dim> torque = Spin<dim>::Zero();    // N m
+  };
+  /// Adds `sign` times a quarter of the work in J that the jumps of the last break do over a step.
+  void book_jumps(const Particles &particles, double dt, int sign);
+  void save_jumps(core::State &state, const core::Names &names) const;
+  void load_jumps(const core::State &state, const core::Names &names);
+
+  std::vector<BrokenBond<dim>> all_;
+  std::vector<Jump> jumps_;         // where bonds broke in the last step
+  std::optional<double> broken_at_; // s
+  core::ExactSum energy_, step_error_;
+};
+} // namespace ligament::dem

@@ -1,0 +1,88 @@
+// Breaking of bonds: energy released, contact in place of the bond.
+#include "dem/bond_law.h"
+#include "dem/many_body_force.h"
+
+namespace ligament::dem
+{
+template <int dim>
+double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
+{
+  if (b.joins_materials)
+    return 0;
+  const auto m = stressed(p, evaluation_).motion(b);
+  return law_of(b).twice_energy(m.elastic) / 2 + bending_energy(b, p);
+}
+
+template <int dim>
+double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) const
+{
+  double sum = bond_energy(b, p);
+  for (const int i : {b.i, b.j})
+    if (!interfaces_.is_member(i))
+      sum += body_.volume_energy(i, evaluation_.pressure[i]);
+  if (is_at_interface(b))
+    sum += interfaces_.energy(p, evaluation_);
+  return sum;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
+{
+  body_.remove(id, b, p);
+  search_.remove(b);
+  for (auto *part : parts_)
+    part->remove(id, b, p);
+}
+
+// The volumes lose the share of this face; the other faces keep theirs.
+template <int dim>
+double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
+{
+  std::vector<double> &pressure = evaluation_.pressure;
+  const std::vector<double> &stiffness = body_.lambda_per_volume();
+  const bool at_interface = is_at_interface(b);
+  if (at_interface)
+    interfaces_.take_pressures(p, evaluation_);
+  const auto m = stressed(p, evaluation_).motion(b);
+  const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
+    return (b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0)) -
+           flow_.flowed_volume(b, i);
+  };
+  const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, m.du, m.a_i)),
+                                                        std::pair(b.j, share(b.j, -m.du, m.a_j))};
+  for (const auto &[i, share] : shares)
+    if (stiffness[i] != 0)
+      pressure[i] = pressure[i] / stiffness[i] - share; // theta_i V_i for a moment
+  drop_bond(id, b, p);
+  for (const auto &[i, share] : shares)
+    if (stiffness[i] != 0)
+      pressure[i] *= stiffness[i];
+  if (at_interface)
+    interfaces_.add_pressures(p, evaluation_);
+  return local_energy(b, p) - bond_energy(b, p);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bonds)
+{
+  if (bonds.empty())
+    return;
+  const auto force_before = p.force;
+  const auto torque_before = p.torque;
+  for (const BondId &id : bonds) {
+    const Bond<dim> b = body_.bonds().bond(id);
+    const double before = local_energy(b, p), after = remove_bond(id, b, p);
+    broken_.add(b, p, time_, before - after - contacts_.add_broken(b, p));
+  }
+  evaluation_.look.reset(); // what was noted before is what utilisation() looks at
+  find_forces(p, evaluation_);
+  add_contacts(p);
+  surface_.book_work(p, evaluation_); // the supports' reactions changed, nothing moved
+  broken_.take_mean(p, force_before, torque_before, dt());
+}
+
+template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);
+template void ManyBodyForce<3>::drop_bond(const BondId &, const Bond<3> &, const Particles &);
+template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &);
+template void ManyBodyForce<3>::break_bonds(Particles &, const std::vector<BondId> &);
+} // namespace ligament::dem

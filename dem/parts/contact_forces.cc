@@ -1,0 +1,119 @@
+#include "dem/parts/contact_forces.h"
+
+#include <cmath>
+
+namespace ligament::dem
+{
+namespace
+{
+/// Mean face of the whole cells, in m^2; of all cells where none is whole.
+template <int dim>
+double mean_face_area(const packings::Packing<dim> &packing)
+{
+  core::ExactSum sum;
+  if (!packing.directions.empty()) {
+    for (const auto &d : packing.directions)
+      sum.add(d.area);
+    return sum.value() / double(packing.directions.size());
+  }
+  for (const auto &face : packing.faces)
+    sum.add(face.area);
+  return packing.faces.empty() ? 0. : sum.value() / double(packing.faces.size());
+}
+} // namespace
+
+template <int dim>
+ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const Materials &materials)
+    : contacts_(materials, packing.global_id, packing.size()),
+      search_(packing, mean_face_area(packing)), spacing_(packing.spacing)
+{
+  for (const auto &face : packing.faces)
+    if (face.cracked) {
+      Bond<dim> b = BondNetwork<dim>::make_bond(face, materials, packing.thickness);
+      if (face.cut >= 0) {
+        contacts_.add_joint(b, face.cut, packing.cuts[face.cut].normal(),
+                            get(packing.centre, face.j));
+        continue;
+      }
+      // Closed faces press with nothing, not even with rounding: that would be a load from the
+      // start.
+      const Vector<dim> between = get(packing.centre, b.j) - get(packing.centre, b.i);
+      b.distance = std::min(b.distance, between.norm());
+      contacts_.add(b, true);
+    }
+}
+
+template <int dim>
+double ContactForces<dim>::add_broken(const Bond<dim> &b, const Particles &p)
+{
+  search_.add_surface_particle(b.i);
+  search_.add_surface_particle(b.j);
+  searching_ = true;
+  return contacts_.compression_energy(contacts_.add(b, true), p);
+}
+
+template <int dim>
+void ContactForces<dim>::search(const Particles &p, const BondNetwork<dim> &bonds, double time,
+                                particles::RestBlocks<dim> *rest)
+{
+  if (all().empty() || looked_at_ == time)
+    return;
+  looked_at_ = time;
+  searching_ = searching_ || has_slid_;
+  if (!searching_) {
+    has_slid_ = contacts_.has_slid(p, spacing_ / 4);
+    return;
+  }
+  search_.update(p, bonds, contacts_);
+  if (!rest || rest->all_awake())
+    return;
+  // Those that the search found join particles that no bond ever joined.
+  std::vector<int> asleep;
+  for (const auto &contact : all())
+    for (const int i : {contact.face.i, contact.face.j})
+      if (!rest->is_awake(i))
+        asleep.push_back(i);
+  rest->wake(asleep);
+}
+
+template <int dim>
+void ContactForces<dim>::add_energies(const Particles &p, Evaluation<dim> &,
+                                      std::vector<double> &energy) const
+{
+  for (const auto &contact : all())
+    energy[contact.face.i] += contacts_.energy(contact, p);
+}
+
+template <int dim>
+void ContactForces<dim>::for_each_moment(const Particles &p, const Evaluation<dim> &,
+                                         const VisitMoment<dim> &visit) const
+{
+  contacts_.for_each_moment(p, visit);
+}
+
+template <int dim>
+void ContactForces<dim>::save(core::State &state, const core::Names &names) const
+{
+  contacts_.save(state, names);
+  search_.save(state, names);
+  core::save_value(state, "contact_search", "looked_at", looked_at_.value_or(std::nan("")));
+  core::save_value(state, "contact_search", "searching", std::int64_t(searching_));
+  core::save_value(state, "contact_search", "has_slid", std::int64_t(has_slid_));
+}
+
+template <int dim>
+void ContactForces<dim>::load(const core::State &state, const core::Names &names, const Particles &)
+{
+  contacts_.load(state, names, [&](int i, int j, double distance) {
+    return search_.face_between(i, j, distance);
+  });
+  search_.load(state, names);
+  const double time = core::load_real(state, "contact_search", "looked_at");
+  looked_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
+  searching_ = core::load_integer(state, "contact_search", "searching") != 0;
+  has_slid_ = core::load_integer(state, "contact_search", "has_slid") != 0;
+}
+
+template class ContactForces<2>;
+template class ContactForces<3>;
+} // namespace ligament::dem

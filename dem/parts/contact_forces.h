@@ -1,0 +1,53 @@
+// Faces that touch, as part of the force: those of broken bonds and initial cracks, and those that
+// a search finds.
+#pragma once
+
+#include "dem/contact_search.h"
+#include "dem/contacts.h"
+#include "dem/parts/force_part.h"
+
+namespace ligament::dem
+{
+/// What is seen in one step acts in the next: a body in parts can agree on it meanwhile.
+template <int dim>
+class ContactForces : public ForcePart<dim>
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  /// Faces that a crack cuts touch from the start.
+  ContactForces(const packings::Packing<dim> &packing, const Materials &materials);
+
+  const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
+
+  /// A bond has broken: its particles lie on a surface, its face may touch. Contact energy in J.
+  double add_broken(const Bond<dim> &bond, const Particles &particles);
+
+  /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
+  /// faces have slid.
+  void search(const Particles &particles, const BondNetwork<dim> &bonds, double time,
+              particles::RestBlocks<dim> *rest);
+  /// Adds forces and torques, after all other parts; slips follow the motion. See Contacts.
+  void act(Particles &particles, double dt) { contacts_.add_forces(particles, dt); }
+
+  std::vector<int> particles() const override { return {}; }
+  void add_energies(const Particles &particles, Evaluation<dim> &,
+                    std::vector<double> &energy) const override;
+  void for_each_moment(const Particles &particles, const Evaluation<dim> &,
+                       const VisitMoment<dim> &visit) const override;
+
+  /// Energy in J that friction took, and that the leap-frog lost where contacts opened and closed.
+  double frictional_work() const { return contacts_.frictional_work(); }
+  double step_error() const { return contacts_.step_error(); }
+
+  void save(core::State &state, const core::Names &names) const override;
+  void load(const core::State &state, const core::Names &names, const Particles &) override;
+
+private:
+  Contacts<dim> contacts_;
+  ContactSearch<dim> search_;
+  double spacing_;                            // m
+  bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
+  std::optional<double> looked_at_;           // s
+};
+} // namespace ligament::dem
