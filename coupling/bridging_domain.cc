@@ -321,7 +321,7 @@ double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
     compute_near_force(force_);
   const double moving = still + 0.5 * step.dt * v.cwiseProduct(force_).sum();
   const double loss = scaling_loss(still, moving, factor) +
-                      bodies.zone->damp_velocities(factor, step.dt) +
+                      bodies.zone->damp_velocities(factor, step.dt).value() +
                       bodies.far->damp_velocities(step.dt);
   near_.set_velocity(factor * v);
   return loss;

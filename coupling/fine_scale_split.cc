@@ -1,6 +1,7 @@
 #include "coupling/fine_scale_split.h"
 
 #include "core/check.h"
+#include "core/exact_sum.h"
 #include "coupling/operators/fine_damper.h"
 #include "coupling/operators/gap_filter.h"
 
@@ -202,15 +203,17 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 template <int dim>
 double FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone, double dt) const
 {
-  double sum = 0;
+  core::ExactSum sum;
   for (const auto &member : overlap_.members) {
     const int i = member.particle;
+    double twice = 0;
     for (int c = 0; c < dim; ++c)
-      sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
+      twice += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
     for (int c = 0; c < n_spins<dim> && member.pad && zone.turns; ++c)
-      sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
+      twice += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
+    sum.add(twice);
   }
-  return sum / 2;
+  return sum.value() / 2;
 }
 
 template <int dim>
@@ -279,7 +282,7 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
       scaling_loss(fine_.kinetic_energy(zone.state, 0), fine_.kinetic_energy(zone.state, step.dt),
                    factor) -
       scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt), factor);
-  loss += zone.damp_velocities(factor, step.dt);
+  loss += zone.damp_velocities(factor, step.dt).value();
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
