@@ -1,6 +1,7 @@
 // What the fine-scale split costs per particle of the overlap, transition included, beside a
-// particle of the lattice kernel in the same run; and the solvers of its systems beside each other.
-// One JSON line each: {name, value, unit, reference, ratio}.
+// particle of the lattice kernel in the same run; the solvers of its systems beside each other;
+// what setting it up costs in a large body ("setup" alone, "regimes" alone: one argument). One JSON
+// line each: {name, value, unit, reference, ratio}.
 #include "bench/chebyshev.h"
 #include "bench/roofline.h"
 #include "tests/support/coupled_bodies.h"
@@ -159,10 +160,37 @@ void compare_regimes(const std::string &name, const Vector<dim> &size, double zo
           (step - linear) / 1e3, "us per step", force / 1e3);
   }
 }
+/// The same two overlaps at the ends of a bar of about a million particles and of a short one: the
+/// set-up should cost what the overlaps cost. The patch fit knows only the overlaps.
+void measure_setup()
+{
+  for (const bool fits : {false, true}) {
+    const auto set_up = [&](double zone) {
+      tests::CoupledBodiesParameters<3> p;
+      p.size = {20, 20, zone + 100};
+      p.zone_size = {100, 100, zone};
+      p.material.poissons_ratio = 0.25;
+      p.split.patch_fit = fits;
+      return tests::make_coupled_bodies<3>(p);
+    };
+    const auto small = set_up(60);
+    // Longer by whole cells of the lattice: the same layers lie in the overlap.
+    const auto large = set_up(60 + 2 * 615 * std::sqrt(2));
+    print(fmt::format("fcc, set-up {} patch fit of {} overlap particles of {}; reference: {} of {}",
+                      fits ? "with" : "without", large.split->report().overlap_particles,
+                      large.zone->state.n_owned, small.split->report().overlap_particles,
+                      small.zone->state.n_owned),
+          large.setup_time, "s", small.setup_time);
+  }
+}
 } // namespace
 
 int main(int argc, char **argv)
 {
+  if (argc > 1 && argv[1] == std::string("setup")) {
+    measure_setup();
+    return 0;
+  }
   compare_regimes<2>("hexagonal", {200, 280}, 170);
   compare_regimes<3>("fcc", {30, 30, 190}, 120);
   if (argc > 1 && argv[1] == std::string("regimes"))
@@ -174,4 +202,5 @@ int main(int argc, char **argv)
   measure<2>("hexagonal", {400, 320}, 120, 8.2, hexagonal);
   measure<3>("fcc", {30, 30, 110}, 40, 4.1, fcc);
   measure<3>("fcc", {30, 30, 200}, 60, 8.2, fcc);
+  measure_setup();
 }

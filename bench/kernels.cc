@@ -413,6 +413,28 @@ particles::Particles<dim> pull(const packings::Packing<dim> &packing)
   return p;
 }
 
+/// Median of the seconds of `first` over those of `second`.
+double ratio_in_turns(const std::function<void()> &first, const std::function<void()> &second)
+{
+  const auto seconds = [](const std::function<void()> &call) {
+    const double start = bench::seconds_now();
+    call();
+    return bench::seconds_now() - start;
+  };
+  std::vector<double> ratios;
+  seconds(first);
+  // Strictly in turns: what is called twice finds its arrays in the cache.
+  double before = seconds(second);
+  for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
+    const double now = seconds(first), after = seconds(second);
+    spent += now + after;
+    ratios.push_back(2 * now / (before + after));
+    before = after;
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
 /// What a fracture criterion costs: forces with it over forces without, call by call in turns; far
 /// from breaking, and where the whole body bears some share of its strength. Value: what it costs,
 /// median of the pairs; reference: what it may.
@@ -430,25 +452,11 @@ void measure_criterion(const std::string &name, const packings::Packing<dim> &pa
     const auto without = make({}),
                with = make({dem::FractureLaw::Criterion::maximum_tension, strength});
     double time = 0;
-    const auto seconds = [&](dem::ManyBodyForce<dim> &force) {
-      const double start = bench::seconds_now();
-      force.compute(p, time += 1);
-      return bench::seconds_now() - start;
-    };
-    std::vector<double> ratios;
-    seconds(*with);
-    // Strictly in turns: a force that is called twice finds its arrays in the cache.
-    double before = seconds(*without);
-    for (double spent = 0; ratios.size() < 21 || (spent < 1 && ratios.size() < 1001);) {
-      const double now = seconds(*with), after = seconds(*without);
-      spent += now + after;
-      ratios.push_back(2 * now / (before + after));
-      before = after;
-    }
-    std::sort(ratios.begin(), ratios.end());
+    const double ratio = ratio_in_turns([&] { with->compute(p, time += 1); },
+                                        [&] { without->compute(p, time += 1); });
     print(fmt::format("{}, {} particles, forces with a criterion over forces without, {}", name,
                       packing.size(), what),
-          ratios[ratios.size() / 2], "-", 1.05);
+          ratio, "-", 1.05);
     if (!with->broken_bonds().empty())
       throw core::InputError("bonds broke in a body below its strength");
   };
@@ -463,12 +471,69 @@ void measure_criterion(const std::string &name, const packings::Packing<dim> &pa
   for (const double share : {0.5, 0.7, 0.95})
     compare(fmt::format("uniform tension of {} of the strength", share), uniform, most / share);
 }
+
+/// What the sums over all particles cost: a row of the history, and mass damping in every step.
+template <int dim>
+void measure_sums(const std::string &name, const packings::Packing<dim> &packing)
+{
+  dem::DemMaterial material;
+  material.poissons_ratio = 0.25;
+  core::BoundaryLoad<dim> lower, upper; // held and pulled, so that there are reactions and work
+  lower.boundary = 2;
+  upper.boundary = 3;
+  lower.value[1] = 0;
+  upper.value[1] = 1e-3;
+  const std::vector<core::BoundaryLoad<dim>> loads = {lower, upper};
+  particles::ParticleSolver<dim> solver(
+      move(packing), std::make_unique<dem::ManyBodyForce<dim>>(
+                         packing, material, loads,
+                         dem::FractureLaw{dem::FractureLaw::Criterion::maximum_tension, 1e9}));
+  const double dt = 1e-4 * packing.spacing;
+  double time = 0, read = 0; // what is read keeps the compiler from leaving it out
+  const auto forces = [&] { solver.compute_forces(time += dt); };
+  const auto row = [&] {
+    const auto losses = solver.force->losses();
+    read += solver.potential_energy() + solver.kinetic_energy(dt) + losses.fracture +
+            losses.friction + losses.plastic + losses.breaking_step_error +
+            solver.force->external_work();
+    for (int l = 0; l < int(loads.size()); ++l)
+      read += solver.force->reaction(l)[1];
+    for (const auto &broken : solver.force->broken_bonds())
+      read += broken.area;
+  };
+  const std::string label = fmt::format("{}, {} particles, ", name, packing.size());
+  print(label + "history row over force evaluation; reference: must", ratio_in_turns(row, forces),
+        "-", 1.5);
+  const auto potential = [&] { read += solver.potential_energy(); };
+  print(label + "potential energy over force evaluation", ratio_in_turns(potential, forces), "-",
+        1);
+  const auto kinetic = [&] { read += solver.kinetic_energy(dt); };
+  print(label + "kinetic energy over force evaluation", ratio_in_turns(kinetic, forces), "-", 1);
+  const auto step = [&] {
+    solver.drift(dt);
+    forces();
+    solver.kick(dt);
+  };
+  const auto damped_step = [&] {
+    solver.drift(dt);
+    forces();
+    read += solver.damp_velocities(1 - 1e-9, dt).value();
+    solver.kick(dt);
+    read += solver.damp_velocities(1 - 1e-9, -dt).value();
+  };
+  print(label + "step with mass damping over step without", ratio_in_turns(damped_step, step), "-",
+        1);
+  print(label + "rate with mass damping", 1e-6 * packing.size() * bench::rate(damped_step),
+        "1e6 particle-steps/s", 1);
+  if (!std::isfinite(read))
+    throw core::InputError("energies are no longer finite");
+}
 } // namespace
 
 /// Without arguments the bodies of 33 000 particles and lattices of 880 000; "random": random
 /// packings of 880 000, which take minutes to make; "2d" or "3d": 1e7 particles; "shapes": plates
 /// and bars of lattices beside cubes; "plastic": what breaking and yielding cost; "criterion": what
-/// a fracture criterion does.
+/// a fracture criterion does; "sums": what sums over all particles cost.
 int main(int argc, char **argv)
 {
   using packings::LatticeKind;
@@ -489,6 +554,10 @@ int main(int argc, char **argv)
     measure_criterion<3>("random 3D", make_random<3>(1 / 28.5));
     measure_criterion<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 875.));
     measure_criterion<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 85.5));
+  } else if (what == "sums") {
+    measure_sums<2>("hexagonal", make_block<2>(LatticeKind::hexagonal, 1 / 933.));
+    measure_sums<3>("fcc", make_block<3>(LatticeKind::fcc, 1 / 89.2));
+    measure_sums<2>("random 2D", make_random<2>(1 / 169.));
   } else if (what == "random") {
     measure<2>("random 2D", make_random<2>(1 / 875.), false);
     measure<3>("random 3D", make_random<3>(1 / 85.5), false);

@@ -66,7 +66,7 @@ void Dashpots<dim>::save(State &state, const std::string &name, const Names &nam
   Table table(std::move(keys), 3);
   table.add("memory", memory);
   state[name] = std::move(table);
-  save_value(state, name + "_energy", "energy", energy_);
+  save_sum(state, name + "_energy", energy_);
 }
 
 template <int dim>
@@ -81,7 +81,7 @@ void Dashpots<dim>::load(const State &state, const std::string &name, const Name
     if (found != all.end())
       memory_[found->second] = memory[r];
   }
-  energy_ = load_real(state, name + "_energy", "energy");
+  energy_ = load_sum(state, name + "_energy");
 }
 
 double layer_rate(double depth, double width, double speed)

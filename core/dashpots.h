@@ -1,6 +1,7 @@
 // Dashpots between a body and the ground: how a side of the specimen lets waves out.
 #pragma once
 
+#include "core/exact_sum.h"
 #include "core/names.h"
 #include "core/types.h"
 
@@ -47,8 +48,9 @@ public:
   void act(double dt, const InverseMass &inverse_mass, const Components<dim> &force,
            Components<dim> &velocity);
 
-  /// Taken so far, what their memories keep included, in J.
-  double energy() const { return energy_; }
+  /// Taken so far, what their memories keep included, in J: one exact sum over places and steps,
+  /// which has no order. Parts of a body keep sums of their own places.
+  double energy() const { return energy_.value(); }
 
   /// Memories and energy as tables <name> and <name>_energy; rows are called by the name of the
   /// particle or node, the component and the number of the dashpot there.
@@ -77,7 +79,8 @@ private:
     double resistance, past, mass, keep;
   };
   std::vector<Factors> factors_;
-  double dt_ = 0, energy_ = 0;
+  double dt_ = 0;
+  ExactSum energy_;
 };
 
 template <int dim>
@@ -103,7 +106,7 @@ void Dashpots<dim>::act(double dt, const InverseMass &inverse_mass, const Compon
                         (1 + mass * w + dt * resistance * w / 2);
     const double after = 2 * mean - before;
     if (w > 0) {
-      energy_ += (v - after) / w * mean;
+      energy_.add((v - after) / w * mean);
       v = after;
     }
     for (; begin < place.end; ++begin)

@@ -28,7 +28,7 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(),
                adapted(std::move(overlap), parameters.scheme)),
-      transfer_(overlap_, bodies.zone->state),
+      near_(*bodies.far, overlap_.near_nodes), transfer_(overlap_, bodies.zone->state),
       shares_(weigh_members(overlap_, transfer_, bodies.zone->state, *bodies.zone->force)),
       weighted_transfer_(overlap_, bodies.zone->state),
       projector_(overlap_,
@@ -53,12 +53,11 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
   for (auto &v : member_velocity_)
     v.resize(transfer_.size());
   lost_ = before_damper_ = member_velocity_;
-  displacement_ = velocity_ = force_ = acceleration_ = dead_nodal_ =
-      Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  force_ = acceleration_ = dead_nodal_ = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
   if (std::any_of(parameters.reference_strain.begin(), parameters.reference_strain.end(),
                   [](double e) { return e != 0; }))
     find_dead_load(bodies);
-  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(displacement_));
+  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(far.displacement));
   take_velocities(bodies);
 }
 
@@ -79,8 +78,6 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
       zone.displacement[c][i] = strained(get(zone.reference, i), c);
     for (int i = 0; i < far.mesh().n_nodes(); ++i)
       far.displacement[c][i] = strained(far.mesh().nodes[i], c);
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
   }
   std::vector<char> is_near(zone.n_owned, 0);
   const std::vector<int> members = overlap_.member_particles();
@@ -94,7 +91,7 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
       &members);
   bodies.zone->compute_forces(0);
   far.compute_forces(0);
-  compute_near_force(bodies, dead_nodal_);
+  compute_near_force(dead_nodal_);
   dead_nodal_ *= -1;
   dead_ = zone.force;
   dead_torque_ = zone.torque;
@@ -133,56 +130,21 @@ double BridgingDomain<dim>::near_stable_step() const
 }
 
 template <int dim>
-void BridgingDomain<dim>::read_near_nodes(const fem::FemSolver<dim> &far)
-{
-  for (int i = 0; i < overlap_.n_nodes(); ++i)
-    for (int c = 0; c < dim; ++c) {
-      displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
-      velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
-    }
-}
-
-template <int dim>
 void BridgingDomain<dim>::take_velocities(Bodies<dim> &bodies)
 {
-  read_near_nodes(*bodies.far);
   if (!corrects_at_whole_steps()) // these carry any
     project(bodies);
 }
 
 template <int dim>
-void BridgingDomain<dim>::read_velocities(const particles::Particles<dim> &zone,
-                                          Components<dim> &v) const
-{
-  for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k)
-      v[c][k] = zone.velocity[c][transfer_.particle(k)];
-}
-
-template <int dim>
-void BridgingDomain<dim>::write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const
-{
-  auto &zone = bodies.zone->state;
-  for (int c = 0; c < dim; ++c)
-    for (int k = 0; k < transfer_.size(); ++k)
-      zone.velocity[c][transfer_.particle(k)] = v[c][k];
-  write_near_velocities(*bodies.far);
-}
-
-template <int dim>
-void BridgingDomain<dim>::write_near_velocities(fem::FemSolver<dim> &far) const
-{
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
-}
-
-template <int dim>
 void BridgingDomain<dim>::project(Bodies<dim> &bodies)
 {
-  read_velocities(bodies.zone->state, member_velocity_);
-  constraint_->project(member_velocity_, velocity_);
-  write_velocities(bodies, member_velocity_);
+  auto &velocity = bodies.zone->state.velocity;
+  transfer_.read(velocity, member_velocity_);
+  Nodal<dim> nodal = near_.velocity();
+  constraint_->project(member_velocity_, nodal);
+  transfer_.write(member_velocity_, velocity);
+  near_.set_velocity(nodal);
 }
 
 template <int dim>
@@ -194,12 +156,8 @@ void BridgingDomain<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
     bodies.zone->update_ghosts();
   }
   const auto timing = this->timers_.scope(this->far_);
-  displacement_ += step.dt * velocity_;
-  auto &far = *bodies.far;
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      far.displacement[c][overlap_.near_nodes[i]] = displacement_(i, c);
-  far.drift(step.dt);
+  near_.drift(step.dt);
+  bodies.far->drift(step.dt);
 }
 
 template <int dim>
@@ -221,13 +179,11 @@ void BridgingDomain<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
 }
 
 template <int dim>
-void BridgingDomain<dim>::compute_near_force(const Bodies<dim> &bodies, Nodal<dim> &force) const
+void BridgingDomain<dim>::compute_near_force(Nodal<dim> &force) const
 {
   force = dead_nodal_;
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      force(i, c) += bodies.far->force[c][overlap_.near_nodes[i]];
-  stiffness_blocks_->subtract_product(displacement_, force);
+  near_.add_force(1, force);
+  stiffness_blocks_->subtract_product(near_.displacement(), force);
 }
 
 template <int dim>
@@ -246,8 +202,7 @@ void BridgingDomain<dim>::push(Bodies<dim> &bodies, double dt)
     bodies.zone->kick(dt);
   }
   const auto timing = this->timers_.scope(this->coupling_);
-  velocity_ += dt * acceleration_;
-  write_near_velocities(*bodies.far);
+  near_.add_velocity(dt, acceleration_);
 }
 
 template <int dim>
@@ -255,7 +210,7 @@ void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
 {
   {
     const auto timing = this->timers_.scope(this->coupling_);
-    compute_near_force(bodies, force_);
+    compute_near_force(force_);
     acceleration_ = force_;
     mass_solver_->solve(acceleration_.data(), dim);
   }
@@ -270,7 +225,7 @@ void BridgingDomain<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
   }
   move(bodies, step.dt);
   if (damps) {
-    read_velocities(bodies.zone->state, before_damper_);
+    transfer_.read(bodies.zone->state.velocity, before_damper_);
     damp(bodies, step.dt);
     book_damper(bodies);
   }
@@ -296,10 +251,10 @@ void BridgingDomain<dim>::move_and_damp(Bodies<dim> &bodies, double dt)
 {
   const bool corrects = corrects_at_whole_steps();
   if (!corrects)
-    read_velocities(bodies.zone->state, before_damper_);
+    transfer_.read(bodies.zone->state.velocity, before_damper_);
   push(bodies, dt / 2);
   if (corrects)
-    read_velocities(bodies.zone->state, before_damper_);
+    transfer_.read(bodies.zone->state.velocity, before_damper_);
   else
     project(bodies);
   damp(bodies, dt);
@@ -320,7 +275,7 @@ void BridgingDomain<dim>::damp(Bodies<dim> &bodies, double dt)
 {
   const auto timing = this->timers_.scope(this->coupling_);
   auto &zone = bodies.zone->state;
-  read_velocities(zone, lost_);
+  transfer_.read(zone.velocity, lost_);
   projector_.project(lost_);
   for (auto &v : lost_)
     for (int k = 0; k < transfer_.size(); ++k)
@@ -353,7 +308,6 @@ void BridgingDomain<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
 {
   bodies.zone->scale_velocities(factor);
   bodies.far->scale_velocities(factor);
-  velocity_ *= factor;
 }
 
 template <int dim>
@@ -361,15 +315,15 @@ double BridgingDomain<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
                                             double factor)
 {
   const auto timing = this->timers_.scope(this->coupling_);
-  const double still = 0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_)).sum();
+  const Nodal<dim> v = near_.velocity();
+  const double still = 0.5 * v.cwiseProduct(Nodal<dim>(mass_ * v)).sum();
   if (step.dt > 0)
-    compute_near_force(bodies, force_);
-  const double moving = still + 0.5 * step.dt * velocity_.cwiseProduct(force_).sum();
+    compute_near_force(force_);
+  const double moving = still + 0.5 * step.dt * v.cwiseProduct(force_).sum();
   const double loss = scaling_loss(still, moving, factor) +
-                      bodies.zone->damp_velocities(factor, step.dt) +
+                      bodies.zone->damp_velocities(factor, step.dt).value() +
                       bodies.far->damp_velocities(step.dt);
-  velocity_ *= factor;
-  write_near_velocities(*bodies.far);
+  near_.set_velocity(factor * v);
   return loss;
 }
 
@@ -382,15 +336,14 @@ CoupledEnergy BridgingDomain<dim>::energy(const Bodies<dim> &bodies, const StepT
   e.potential_far = bodies.far->potential_energy();
   // The constraint's forces do no work on velocities that fulfil it.
   Nodal<dim> force;
-  compute_near_force(bodies, force);
+  compute_near_force(force);
   e.kinetic_discrete = bodies.zone->kinetic_energy(step.dt);
-  e.kinetic_far =
-      bodies.far->kinetic_energy(step.dt) +
-      0.5 * velocity_.cwiseProduct(Nodal<dim>(mass_ * velocity_ + step.dt * force)).sum();
+  const Nodal<dim> &v = near_.velocity(), &u = near_.displacement();
+  e.kinetic_far = bodies.far->kinetic_energy(step.dt) +
+                  0.5 * v.cwiseProduct(Nodal<dim>(mass_ * v + step.dt * force)).sum();
   Nodal<dim> internal = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-  stiffness_blocks_->subtract_product(displacement_, internal);
-  e.blended = -0.5 * displacement_.cwiseProduct(internal).sum() -
-              displacement_.cwiseProduct(dead_nodal_).sum();
+  stiffness_blocks_->subtract_product(u, internal);
+  e.blended = -0.5 * u.cwiseProduct(internal).sum() - u.cwiseProduct(dead_nodal_).sum();
   for (int c = 0; c < dim; ++c)
     for (std::size_t i = 0; i < dead_[c].size(); ++i)
       e.blended -= dead_[c][i] * bodies.zone->state.displacement[c][i];
@@ -409,9 +362,8 @@ void BridgingDomain<dim>::save(core::State &state, const Bodies<dim> &) const
 }
 
 template <int dim>
-void BridgingDomain<dim>::load(const core::State &state, Bodies<dim> &bodies)
+void BridgingDomain<dim>::load(const core::State &state, Bodies<dim> &)
 {
-  read_near_nodes(*bodies.far);
   fine_damper_energy_ = core::load_real(state, "bridging_domain", "damper_energy");
 }
 

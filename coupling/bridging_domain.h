@@ -5,6 +5,7 @@
 #include "coupling/algebra/block_matrix.h"
 #include "coupling/coupler.h"
 #include "coupling/coupler_parameters.h"
+#include "coupling/near_nodes.h"
 #include "coupling/operators/fluctuation_projector.h"
 #include "coupling/operators/velocity_constraint.h"
 
@@ -43,11 +44,6 @@ public:
 
 private:
   void find_dead_load(Bodies<dim> &bodies);
-  /// U and V as the far field has them.
-  void read_near_nodes(const fem::FemSolver<dim> &far);
-  void read_velocities(const particles::Particles<dim> &zone, Components<dim> &v) const;
-  void write_velocities(Bodies<dim> &bodies, const Components<dim> &v) const;
-  void write_near_velocities(fem::FemSolver<dim> &far) const;
   bool corrects_at_whole_steps() const;
   void push(Bodies<dim> &bodies, double dt);
   void move(Bodies<dim> &bodies, double dt);
@@ -55,10 +51,11 @@ private:
   void damp(Bodies<dim> &bodies, double dt);
   void book_damper(const Bodies<dim> &bodies);
   void project(Bodies<dim> &bodies);
-  void compute_near_force(const Bodies<dim> &bodies, Nodal<dim> &force) const;
+  void compute_near_force(Nodal<dim> &force) const;
 
   BridgingDomainParameters parameters_;
   Overlap<dim> overlap_;
+  NearNodes<dim> near_;                 // U, V
   Transfer<dim> transfer_;              // with the unweighted masses, for the constraint
   std::vector<double> shares_;          // a of the members
   Transfer<dim> weighted_transfer_;     // with the weighted masses, for the damper
@@ -70,7 +67,6 @@ private:
   std::unique_ptr<BlockMatrix<dim>> stiffness_blocks_;
   std::unique_ptr<LinearSolver> mass_solver_;
 
-  Nodal<dim> displacement_, velocity_;   // U, V of the near nodes
   Nodal<dim> force_, acceleration_;      // of the near nodes at the last kick
   Nodal<dim> dead_nodal_;                // N
   Components<dim> dead_;                 // of all particles, N; empty without

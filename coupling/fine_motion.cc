@@ -1,5 +1,6 @@
 #include "coupling/fine_motion.h"
 
+#include "core/exact_sum.h"
 #include "core/polar_rotation.h"
 #include "particles/orientation.h"
 
@@ -54,6 +55,7 @@ FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Partic
 {
   make_lanes(overlap, particles, damping);
   motion_.resize(dim * lanes_.slots.size());
+  cell_loss_.resize(lanes_.batches.size());
   for (const auto &m : overlap.members)
     if (m.pad && particles.turns) { // what pads have of their own is how they turn
       Pad pad = {m.particle, m.nodes, m.gradient, {}};
@@ -127,10 +129,10 @@ template <int dim>
 void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
                                  Nodal<dim> &force) const
 {
-  std::vector<LaneArray> motion(motion_.size());
+  std::vector<LaneArray> motion(motion_.size()), loss(cell_loss_.size());
   Nodal<dim> other = Nodal<dim>::Zero(carried_.rows(), dim);
   kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), force.data(),
-                             other.data(), other.data()});
+                             other.data(), other.data(), loss.data()});
   add_pad_torques(particles, force);
 }
 
@@ -141,15 +143,19 @@ void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, dou
 {
   carried_.setZero();
   lost_.setZero();
-  const double sum = kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(),
-                                                force.data(), carried_.data(), lost_.data()});
+  kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(), force.data(),
+                             carried_.data(), lost_.data(), cell_loss_.data()});
   add_pad_torques(particles, force);
   carrier_.solve(carried_);
   if (loss_.is_empty())
     return;
   Nodal<dim> square;
   loss_.multiply(carried_, square);
-  damper_energy_ += (sum - carried_.cwiseProduct(lost_ - 0.5 * square).sum()) / 2;
+  core::ExactSum sum;
+  for (std::size_t b = 0; b < cell_loss_.size(); ++b)
+    for (int l = 0; l < lanes_.batches[b].n_cells; ++l)
+      sum.add(cell_loss_[b].value[l]);
+  damper_energy_ += (sum.value() - carried_.cwiseProduct(lost_ - 0.5 * square).sum()) / 2;
 }
 
 template <int dim>
@@ -208,16 +214,19 @@ void FineMotion<dim>::scale(double factor)
 template <int dim>
 double FineMotion<dim>::kinetic_energy(const particles::Particles<dim> &particles, double dt) const
 {
-  double sum = 0;
+  core::ExactSum sum;
   for (std::size_t k = 0; k < lanes_.slots.size(); ++k) {
     const Slot &slot = lanes_.slots[k];
-    for (int c = 0; c < dim; ++c)
-      for (int l = 0; l < lanes_.n_members[k]; ++l) {
+    for (int l = 0; l < lanes_.n_members[k]; ++l) {
+      double twice = 0;
+      for (int c = 0; c < dim; ++c) {
         const double w = motion_[k * dim + c].value[l];
-        sum += w * (slot.mass.value[l] * w + dt * particles.force[c][slot.particle[l]]);
+        twice += w * (slot.mass.value[l] * w + dt * particles.force[c][slot.particle[l]]);
       }
+      sum.add(twice);
+    }
   }
-  return sum / 2;
+  return sum.value() / 2;
 }
 
 template <int dim>

@@ -42,10 +42,11 @@ public:
   /// Velocities of the particles are not touched.
   void load(const core::State &state, const particles::Particles<dim> &particles);
 
-  /// What the damper has taken so far, in J, theory.md eq. (C20).
+  /// What the damper has taken so far, in J, theory.md eq. (C20). Each step adds one number: an
+  /// exact sum over the cells' members and a sum over the near nodes.
   double damper_energy() const { return damper_energy_; }
 
-  /// 1/2 w M w + 1/2 dt w f, in J.
+  /// 1/2 w M w + 1/2 dt w f, in J: an exact sum over the members.
   double kinetic_energy(const particles::Particles<dim> &particles, double dt) const;
 
   /// Large rotation: gives pads the orientation of the mesh's motion U (m), theory.md eq. (C15);
@@ -69,10 +70,11 @@ private:
 
   MemberBatches<dim> lanes_;
   CoarseProjection<dim> carrier_;
-  std::vector<LaneArray> motion_; // w, dim per slot, m/s
-  Nodal<dim> carried_;            // Phi^T M w', then x: what the mesh carries of w'
-  Nodal<dim> lost_;               // Phi^T M damping (w + w')
-  ScalarMatrix<dim> loss_;        // Phi^T M damping (1 - damping/2) Phi
+  std::vector<LaneArray> motion_;    // w, dim per slot, m/s
+  Nodal<dim> carried_;               // Phi^T M w', then x: what the mesh carries of w'
+  Nodal<dim> lost_;                  // Phi^T M damping (w + w')
+  ScalarMatrix<dim> loss_;           // Phi^T M damping (1 - damping/2) Phi
+  std::vector<LaneArray> cell_loss_; // of the members' part of (C20), per batch
   double damper_energy_ = 0;
   std::vector<Pad> pads_;
 };

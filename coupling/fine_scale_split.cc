@@ -1,6 +1,7 @@
 #include "coupling/fine_scale_split.h"
 
 #include "core/check.h"
+#include "core/exact_sum.h"
 #include "coupling/operators/fine_damper.h"
 #include "coupling/operators/gap_filter.h"
 
@@ -16,6 +17,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                                     core::Timers &timers)
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
+      near_(*bodies.far, overlap_.near_nodes),
       fine_(
           overlap_, bodies.zone->state,
           [&, speed = bodies.zone->force->elastic_constants().wave_speed_p](double s) {
@@ -56,32 +58,20 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
     filter_ =
         ScalarMatrix<dim>(make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
                                           parameters.step_ratio * dt, operators.mass_bound));
-  displacement_ = velocity_ = force_ = change_ = Nodal<dim>::Zero(n, dim);
+  force_ = change_ = Nodal<dim>::Zero(n, dim);
   report_.overlap_particles = int(overlap_.members.size());
   report_.pad_particles = fine_.n_pads();
   report_.near_nodes = n;
-  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(displacement_));
+  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(far.displacement));
   take_velocities(bodies);
-}
-
-template <int dim>
-void FineScaleSplit<dim>::read_near_nodes(const fem::FemSolver<dim> &far)
-{
-  for (int i = 0; i < overlap_.n_nodes(); ++i)
-    for (int c = 0; c < dim; ++c) {
-      displacement_(i, c) = far.displacement[c][overlap_.near_nodes[i]];
-      velocity_(i, c) = far.velocity[c][overlap_.near_nodes[i]];
-    }
 }
 
 template <int dim>
 void FineScaleSplit<dim>::take_velocities(Bodies<dim> &bodies)
 {
-  read_near_nodes(*bodies.far);
   if (regime_ != Regime::linear)
-    fine_.turn_pads(displacement_, bodies.zone->state);
-  fine_.take_velocities(velocity_, bodies.zone->state);
-  write_far_velocities(*bodies.far);
+    fine_.turn_pads(near_.displacement(), bodies.zone->state);
+  fine_.take_velocities(near_.velocity(), bodies.zone->state);
 }
 
 template <int dim>
@@ -91,9 +81,9 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
     return;
   core::require(regime != Regime::linear, "an overlap that turns cannot be linear again");
   make_coarse_energy(regime, bodies);
-  fine_.turn_pads(displacement_, bodies.zone->state);
+  fine_.turn_pads(near_.displacement(), bodies.zone->state);
   bodies.far->set_corotated(true);
-  write_velocities(bodies);
+  fine_.write_velocities(near_.velocity(), bodies.zone->state);
 }
 
 template <int dim>
@@ -108,21 +98,6 @@ void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &b
 }
 
 template <int dim>
-void FineScaleSplit<dim>::write_velocities(Bodies<dim> &bodies)
-{
-  fine_.write_velocities(velocity_, bodies.zone->state);
-  write_far_velocities(*bodies.far);
-}
-
-template <int dim>
-void FineScaleSplit<dim>::write_far_velocities(fem::FemSolver<dim> &far) const
-{
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      far.velocity[c][overlap_.near_nodes[i]] = velocity_(i, c);
-}
-
-template <int dim>
 void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
   {
@@ -131,17 +106,14 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
     bodies.zone->update_ghosts();
   }
   if (!rests_)
-    displacement_ += step.dt * velocity_;
+    near_.drift(step.dt);
   if (regime_ != Regime::linear)
-    fine_.turn_pads(displacement_, bodies.zone->state);
-  // The far field moves in one go, just before it acts again: it is needed nowhere in between.
+    fine_.turn_pads(near_.displacement(), bodies.zone->state);
+  // The rest of the far field moves in one go, just before it acts again: it is needed nowhere in
+  // between.
   if ((step.step + 1) % parameters_.step_ratio == 0 && !far_rests_) {
     const auto timing = this->timers_.scope(this->far_);
-    auto &far = *bodies.far;
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < overlap_.n_nodes(); ++i)
-        far.displacement[c][overlap_.near_nodes[i]] = displacement_(i, c);
-    far.drift(parameters_.step_ratio * step.dt);
+    bodies.far->drift(parameters_.step_ratio * step.dt);
   }
 }
 
@@ -159,15 +131,12 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
 }
 
 template <int dim>
-void FineScaleSplit<dim>::compute_mesh_force(const Bodies<dim> &bodies, const StepTime &step,
-                                             Nodal<dim> &force) const
+void FineScaleSplit<dim>::compute_mesh_force(const StepTime &step, Nodal<dim> &force) const
 {
   force.setZero(overlap_.n_nodes(), dim);
   if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < overlap_.n_nodes(); ++i)
-        force(i, c) = parameters_.step_ratio * bodies.far->force[c][overlap_.near_nodes[i]];
-  coarse_->subtract_forces(displacement_, force);
+    near_.add_force(parameters_.step_ratio, force);
+  coarse_->subtract_forces(near_.displacement(), force);
 }
 
 template <int dim>
@@ -180,17 +149,15 @@ auto FineScaleSplit<dim>::halfway(const Bodies<dim> &bodies, const StepTime &ste
         Nodal<dim>::Zero(overlap_.n_nodes(), dim);
     return near;
   }
-  compute_mesh_force(bodies, step, near.force);
+  compute_mesh_force(step, near.force);
   fine_.add_forces(bodies.zone->state, near.force);
   near.acceleration = near.force;
   mass_solver_->solve(near.acceleration.data(), dim);
-  near.velocity = velocity_ + step.dt / 2 * near.acceleration;
+  near.velocity = near_.velocity() + step.dt / 2 * near.acceleration;
   if (m == 1)
     return near;
-  near.far_force.resize(overlap_.n_nodes(), dim);
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      near.far_force(i, c) = bodies.far->force[c][overlap_.near_nodes[i]];
+  near.far_force.setZero(overlap_.n_nodes(), dim);
+  near_.add_force(1, near.far_force);
   near.far_acceleration = near.far_force;
   mass_solver_->solve(near.far_acceleration.data(), dim);
   near.force -= (m - 1) * near.far_force;
@@ -216,9 +183,7 @@ double FineScaleSplit<dim>::impulse_energy(const Bodies<dim> &bodies, const Half
     return 0;
   const auto &far = *bodies.far;
   Components<dim> v = far.halfway_velocity(m * dt);
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      v[c][overlap_.near_nodes[i]] = near.velocity(i, c);
+  near_.write(near.velocity, v);
   far.follow_masters(v);
   // The kinetic energy of the far nodes lacks (m dt)^2/8 F M^-1 F already, not dt^2/8: 1/8 - 1/24.
   const Nodal<dim> a = 2 * near.acceleration - near.far_acceleration;
@@ -238,15 +203,17 @@ double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) c
 template <int dim>
 double FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone, double dt) const
 {
-  double sum = 0;
+  core::ExactSum sum;
   for (const auto &member : overlap_.members) {
     const int i = member.particle;
+    double twice = 0;
     for (int c = 0; c < dim; ++c)
-      sum += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
+      twice += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
     for (int c = 0; c < n_spins<dim> && member.pad && zone.turns; ++c)
-      sum += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
+      twice += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
+    sum.add(twice);
   }
-  return sum / 2;
+  return sum.value() / 2;
 }
 
 template <int dim>
@@ -267,11 +234,10 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
   if (rests_)
     return;
   const auto timing = this->timers_.scope(this->coupling_);
-  compute_mesh_force(bodies, step, force_);
+  compute_mesh_force(step, force_);
   fine_.begin_kick(bodies.zone->state, step.dt, force_);
   kick_coarse(step);
-  fine_.finish_kick(velocity_, bodies.zone->state);
-  write_far_velocities(*bodies.far);
+  fine_.finish_kick(near_.velocity(), bodies.zone->state);
 }
 
 // V += M_c^-1 dt F. Between two impulses of the far field V swings about its mean, most where the
@@ -282,15 +248,15 @@ void FineScaleSplit<dim>::kick_coarse(const StepTime &step)
   change_ = step.dt * force_;
   mass_solver_->solve(change_.data(), dim);
   if (filter_.is_empty() || !is_far_step(step)) {
-    velocity_ += change_;
+    near_.add_velocity(1, change_);
     return;
   }
-  middle_ = velocity_ + 0.5 * change_;
+  middle_ = near_.velocity() + 0.5 * change_;
   filter_.multiply(middle_, lost_); // momentum
-  velocity_ += change_;
+  near_.add_velocity(1, change_);
   change_ = lost_;
   mass_solver_->solve(change_.data(), dim);
-  velocity_ -= change_;
+  near_.add_velocity(-1, change_);
   // theory.md eq. (E3); the mean of V before and after is middle_ - change_ / 2
   gap_filter_energy_ += lost_.cwiseProduct(middle_ - 0.5 * change_).sum();
 }
@@ -301,8 +267,7 @@ void FineScaleSplit<dim>::scale_velocities(Bodies<dim> &bodies, double factor)
   bodies.zone->scale_velocities(factor);
   bodies.far->scale_velocities(factor);
   fine_.scale(factor);
-  velocity_ *= factor;
-  write_velocities(bodies);
+  fine_.write_velocities(near_.velocity(), bodies.zone->state);
 }
 
 // The far field keeps its velocities for m steps and takes their damping at once; so does V, which
@@ -317,19 +282,19 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
       scaling_loss(fine_.kinetic_energy(zone.state, 0), fine_.kinetic_energy(zone.state, step.dt),
                    factor) -
       scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt), factor);
-  loss += zone.damp_velocities(factor, step.dt);
+  loss += zone.damp_velocities(factor, step.dt).value();
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
     if (step.dt > 0) {
       look(bodies, step);
-      loss += damp_coarse_before_kick(bodies, step.dt, whole);
+      loss += damp_coarse_before_kick(step.dt, whole);
     } else
-      loss += damped_impulse_energy(bodies, -step.dt, whole) +
-              damp_coarse_after_kick(bodies, -step.dt, whole);
+      loss +=
+          damped_impulse_energy(bodies, -step.dt, whole) + damp_coarse_after_kick(-step.dt, whole);
     loss += bodies.far->damp_velocities(parameters_.step_ratio * step.dt);
   }
-  write_velocities(bodies);
+  fine_.write_velocities(near_.velocity(), zone.state);
   return loss;
 }
 
@@ -337,8 +302,7 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
 // forces have taken back, just after it ahead by as much. The swing moves nothing and is left as it
 // is.
 template <int dim>
-double FineScaleSplit<dim>::damp_coarse_before_kick(const Bodies<dim> &bodies, double dt,
-                                                    double factor)
+double FineScaleSplit<dim>::damp_coarse_before_kick(double dt, double factor)
 {
   const int m = parameters_.step_ratio;
   swing_.setZero(overlap_.n_nodes(), dim);
@@ -346,30 +310,26 @@ double FineScaleSplit<dim>::damp_coarse_before_kick(const Bodies<dim> &bodies, d
   if (rests_)
     return 0;
   if (m > 1) {
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < overlap_.n_nodes(); ++i)
-        swing_(i, c) = (m - 1) * dt / 2 * bodies.far->force[c][overlap_.near_nodes[i]];
+    near_.add_force((m - 1) * dt / 2, swing_);
     mass_solver_->solve(swing_.data(), dim);
   }
-  undamped_ = velocity_ + swing_;
-  velocity_ = factor * undamped_ - swing_;
+  undamped_ = near_.velocity() + swing_;
+  near_.set_velocity(factor * undamped_ - swing_);
   // The rest of it waits for the forces of the kick.
   return (1 - factor * factor) / 2 * undamped_.cwiseProduct(Nodal<dim>(mass_ * undamped_)).sum();
 }
 
 template <int dim>
-double FineScaleSplit<dim>::damp_coarse_after_kick(const Bodies<dim> &bodies, double dt,
-                                                   double factor)
+double FineScaleSplit<dim>::damp_coarse_after_kick(double dt, double factor)
 {
   if (rests_)
     return 0;
   const int m = parameters_.step_ratio;
   Nodal<dim> force = force_; // near forces and the far field's, without its factor m
-  for (int c = 0; c < dim && m > 1; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      force(i, c) -= (m - 1) * bodies.far->force[c][overlap_.near_nodes[i]];
-  const Nodal<dim> mean = velocity_ - swing_;
-  velocity_ = factor * mean + swing_;
+  if (m > 1)
+    near_.add_force(1 - m, force);
+  const Nodal<dim> mean = near_.velocity() - swing_;
+  near_.set_velocity(factor * mean + swing_);
   const double still = mean.cwiseProduct(Nodal<dim>(mass_ * mean)).sum();
   return (1 - factor) / 2 *
          ((1 + factor) * still + dt * (undamped_ - mean).cwiseProduct(force).sum());
@@ -385,9 +345,7 @@ double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies, dou
     return 0;
   const auto &far = *bodies.far;
   Components<dim> v = far.velocity;
-  for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < overlap_.n_nodes(); ++i)
-      v[c][overlap_.near_nodes[i]] = velocity_(i, c) - swing_(i, c);
+  near_.write(near_.velocity() - swing_, v);
   far.follow_masters(v);
   return (1 - std::pow(factor, 4)) * (m * m - 1) * dt * dt / 6 * far.quadratic_form(v);
 }
@@ -401,7 +359,7 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   e.potential_discrete = bodies.zone->potential_energy();
   e.potential_far = bodies.far->potential_energy();
   Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-  e.blended = coarse_->subtract_forces(displacement_, force);
+  e.blended = coarse_->subtract_forces(near_.displacement(), force);
   const Halfway near = halfway(bodies, step);
   e.kinetic_far =
       bodies.far->kinetic_energy(parameters_.step_ratio * step.dt) + coarse_kinetic(near, step.dt);
@@ -432,10 +390,9 @@ void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
   const auto regime = Regime(core::load_integer(state, "split", "regime"));
   if (regime != regime_)
     make_coarse_energy(regime, bodies);
-  read_near_nodes(*bodies.far);
   fine_.load(state, zone);
   if (regime_ != Regime::linear)
-    fine_.turn_pads(displacement_, zone);
+    fine_.turn_pads(near_.displacement(), zone);
   gap_filter_energy_ = core::load_real(state, "split", "gap_filter_energy");
   const auto load = [&](const char *column) { return core::load_integer(state, "split", column); };
   rests_ = load("rests");

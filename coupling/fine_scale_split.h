@@ -6,6 +6,7 @@
 #include "coupling/coupler.h"
 #include "coupling/coupler_parameters.h"
 #include "coupling/fine_motion.h"
+#include "coupling/near_nodes.h"
 #include "coupling/operators/coarse_energy.h"
 #include "coupling/operators/patch_fit.h"
 
@@ -54,7 +55,7 @@ public:
   void set_regime(Regime regime, Bodies<dim> &bodies) override;
   Regime regime() const { return regime_; }
   /// Of the near cells, in the present state.
-  NearMotion largest_motion() const override { return parts_.largest_motion(displacement_); }
+  NearMotion largest_motion() const override { return parts_.largest_motion(near_.displacement()); }
 
   /// From now on overlap and mesh wait for a wave: the near nodes stand still until the far field
   /// pulls at one of them, or particles within two bonds of the overlap are awake, and the far
@@ -83,19 +84,15 @@ private:
   void look(Bodies<dim> &bodies, const StepTime &step);
   double share_of(long rested) const { return kicks_ > 0 ? double(rested) / double(kicks_) : 0; }
   /// Mass damping of V by the factor; the energy in J that it takes is known after the kick.
-  double damp_coarse_before_kick(const Bodies<dim> &bodies, double dt, double factor);
-  double damp_coarse_after_kick(const Bodies<dim> &bodies, double dt, double factor);
+  double damp_coarse_before_kick(double dt, double factor);
+  double damp_coarse_after_kick(double dt, double factor);
   /// What mass damping of all velocities by the factor, before the kick and after it, takes of
   /// (E5), in J: eq. (E5b). After the kick.
   double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
   void make_coarse_energy(Regime regime, const Bodies<dim> &bodies);
-  /// U and V as the far field has them.
-  void read_near_nodes(const fem::FemSolver<dim> &far);
-  void write_velocities(Bodies<dim> &bodies);
-  void write_far_velocities(fem::FemSolver<dim> &far) const;
   /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far
   /// field's impulse; without what the particles hand over.
-  void compute_mesh_force(const Bodies<dim> &bodies, const StepTime &step, Nodal<dim> &force) const;
+  void compute_mesh_force(const StepTime &step, Nodal<dim> &force) const;
   /// The near nodes half-way through kick and impulse, in a step in which the far field acts.
   struct Halfway
   {
@@ -115,6 +112,7 @@ private:
 
   FineScaleSplitParameters parameters_;
   Overlap<dim> overlap_;
+  NearNodes<dim> near_; // U, V
   FineMotion<dim> fine_;
   SplitReport report_;
 
@@ -126,11 +124,10 @@ private:
   ScalarMatrix<dim> filter_;                          // D
   std::unique_ptr<LinearSolver> mass_solver_;
 
-  Nodal<dim> displacement_, velocity_; // U, V of the near nodes
-  Nodal<dim> force_;                   // on the near nodes at the last kick, N
-  Nodal<dim> change_;                  // of V
-  Nodal<dim> middle_, lost_;           // V half-way through it, and what the filter takes there
-  Nodal<dim> undamped_, swing_;        // mean of V before mass damping; what V differs by from it
+  Nodal<dim> force_;            // on the near nodes at the last kick, N
+  Nodal<dim> change_;           // of V
+  Nodal<dim> middle_, lost_;    // V half-way through it, and what the filter takes there
+  Nodal<dim> undamped_, swing_; // mean of V before mass damping; what V differs by from it
   double gap_filter_energy_ = 0;
 
   bool rests_ = false, far_rests_ = false;

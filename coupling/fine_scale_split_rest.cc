@@ -17,7 +17,7 @@ void FineScaleSplit<dim>::let_rest(const Bodies<dim> &bodies, double strain)
   const auto &body = far.body();
   waking_force_ = strain * body.stiffness(0, 0) * std::pow(overlap_.cell_size, dim - 1) *
                   (dim == 2 ? body.thickness : 1);
-  rests_ = displacement_.isZero(0) && velocity_.isZero(0);
+  rests_ = near_.displacement().isZero(0) && near_.velocity().isZero(0);
   far_rests_ = rests_;
   for (int c = 0; c < dim; ++c)
     far_rests_ = far_rests_ && is_zero(far.displacement[c]) && is_zero(far.velocity[c]);

@@ -78,16 +78,18 @@ HWY_INLINE Vector response(const typename MemberBatches<dim>::Slot &slot, int pa
 }
 
 template <int dim>
-HWY_INLINE double kick_all(const MemberBatches<dim> &members, const FineKick<dim> &kick)
+HWY_INLINE void kick_all(const MemberBatches<dim> &members, const FineKick<dim> &kick)
 {
   constexpr int nc = MemberBatches<dim>::nc;
   const Lanes d;
   const Vector dt = hn::Set(d, kick.dt);
-  Vector loss = hn::Zero(d);
   LaneArray force[nc], momentum[nc], lost[nc];
-  for (const auto &batch : members.batches)
+  for (std::size_t b = 0; b < members.batches.size(); ++b) {
+    const auto &batch = members.batches[b];
+    kick.cell_loss[b] = {};
     for (int c = 0; c < dim; ++c) {
       for (int part = 0; part < lane_array_size; part += int(hn::Lanes(d))) {
+        Vector loss = load(kick.cell_loss[b], part);
         Vector f_sum[nc], p_sum[nc], l_sum[nc];
         for (int a = 0; a < nc; ++a)
           f_sum[a] = p_sum[a] = l_sum[a] = hn::Zero(d);
@@ -116,12 +118,13 @@ HWY_INLINE double kick_all(const MemberBatches<dim> &members, const FineKick<dim
           store(p_sum[a], momentum[a], part);
           store(l_sum[a], lost[a], part);
         }
+        store(loss, kick.cell_loss[b], part);
       }
       add_to_nodes<dim>(batch, force, c, kick.nodal_force);
       add_to_nodes<dim>(batch, momentum, c, kick.nodal_momentum);
       add_to_nodes<dim>(batch, lost, c, kick.nodal_loss);
     }
-  return hn::GetLane(hn::SumOfLanes(d, loss));
+  }
 }
 
 template <int dim>
@@ -154,13 +157,13 @@ HWY_INLINE void split_all(const MemberBatches<dim> &members, const FineSplit<dim
     }
 }
 
-double kick_2d(const MemberBatches<2> &members, const FineKick<2> &kick)
+void kick_2d(const MemberBatches<2> &members, const FineKick<2> &kick)
 {
-  return kick_all<2>(members, kick);
+  kick_all<2>(members, kick);
 }
-double kick_3d(const MemberBatches<3> &members, const FineKick<3> &kick)
+void kick_3d(const MemberBatches<3> &members, const FineKick<3> &kick)
 {
-  return kick_all<3>(members, kick);
+  kick_all<3>(members, kick);
 }
 void split_2d(const MemberBatches<2> &members, const FineSplit<2> &split)
 {
@@ -182,12 +185,12 @@ HWY_EXPORT(split_2d);
 HWY_EXPORT(split_3d);
 
 template <int dim>
-double kick_members(const MemberBatches<dim> &members, const FineKick<dim> &kick)
+void kick_members(const MemberBatches<dim> &members, const FineKick<dim> &kick)
 {
   if constexpr (dim == 2)
-    return HWY_DYNAMIC_DISPATCH(kick_2d)(members, kick);
+    HWY_DYNAMIC_DISPATCH(kick_2d)(members, kick);
   else
-    return HWY_DYNAMIC_DISPATCH(kick_3d)(members, kick);
+    HWY_DYNAMIC_DISPATCH(kick_3d)(members, kick);
 }
 
 template <int dim>
@@ -199,8 +202,8 @@ void split_members(const MemberBatches<dim> &members, const FineSplit<dim> &spli
     HWY_DYNAMIC_DISPATCH(split_3d)(members, split);
 }
 
-template double kick_members(const MemberBatches<2> &, const FineKick<2> &);
-template double kick_members(const MemberBatches<3> &, const FineKick<3> &);
+template void kick_members(const MemberBatches<2> &, const FineKick<2> &);
+template void kick_members(const MemberBatches<3> &, const FineKick<3> &);
 template void split_members(const MemberBatches<2> &, const FineSplit<2> &);
 template void split_members(const MemberBatches<3> &, const FineSplit<3> &);
 } // namespace ligament::coupling

@@ -47,6 +47,7 @@ struct FineKick
   double *nodal_force;                   // += Phi^T f, dim per near node
   double *nodal_momentum;                // += Phi^T M w'
   double *nodal_loss;                    // += Phi^T M damping (w + w')
+  LaneArray *cell_loss;                  // per batch: sum damping/(2 - damping) m (w + w')^2, J
 };
 
 /// Second pass: w = w' - (1 - damping/2) Phi x of the free members; v = Phi V + w of all.
@@ -59,9 +60,9 @@ struct FineSplit
   std::array<double *, dim> velocity; // of the particles, m/s
 };
 
-/// Returns sum damping/(2 - damping) m (w + w')^2 over the members, in J.
+/// What it sums in a lane belongs to one cell: it doesn't depend on what the other lanes hold.
 template <int dim>
-double kick_members(const MemberBatches<dim> &members, const FineKick<dim> &kick);
+void kick_members(const MemberBatches<dim> &members, const FineKick<dim> &kick);
 
 template <int dim>
 void split_members(const MemberBatches<dim> &members, const FineSplit<dim> &split);

@@ -71,7 +71,7 @@ double NullCoupler<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &st
 {
   double loss = 0;
   if (bodies.zone)
-    loss += bodies.zone->damp_velocities(factor, step.dt);
+    loss += bodies.zone->damp_velocities(factor, step.dt).value();
   if (bodies.far)
     loss += bodies.far->damp_velocities(step.dt);
   return loss;

@@ -111,82 +111,88 @@ std::vector<int> Overlap<dim>::member_particles() const
   return particles;
 }
 
-// Open are the particles whose cell the faces do not close (a neighbour is missing at the edge of
-// the packing; faces on the specimen's surface do close); the edge are these and their neighbours.
-template <int dim>
-std::vector<char> Overlap<dim>::find_edge(const particles::Particles<dim> &particles,
-                                          const particles::ParticleForce<dim> &force)
-{
-  const int n = particles.n_owned;
-  std::vector<char> open(n, 0), at_edge(n, 0);
-  std::vector<Vector<dim>> closure(n, Vector<dim>::Zero());
-  std::vector<double> surface(n, 0.);
-  force.for_each_face(particles, [&](const particles::FaceView<dim> &face) {
-    closure[face.i] += face.area * face.normal;
-    surface[face.i] += face.area;
-  });
-  // A cell that lacks a sliver of a face is open: its strain is wrong by the sliver's share.
-  std::vector<int> few;
-  for (int i = 0; i < n; ++i)
-    if (closure[i].norm() > 1e-12 * surface[i]) {
-      open[i] = at_edge[i] = 1;
-      few.push_back(i);
-    }
-  force.for_each_face(
-      particles,
-      [&](const particles::FaceView<dim> &face) {
-        if (face.j >= 0)
-          at_edge[face.j] = 1;
-      },
-      &few);
-  for (int i = 0; i < n; ++i)
-    if (at_edge[i])
-      edge.push_back(i);
-  return open;
-}
-
 template <int dim>
 void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
                                 const particles::ParticleForce<dim> &force)
 {
-  const int n = particles.n_owned;
-  const std::vector<char> open = find_edge(particles, force);
-  std::vector<char> pad(n, 0);
-  if (parameters.has_pads)
-    for (const int i : edge)
-      pad[i] = 1;
-  else
-    depth = std::numeric_limits<double>::max();
-
   const fem::CellLocator<dim> locator(mesh);
-  member_of_particle.assign(n, -1);
-  for (int i = 0; i < n; ++i) {
-    const Vector<dim> x = get(particles.reference, i);
-    const int cell = locator.find(x);
-    core::require(cell >= 0 || !pad[i],
-                  fmt::format("particle {} at the coupled edge of the packing lies outside the "
-                              "mesh: the overlap is too thin or the zone is not closed by the "
-                              "specimen's surface; widen /coupling/overlap_cells",
-                              i));
+  member_of_particle.assign(particles.n_owned, -1);
+  for (int i = 0; i < particles.n_owned; ++i) {
+    const int cell = locator.find(get(particles.reference, i));
     if (cell < 0)
       continue;
     member_of_particle[i] = int(members.size());
     Member &m = members.emplace_back(); // the rest with its cell, in find_cells
     m.particle = i;
-    m.pad = pad[i];
-    m.open = open[i];
+    m.pad = m.open = false;
     m.cell = cell; // of the mesh until then
-    if (pad[i])
-      depth = std::max(depth, distance_to_edge(x));
-    else if (!parameters.has_pads)
-      depth = std::min(depth, distance_to_edge(x) - parameters.spacing / 2);
   }
   core::require(!members.empty(), "no particle lies in the mesh: the zones do not overlap");
+  const std::vector<char> open = find_edge(particles, force);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    members[k].open = open[k];
+  for (const int i : edge)
+    if (parameters.has_pads) {
+      const int k = member_of_particle[i];
+      core::require(k >= 0,
+                    fmt::format("particle {} at the coupled edge of the packing lies outside the "
+                                "mesh: the overlap is too thin or the zone is not closed by the "
+                                "specimen's surface; widen /coupling/overlap_cells",
+                                i));
+      members[k].pad = true;
+    }
+  if (!parameters.has_pads)
+    depth = std::numeric_limits<double>::max();
+  for (const Member &m : members) {
+    const double distance = distance_to_edge(get(particles.reference, m.particle));
+    if (m.pad)
+      depth = std::max(depth, distance);
+    else if (!parameters.has_pads)
+      depth = std::min(depth, distance - parameters.spacing / 2);
+  }
   core::require(
       parameters.length > depth + 3 * parameters.spacing,
       fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
                   "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
                   parameters.length, depth + 3 * parameters.spacing));
+}
+
+// Open are the members whose cell the faces do not close (a neighbour is missing at the edge of the
+// packing; faces on the specimen's surface do close); the edge are these and their neighbours. The
+// edge lies in the mesh, so nobody else is asked: packings close all other cells.
+template <int dim>
+std::vector<char> Overlap<dim>::find_edge(const particles::Particles<dim> &particles,
+                                          const particles::ParticleForce<dim> &force)
+{
+  const std::vector<int> asked = member_particles();
+  std::vector<Vector<dim>> closure(members.size(), Vector<dim>::Zero());
+  std::vector<double> surface(members.size(), 0.);
+  std::vector<char> is_open(members.size(), 0);
+  force.for_each_face(
+      particles,
+      [&](const particles::FaceView<dim> &face) {
+        const int k = member_of_particle[face.i];
+        closure[k] += face.area * face.normal;
+        surface[k] += face.area;
+      },
+      &asked);
+  // A cell that lacks a sliver of a face is open: its strain is wrong by the sliver's share.
+  for (std::size_t k = 0; k < members.size(); ++k)
+    if (closure[k].norm() > 1e-12 * surface[k]) {
+      is_open[k] = 1;
+      edge.push_back(members[k].particle);
+    }
+  const std::vector<int> open = edge;
+  force.for_each_face(
+      particles,
+      [&](const particles::FaceView<dim> &face) {
+        if (face.j >= 0)
+          edge.push_back(face.j);
+      },
+      &open);
+  std::sort(edge.begin(), edge.end());
+  edge.erase(std::unique(edge.begin(), edge.end()), edge.end());
+  return is_open;
 }
 
 // Layer 0: cells that reach into the packing's side of the edge. Each further layer: the cells
@@ -286,7 +292,7 @@ Overlap<dim>::shape_gradients(const Cell &cell, const Vector<dim> &x) const
 }
 
 template <int dim>
-particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Nodal<dim> &u) const
+particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Components<dim> &displacement) const
 {
   particles::CoupledEdge<dim> coupled{edge, {}, {}};
   std::vector<int> open; // members
@@ -295,11 +301,11 @@ particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Nodal<dim> &u) cons
       open.push_back(int(k));
       coupled.open.push_back(members[k].particle);
     }
-  coupled.gradient = [this, &u, open = std::move(open)](int k) {
+  coupled.gradient = [this, &displacement, open = std::move(open)](int k) {
     const Member &m = members[open[k]];
     Eigen::Matrix<double, dim, dim> gradient = Eigen::Matrix<double, dim, dim>::Zero();
     for (int a = 0; a < n_cell_nodes; ++a)
-      gradient += u.row(m.nodes[a]).transpose() * m.gradient.col(a).transpose();
+      gradient += get(displacement, near_nodes[m.nodes[a]]) * m.gradient.col(a).transpose();
     return gradient;
   };
   return coupled;

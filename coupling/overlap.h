@@ -110,9 +110,9 @@ public:
   /// particles. Only where all of them lie in the overlap, else 0; wholly where one is pad.
   double subtracted_share(const Vector<dim> &location, const std::vector<int> &particles) const;
 
-  /// What the discrete law is told of the edge; the mesh's displacement U (m, of the near nodes) is
-  /// read whenever the law asks for its gradient. Both must outlive it.
-  particles::CoupledEdge<dim> coupled_edge(const Nodal<dim> &u) const;
+  /// What the discrete law is told of the edge; the displacement of the mesh's nodes (m) is read
+  /// whenever the law asks for its gradient. Both must outlive it.
+  particles::CoupledEdge<dim> coupled_edge(const Components<dim> &displacement) const;
 
   /// Spin of the interpolated motion at a member: 1/2 curl(sum N_a u_a) = sum_a spin(a) u_a.
   static Eigen::Matrix<double, n_spins<dim>, dim> spin_block(const Member &m, int a);

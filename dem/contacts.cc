@@ -220,22 +220,28 @@ void Contacts<dim>::correct_step(Contact<dim> &c, const State &s, double dt, con
 }
 
 template <int dim>
+void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
+{
+  Contact<dim> &c = contacts_[k];
+  const State s = state(c, p);
+  if (c.friction > 0) {
+    if (s.overlap > 0 || c.slip.squaredNorm() > 0)
+      update_slip(c, s, p);
+    else
+      c.known = false; // apart: the next touch starts anew
+  }
+  if (s.overlap > 0) // on i
+    add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
+  correct_step(c, s, dt, p);
+  if (c.correction != 0)
+    add_force(c, s, -c.correction * s.normal, p);
+}
+
+template <int dim>
 void Contacts<dim>::add_forces(Particles &p, double dt)
 {
-  for (auto &c : contacts_) {
-    const State s = state(c, p);
-    if (c.friction > 0) {
-      if (s.overlap > 0 || c.slip.squaredNorm() > 0)
-        update_slip(c, s, p);
-      else
-        c.known = false; // apart: the next touch starts anew
-    }
-    if (s.overlap > 0) // on i
-      add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
-    correct_step(c, s, dt, p);
-    if (c.correction != 0)
-      add_force(c, s, -c.correction * s.normal, p);
-  }
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    add_force(k, p, dt);
 }
 
 template <int dim>

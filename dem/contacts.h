@@ -69,6 +69,8 @@ public:
   /// forces of everything else are there already; dt (s) is the step. Calling it again in the same
   /// state changes neither.
   void add_forces(Particles &particles, double dt);
+  /// The same for one contact, by its place in all().
+  void add_force(std::size_t k, Particles &particles, double dt);
 
   /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
   double compression_energy(const Contact<dim> &contact, const Particles &particles) const;

@@ -2,6 +2,8 @@
 #include "dem/bond_law.h"
 #include "dem/many_body_force.h"
 
+#include <algorithm>
+
 namespace ligament::dem
 {
 template <int dim>
@@ -63,22 +65,55 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
 }
 
 template <int dim>
+std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) const
+{
+  std::vector<int> of;
+  for (const BondId &id : bonds) {
+    const Bond<dim> b = body_.bonds().bond(id);
+    of.insert(of.end(), {b.i, b.j});
+    if (is_at_interface(b)) // one system for all their pressures
+      of.insert(of.end(), interfaces_.members().begin(), interfaces_.members().end());
+  }
+  std::vector<int> found = of;
+  for (const int i : of)
+    body_.bonds().for_each_bond_of(
+        i, [&](BondId, const Bond<dim> &b) { found.push_back(b.i == i ? b.j : b.i); });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  if (rest_ && !rest_->is_exact())
+    found.erase(
+        std::remove_if(found.begin(), found.end(), [&](int i) { return !rest_->is_awake(i); }),
+        found.end());
+  return found;
+}
+
+// Only the neighbours of the bonds feel the break: what acts on them is summed bond by bond before
+// it and after it.
+template <int dim>
 void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bonds)
 {
   if (bonds.empty())
     return;
-  const auto force_before = p.force;
-  const auto torque_before = p.torque;
+  const StressedBody<dim> state = stressed(p, evaluation_);
+  const std::vector<int> near = this->near(bonds);
+  std::vector<Wrench<dim>> before, bonded;
+  for (const int i : near) {
+    before.push_back({get(p.force, i), get(p.torque, i)});
+    bonded.push_back(state.wrench_on(i));
+  }
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
-    const double before = local_energy(b, p), after = remove_bond(id, b, p);
-    broken_.add(b, p, time_, before - after - contacts_.add_broken(b, p));
+    const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
+    broken_.add(b, p, time_, energy_before - energy - contacts_.act_broken(b, p, dt()));
   }
-  evaluation_.look.reset(); // what was noted before is what utilisation() looks at
-  find_forces(p, evaluation_);
-  add_contacts(p);
-  surface_.book_work(p, evaluation_); // the supports' reactions changed, nothing moved
-  broken_.take_mean(p, force_before, torque_before, dt());
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const Wrench<dim> after = state.wrench_on(near[k]);
+    add(p.force, near[k], Vector<dim>(after.force - bonded[k].force));
+    add(p.torque, near[k], Spin<dim>(after.torque - bonded[k].torque));
+  }
+  surface_.find_reactions(p, evaluation_);
+  surface_.book_work(p, evaluation_); // nothing moved
+  broken_.take_mean(p, near, before, dt());
 }
 
 template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);

@@ -158,6 +158,9 @@ private:
   void add_flowing_energy(const Particles &particles, int sign, core::ExactSum &sum);
 
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
+  /// Particles whose forces these bonds enter, by the pressures of others, too; ascending. Without
+  /// those that a threshold holds at rest.
+  std::vector<int> near(const std::vector<BondId> &bonds) const;
   /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
   /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;

@@ -51,7 +51,7 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
     core::require(id.has_value(), "the state breaks a bond that this body doesn't have");
     const Bond<dim> b = body_.bonds().bond(*id);
     drop_bond(*id, b, p);
-    contacts_.add_broken(b, p);
+    contacts_.add_broken(b);
     broken_.add(b, p, time[r], energy[r]);
   }
 }

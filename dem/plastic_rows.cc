@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
 #include "dem/lattice_rows.h"
+#include "dem/laws/eigenstretch.h"
+#include "dem/laws/elastic_bond.h"
 #include "dem/plastic_rows.h"
 #include "dem/sine.h"
 
@@ -113,49 +115,69 @@ private:
                            double sign, const BondMask<D> &mask, int bit, hn::Vec<D> *sums) const
   {
     using V = hn::Vec<D>;
-    Several<V, dim> n, du, whole_part, a_i, f, rest;
+    using Vector = std::conditional_t<dim == 2, Pair<V>, Triple<V>>;
+    Several<V, dim> n, du, a_i, part;
     for (int c = 0; c < dim; ++c)
       n.c[c] = hn::Set(d, sign * direction[c]);
     const auto h_i = times(d, 0, i, n), h_j = times(d, 0, j, n);
     const auto b_i = times(d, dim * dim, i, n), b_j = times(d, dim * dim, j, n);
-    const V q = hn::Set(d, c_.half), stiffness = hn::Set(d, c_.shear);
+    const V q = hn::Set(d, c_.half);
     for (int c = 0; c < dim; ++c) {
       const double *const u = r_.arrays.displacement[c];
       du.c[c] = hn::NegMulAdd(q, hn::Add(h_i.c[c], h_j.c[c]),
                               hn::Sub(hn::LoadU(d, u + j), hn::LoadU(d, u + i)));
-      whole_part.c[c] = hn::Mul(q, hn::Add(b_i.c[c], b_j.c[c]));
       a_i.c[c] = hn::Mul(q, hn::Add(n.c[c], h_i.c[c]));
-      f.c[c] = mask(hn::Mul(stiffness, whole_part.c[c]), bit);
-      rest.c[c] = mask(hn::Mul(stiffness, hn::Sub(du.c[c], whole_part.c[c])), bit);
+      part.c[c] = hn::Add(b_i.c[c], b_j.c[c]);
     }
+    const Vector b = q * vector(part), motion = vector(du), lever = vector(a_i);
+    const V shear = mask(hn::Set(d, c_.shear), bit);
     if constexpr (what == Sums::stresses) {
-      const V s_r = hn::Set(d, c_.area_r);
-      const V p_i = hn::Mul(s_r, hn::LoadU(d, r_.arrays.pressure + i)),
-              p_j = hn::Mul(s_r, hn::LoadU(d, r_.arrays.pressure + j));
-      for (int c = 0; c < dim; ++c) {
-        const V a_j = hn::Mul(q, hn::Add(n.c[c], h_j.c[c]));
-        const V pressed = hn::MulAdd(p_i, a_i.c[c], hn::Mul(p_j, a_j));
-        const V whole = hn::Add(rest.c[c], mask(pressed, bit));
+      const V s_r = mask(hn::Set(d, c_.area_r), bit);
+      Several<V, dim> a_j;
+      for (int c = 0; c < dim; ++c)
+        a_j.c[c] = hn::Neg(hn::Mul(q, hn::Add(n.c[c], h_j.c[c])));
+      const ElasticBond<V, Vector> law{shear, s_r};
+      const Vector whole = law.force(motion - b, hn::LoadU(d, r_.arrays.pressure + i), lever,
+                                     hn::LoadU(d, r_.arrays.pressure + j), vector(a_j));
+      const Several<V, dim> f = components(whole);
+      for (int c = 0; c < dim; ++c)
         for (int e = 0; e < dim; ++e)
-          sums[dim * c + e] = hn::MulAdd(whole, a_i.c[e], sums[dim * c + e]);
-      }
+          sums[dim * c + e] = hn::MulAdd(f.c[c], a_i.c[e], sums[dim * c + e]);
     } else {
-      Several<V, dim> part;
-      V &energy = sums[n_particle_dofs<dim>];
-      for (int c = 0; c < dim; ++c) {
-        // The bond's energy changes by 1/2 k (|Du - part|^2 - |Du|^2), f = k part.
-        energy = hn::NegMulAdd(hn::Mul(hn::Set(d, 0.25), f.c[c]),
-                               hn::Add(du.c[c], hn::Sub(du.c[c], whole_part.c[c])), energy);
+      const Eigenstretch<V, Vector> law{shear};
+      const Vector lost = law.lost(b);
+      const Several<V, dim> f = components(lost);
+      for (int c = 0; c < dim; ++c)
         sums[c] = hn::Sub(sums[c], f.c[c]);
-        part.c[c] = hn::Mul(q, b_i.c[c]);
-      }
-      for (int s = 0; s < n_spins<dim>; ++s) {
-        const int x = dim == 2 ? 0 : (s + 1) % 3, y = dim == 2 ? 1 : (s + 2) % 3;
-        V t = sums[dim + s];
-        t = hn::NegMulAdd(a_i.c[x], f.c[y], hn::MulAdd(a_i.c[y], f.c[x], t));
-        sums[dim + s] = hn::MulAdd(part.c[x], rest.c[y], hn::NegMulAdd(part.c[y], rest.c[x], t));
+      V &energy = sums[n_particle_dofs<dim>]; // half of the bond's
+      energy = hn::NegMulAdd(hn::Set(d, 0.25), law.twice_lost_energy(lost, motion, b), energy);
+      const Vector own = q * vector(b_i);
+      if constexpr (dim == 2)
+        sums[2] = law.add_torque(lost, motion, lever, own, sums[2]);
+      else {
+        const Vector torque =
+            law.add_torque(lost, motion, lever, own, Vector{sums[3], sums[4], sums[5]});
+        sums[3] = torque.x, sums[4] = torque.y, sums[5] = torque.z;
       }
     }
+  }
+
+  template <typename V>
+  static HWY_INLINE auto vector(const Several<V, dim> &a)
+  {
+    if constexpr (dim == 2)
+      return Pair<V>{a.c[0], a.c[1]};
+    else
+      return Triple<V>{a.c[0], a.c[1], a.c[2]};
+  }
+  template <typename Vector>
+  static HWY_INLINE auto components(const Vector &a)
+  {
+    Several<decltype(a.x), dim> v;
+    v.c[0] = a.x, v.c[1] = a.y;
+    if constexpr (dim == 3)
+      v.c[2] = a.z;
+    return v;
   }
 
   const PlasticRows<dim> &r_;

@@ -45,6 +45,35 @@ Vector<dim> StressedBody<dim>::force(const Bond<dim> &b, const BondMotion<dim> &
 }
 
 template <int dim>
+Wrench<dim> StressedBody<dim>::wrench_on(int i) const
+{
+  const auto &p = particles;
+  Wrench<dim> sum;
+  body().bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    const bool first = b.i == i;
+    const double sign = first ? 1 : -1;
+    const double p_i = evaluation.pressure[b.i], p_j = evaluation.pressure[b.j];
+    const BondMotion<dim> m(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j),
+                            get(p.displacement, b.i), get(p.displacement, b.j));
+    const Spin<dim> bend = sign * bending_torque(b, p);
+    if (b.joins_materials) {
+      const SeriesBond<dim> series(b, m);
+      const Vector<dim> t = series.traction(p_i, p_j);
+      sum.force += sign * b.area * t;
+      sum.torque += bend + (first ? series.torque_i(t, p_i) : series.torque_j(t, p_j));
+      return;
+    }
+    const auto law = law_of(b);
+    const Vector<dim> du = sign * m.du, f = sign * law.force(m.du, p_i, m.a_i, p_j, m.a_j);
+    sum.force += f;
+    sum.torque += law.add_torque(f, du, first ? p_i : p_j, first ? m.a_i : m.a_j, bend);
+  });
+  for (const auto *part : parts)
+    part->add_force_on(i, p, evaluation, sum);
+  return sum;
+}
+
+template <int dim>
 void StressedBody<dim>::find_stresses(Components<n_strains<dim>> &stress) const
 {
   for (auto &a : stress)

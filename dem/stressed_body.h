@@ -29,6 +29,9 @@ struct StressedBody
   /// On i, in N.
   Vector<dim> force(const Bond<dim> &bond, const BondMotion<dim> &motion) const;
 
+  /// What all parts but contacts exert on a particle.
+  Wrench<dim> wrench_on(int i) const;
+
   /// Averaged stresses in Pa (Voigt order), theory.md eq. (D10); of the body before its energy was
   /// weighted. Of all particles, cells that lack faces completed; and of these, ascending, as their
   /// bonds make them.

@@ -37,6 +37,10 @@ SurfaceLoads<dim>::SurfaceLoads(const packings::Packing<dim> &packing, const Mat
         tractions_.push_back({face.i, face.lever, face.area, int(l),
                               Vector<dim>(Vector<dim>::Ones() - wall.prescribed), shear_modulus});
   }
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    faces_of_[walls_[w].i][0].push_back(int(w));
+  for (std::size_t f = 0; f < tractions_.size(); ++f)
+    faces_of_[tractions_[f].i][1].push_back(int(f));
 }
 
 template <int dim>
@@ -128,28 +132,36 @@ void SurfaceLoads<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) co
 }
 
 template <int dim>
-void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
+Wrench<dim> SurfaceLoads<dim>::wrench(const WallFace<dim> &wall, const Particles &p,
+                                      const Vector<dim> &force) const
 {
-  if (loads_.empty())
-    return;
+  const Vector<dim> a = wall.lever + Turn<dim>::of(p, wall.i).change(wall.lever);
+  return {force, cross(a, force)};
+}
+
+template <int dim>
+Wrench<dim> SurfaceLoads<dim>::wrench(const TractionFace<dim> &face, const Particles &p,
+                                      const Evaluation<dim> &e) const
+{
+  const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
+  const TractionLaw<dim> law = law_of(face);
+  const Vector<dim> t = traction(face, e.has_loads);
+  return {law.force(t), law.torque(t, a, e.pressure[face.i])};
+}
+
+template <int dim>
+void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) const
+{
   std::vector<std::array<core::ExactSum, dim>> reactions(loads_.size());
   e.wall_forces.clear();
   for (const auto &wall : walls_) {
-    const Vector<dim> a = wall.lever + Turn<dim>::of(p, wall.i).change(wall.lever);
-    const Vector<dim> f = force(wall, p, e);
-    add(p.force, wall.i, f);
-    add(p.torque, wall.i, cross(a, f));
-    e.wall_forces.push_back(f);
+    e.wall_forces.push_back(force(wall, p, e));
     for (int c = 0; c < dim; ++c)
       if (wall.load[c] >= 0)
-        reactions[wall.load[c]][c].add(f[c]);
+        reactions[wall.load[c]][c].add(e.wall_forces.back()[c]);
   }
   for (const auto &face : tractions_) {
-    const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
-    const TractionLaw<dim> law = law_of(face);
-    const Vector<dim> t = traction(face, e.has_loads), f = law.force(t);
-    add(p.force, face.i, f);
-    add(p.torque, face.i, law.torque(t, a, e.pressure[face.i]));
+    const Vector<dim> f = law_of(face).force(traction(face, e.has_loads));
     for (int c = 0; c < dim; ++c)
       reactions[face.load][c].add(f[c]);
   }
@@ -157,6 +169,37 @@ void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
   for (std::size_t l = 0; l < loads_.size(); ++l)
     for (int c = 0; c < dim; ++c)
       e.reactions[l][c] = reactions[l][c].value();
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
+{
+  find_reactions(p, e);
+  const auto act = [&](int i, const Wrench<dim> &wrench) {
+    add(p.force, i, wrench.force);
+    add(p.torque, i, wrench.torque);
+  };
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    act(walls_[w].i, wrench(walls_[w], p, e.wall_forces[w]));
+  for (const auto &face : tractions_)
+    act(face.i, wrench(face, p, e));
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_force_on(int i, const Particles &p, const Evaluation<dim> &e,
+                                     Wrench<dim> &sum) const
+{
+  const auto act = [&](const Wrench<dim> &wrench) {
+    sum.force += wrench.force;
+    sum.torque += wrench.torque;
+  };
+  const auto faces = faces_of_.find(i);
+  if (faces == faces_of_.end())
+    return;
+  for (const int w : faces->second[0])
+    act(wrench(walls_[w], p, force(walls_[w], p, e)));
+  for (const int f : faces->second[1])
+    act(wrench(tractions_[f], p, e));
 }
 
 template <int dim>

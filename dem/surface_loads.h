@@ -28,6 +28,10 @@ public:
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
   /// Leaves reactions behind.
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
+                    Wrench<dim> &wrench) const override;
+  /// At other pressures than add_forces() found.
+  void find_reactions(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Of the walls.
   void add_energies(const Particles &particles, Evaluation<dim> &evaluation,
                     std::vector<double> &energy) const override;
@@ -57,9 +61,15 @@ private:
   Vector<dim> force(const WallFace<dim> &wall, const Particles &p,
                     const Evaluation<dim> &evaluation) const;
 
+  Wrench<dim> wrench(const WallFace<dim> &wall, const Particles &p, const Vector<dim> &force) const;
+  Wrench<dim> wrench(const TractionFace<dim> &face, const Particles &p,
+                     const Evaluation<dim> &evaluation) const;
+
   std::vector<core::BoundaryLoad<dim>> loads_;
   std::vector<WallFace<dim>> walls_;
   std::vector<TractionFace<dim>> tractions_;
+  /// Walls and tractions of each particle that has some.
+  std::map<int, std::array<std::vector<int>, 2>> faces_of_;
   std::vector<Vector<dim>> displacement_, traction_; // of each load
   std::vector<char> has_begun_;                      // of each load
   core::ExactSum work_;

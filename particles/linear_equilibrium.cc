@@ -8,7 +8,8 @@ namespace ligament::particles
 {
 template <int dim>
 void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim> &force,
-                       const std::vector<char> &is_free, Eigen::VectorXd &motion)
+                       const std::vector<char> &is_free, Eigen::VectorXd &motion,
+                       const Eigen::VectorXd &load)
 {
   constexpr int dofs = n_particle_dofs<dim>;
   std::vector<int> unknown(is_free.size(), -1), free;
@@ -21,6 +22,8 @@ void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim>
 
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * n_unknown);
+  for (int row = 0; row < n_unknown && load.size() > 0; ++row)
+    right.segment<dofs>(dofs * row) = load.segment<dofs>(dofs * free[row]);
   const auto add_term = [&](const QuadraticTerm<dim> &term) {
     const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
     for (std::size_t a = 0; a < term.members.size(); ++a) {
@@ -53,7 +56,9 @@ void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim>
 }
 
 template void solve_equilibrium(const Particles<2> &, const ParticleForce<2> &,
-                                const std::vector<char> &, Eigen::VectorXd &);
+                                const std::vector<char> &, Eigen::VectorXd &,
+                                const Eigen::VectorXd &);
 template void solve_equilibrium(const Particles<3> &, const ParticleForce<3> &,
-                                const std::vector<char> &, Eigen::VectorXd &);
+                                const std::vector<char> &, Eigen::VectorXd &,
+                                const Eigen::VectorXd &);
 } // namespace ligament::particles

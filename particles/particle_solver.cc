@@ -1,5 +1,6 @@
 #include "particles/particle_solver.h"
 
+#include "particles/block_sum.h"
 #include "particles/kick_velocities.h"
 #include "particles/turn_orientations.h"
 
@@ -114,22 +115,22 @@ void ParticleSolver<dim>::drift(double dt)
 }
 
 template <int dim>
-double ParticleSolver<dim>::kinetic_energy(double dt) const
+core::ExactSum ParticleSolver<dim>::kinetic_sum(double dt) const
 {
-  double sum = 0;
-  for (int i = 0; i < state.n_owned; ++i) {
+  return block_sum(state.n_owned, [&](int i) {
     if (std::isinf(state.mass[i])) // held
-      continue;
+      return 0.;
+    double twice = 0;
     for (int c = 0; c < dim; ++c) {
       const double v = state.velocity[c][i];
-      sum += v * (state.mass[i] * v + dt * state.force[c][i]);
+      twice += v * (state.mass[i] * v + dt * state.force[c][i]);
     }
     for (int c = 0; c < n_spins<dim> && state.turns; ++c) {
       const double w = state.spin[c][i];
-      sum += w * (state.inertia(i) * w + dt * state.torque[c][i]);
+      twice += w * (state.inertia(i) * w + dt * state.torque[c][i]);
     }
-  }
-  return sum / 2;
+    return twice / 2;
+  });
 }
 
 template <int dim>
@@ -145,41 +146,46 @@ void ParticleSolver<dim>::scale_velocities(double factor)
 
 namespace
 {
-/// v times factor; adds v.f of the former v to power, and returns v.M v. Sums run in `n_sums`
-/// strands: the compiler may not reorder those of one.
-double damp(std::vector<double> &velocity, const std::vector<double> &force,
-            const std::vector<double> &mass, int n, double factor, double &power)
+/// Of term(i), in strands, one for each entry of a vector: the compiler may not reorder one.
+template <typename Term>
+double sum_in_strands(int begin, int end, Term &&term)
 {
-  constexpr int n_sums = 8;
-  double twice_energy[n_sums] = {}, work[n_sums] = {};
-  const auto damp_one = [&](int i, int k) {
-    const double v = velocity[i];
-    twice_energy[k] += (std::isinf(mass[i]) ? 0 : mass[i]) * v * v; // infinite: held
-    work[k] += v * force[i];
-    velocity[i] = factor * v;
-  };
-  int i = 0;
-  for (; i + n_sums <= n; i += n_sums)
-    for (int k = 0; k < n_sums; ++k)
-      damp_one(i + k, k);
-  for (; i < n; ++i)
-    damp_one(i, 0);
-  power = std::accumulate(work, work + n_sums, power);
-  return std::accumulate(twice_energy, twice_energy + n_sums, 0.);
+  constexpr int n_strands = 8;
+  double sum[n_strands] = {};
+  int i = begin;
+  for (; i + n_strands <= end; i += n_strands)
+    for (int k = 0; k < n_strands; ++k)
+      sum[k] += term(i + k);
+  for (; i < end; ++i)
+    sum[0] += term(i);
+  return std::accumulate(sum, sum + n_strands, 0.);
 }
 } // namespace
 
 template <int dim>
-double ParticleSolver<dim>::damp_velocities(double factor, double dt)
+core::ExactSum ParticleSolver<dim>::damp_velocities(double factor, double dt)
 {
-  double twice_energy = 0, power = 0;
-  for (int c = 0; c < dim; ++c)
-    twice_energy +=
-        damp(state.velocity[c], state.force[c], state.mass, state.n_owned, factor, power);
-  for (int c = 0; c < n_spins<dim> && state.turns; ++c)
-    twice_energy += state.gyration *
-                    damp(state.spin[c], state.torque[c], state.mass, state.n_owned, factor, power);
-  return (1 - factor) / 2 * ((1 + factor) * twice_energy + dt * power);
+  return sum_over_blocks(state.n_owned, [&](const auto &add) {
+    const auto damp = [&](std::vector<double> &velocity, const std::vector<double> &force,
+                          double gyration) {
+      const double *const m = state.mass.data(), *const f = force.data();
+      double *const v = velocity.data();
+      const double loss = (1 - factor) / 2, squares = loss * (1 + factor) * gyration,
+                   products = loss * dt;
+      add([=](int begin, int end) {
+        const double sum = sum_in_strands(begin, end, [=](int i) { // infinite mass: held
+          return v[i] * (squares * (std::isinf(m[i]) ? 0 : m[i]) * v[i] + products * f[i]);
+        });
+        for (int i = begin; i < end; ++i)
+          v[i] *= factor;
+        return sum;
+      });
+    };
+    for (int c = 0; c < dim; ++c)
+      damp(state.velocity[c], state.force[c], 1);
+    for (int c = 0; c < n_spins<dim> && state.turns; ++c)
+      damp(state.spin[c], state.torque[c], state.gyration);
+  });
 }
 
 template class ParticleSolver<2>;

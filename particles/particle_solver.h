@@ -28,14 +28,17 @@ public:
   double potential_energy() const { return force->potential_energy(state); }
 
   /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m: the kinetic part of the leap-frog's exact
-  /// invariant at the time of the present forces, in J; call before kick(dt).
-  double kinetic_energy(double dt) const;
+  /// invariant at the time of the present forces, in J; call before kick(dt). Exact over blocks
+  /// of particles.
+  double kinetic_energy(double dt) const { return kinetic_sum(dt).value(); }
+  /// The same before it is rounded: sums of parts merge into that of the body.
+  core::ExactSum kinetic_sum(double dt) const;
 
   /// Velocities and spins of all particles times factor.
   void scale_velocities(double factor);
-  /// The same; returns the energy in J that it takes from kinetic_energy(dt). Before kick(dt), with
-  /// the sign of dt changed after it (theory.md eq. (E3)).
-  double damp_velocities(double factor, double dt);
+  /// The same; returns the energy in J that it takes from kinetic_energy(dt), exact over blocks of
+  /// particles. Before kick(dt), with the sign of dt changed after it (theory.md eq. (E3)).
+  core::ExactSum damp_velocities(double factor, double dt);
 
   /// From now on blocks at rest are passed over. To be called with the forces of the present state;
   /// afterwards particles that are not awake must not be moved from outside.

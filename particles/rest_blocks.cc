@@ -1,5 +1,7 @@
 #include "particles/rest_blocks.h"
 
+#include "core/sums.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -33,9 +35,7 @@ void RestBlocks<dim>::cut(const Particles<dim> &p)
 {
   constexpr int smallest_row = 16;
   const auto way = [&](int i) { return (get(p.reference, i + 1) - get(p.reference, i)).norm(); };
-  double sum = 0;
-  for (int i = 0; i + 1 < n_particles_; ++i)
-    sum += way(i);
+  const double sum = core::exact_sum(std::max(n_particles_ - 1, 0), way).value();
   const double jump = 4 * sum / n_particles_; // rows of a lattice: 8 spacings
   begin_ = {0};
   for (int i = 0; i < n_particles_; ++i) {

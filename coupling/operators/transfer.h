@@ -20,6 +20,22 @@ public:
   /// s of the member, see Overlap::position.
   double position(int k) const { return position_[k]; }
 
+  /// Members' values of a field of all particles, and back.
+  template <typename Field>
+  void read(const Field &field, Components<dim> &members) const
+  {
+    for (int c = 0; c < dim; ++c)
+      for (int k = 0; k < size(); ++k)
+        members[c][k] = field[c][particle_[k]];
+  }
+  template <typename Field>
+  void write(const Components<dim> &members, Field &field) const
+  {
+    for (int c = 0; c < dim; ++c)
+      for (int k = 0; k < size(); ++k)
+        field[c][particle_[k]] = members[c][k];
+  }
+
   /// nodal += Phi^T M w of the free members.
   void add_momentum(const Components<dim> &w, Nodal<dim> &nodal) const;
 

@@ -99,8 +99,9 @@ BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, bool of_table)
   double least = law_.strength;
   const Materials &materials = body.materials();
   if (of_table) // in terms of the first material's bonds
-    for (std::size_t m = 0; m < law_.strengths.size(); ++m)
-      least = std::min(least, law_.strengths[m] * materials.base().shear_modulus() /
+    for (std::size_t m = 0; m < materials.all().size(); ++m)
+      least = std::min(least, (law_.strengths.empty() ? law_.strength : law_.strengths[m]) *
+                                  materials.base().shear_modulus() /
                                   materials.all()[m].shear_modulus());
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
   return {noted_share_ * least / largest_size_factor_ * (1 - round_off), criterion().tangent,

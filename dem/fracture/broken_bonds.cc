@@ -31,13 +31,13 @@ void BrokenBonds<dim>::add(const Bond<dim> &b, const Particles &p, double time, 
 }
 
 template <int dim>
-void BrokenBonds<dim>::take_mean(Particles &p, const Components<dim> &force_before,
-                                 const Components<n_spins<dim>> &torque_before, double dt)
+void BrokenBonds<dim>::take_mean(Particles &p, const std::vector<int> &near,
+                                 const std::vector<Wrench<dim>> &before, double dt)
 {
   jumps_.clear();
-  for (int i = 0; i < p.size(); ++i) {
-    const Jump jump = {i, get(p.force, i) - get(force_before, i),
-                       get(p.torque, i) - get(torque_before, i)};
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const int i = near[k];
+    const Jump jump = {i, get(p.force, i) - before[k].force, get(p.torque, i) - before[k].torque};
     if (jump.force.isZero(0) && jump.torque.isZero(0))
       continue;
     ligament::add(p.force, i, Vector<dim>(-0.5 * jump.force));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/exact_sum.h"
-#include "dem/bond.h"
+#include "dem/parts/evaluation.h"
 #include "particles/force_report.h"
 
 #include <optional>
@@ -29,11 +29,11 @@ public:
   /// `energy` in J, released.
   void add(const Bond<dim> &bond, const Particles &particles, double time, double energy);
 
-  /// Forces and torques of the particles, those after the break, become the mean with those before
-  /// it. Over the step before, the force before would have made the work exact, over the next one
-  /// that after: theory.md eq. (E10).
-  void take_mean(Particles &particles, const Components<dim> &force_before,
-                 const Components<n_spins<dim>> &torque_before, double dt);
+  /// Forces and torques of the particles `near` (ascending), which are those after the break,
+  /// become the mean with those before it. Over the step before, the force before would have made
+  /// the work exact, over the next one that after: theory.md eq. (E10).
+  void take_mean(Particles &particles, const std::vector<int> &near,
+                 const std::vector<Wrench<dim>> &before, double dt);
 
   /// Released, in J.
   double energy() const { return energy_.value(); }

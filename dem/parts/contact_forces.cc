@@ -44,12 +44,20 @@ ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const M
 }
 
 template <int dim>
-double ContactForces<dim>::add_broken(const Bond<dim> &b, const Particles &p)
+const Contact<dim> &ContactForces<dim>::add_broken(const Bond<dim> &b)
 {
   search_.add_surface_particle(b.i);
   search_.add_surface_particle(b.j);
   searching_ = true;
-  return contacts_.compression_energy(contacts_.add(b, true), p);
+  return contacts_.add(b, true);
+}
+
+template <int dim>
+double ContactForces<dim>::act_broken(const Bond<dim> &b, Particles &p, double dt)
+{
+  const Contact<dim> &contact = add_broken(b);
+  contacts_.add_force(&contact - all().data(), p, dt);
+  return contacts_.compression_energy(contact, p);
 }
 
 template <int dim>

@@ -20,8 +20,10 @@ public:
 
   const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
 
-  /// A bond has broken: its particles lie on a surface, its face may touch. Contact energy in J.
-  double add_broken(const Bond<dim> &bond, const Particles &particles);
+  /// A bond has broken: its particles lie on a surface, its face may touch.
+  const Contact<dim> &add_broken(const Bond<dim> &bond);
+  /// The same; adds the force of the contact, too, and returns its energy in J.
+  double act_broken(const Bond<dim> &bond, Particles &particles, double dt);
 
   /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
   /// faces have slid.

@@ -45,6 +45,14 @@ struct WayToLook
   }
 };
 
+/// What acts on a particle.
+template <int dim>
+struct Wrench
+{
+  Vector<dim> force = Vector<dim>::Zero(); // N
+  Spin<dim> torque = Spin<dim>::Zero();    // N m
+};
+
 template <int dim>
 struct Evaluation
 {

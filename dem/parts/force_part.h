@@ -33,6 +33,9 @@ public:
   /// Adds forces and torques at the pressures of all parts.
   virtual void add_forces(Particles &, Evaluation<dim> &) const {}
 
+  /// The same for one particle, where it acts on a few only, beside the bonds' own elasticity.
+  virtual void add_force_on(int, const Particles &, const Evaluation<dim> &, Wrench<dim> &) const {}
+
   /// Adds its energy to that of the particles (J), volumes aside, at the pressures of all parts.
   virtual void add_energies(const Particles &, Evaluation<dim> &,
                             std::vector<double> &energy) const = 0;

@@ -1,6 +1,7 @@
 #include "dem/parts/plastic_flow.h"
 
 #include "dem/bond_law.h"
+#include "dem/laws/eigenstretch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,35 @@ void PlasticFlow<dim>::add_pressures(const Particles &, Evaluation<dim> &e) cons
 }
 
 template <int dim>
+double PlasticFlow<dim>::add_change(const Bond<dim> &b, int i, const Particles &p,
+                                    Wrench<dim> &wrench) const
+{
+  if (!blocks_->is_plastic(b.i) && !blocks_->is_plastic(b.j))
+    return 0;
+  const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
+  const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
+  const auto parts = stretch(b, turn_i, turn_j);
+  const bool first = b.i == i;
+  const double sign = first ? 1 : -1;
+  const Vector<dim> du = sign * m.du, stretch = sign * (parts[0] + parts[1]),
+                    own = sign * (first ? parts[0] : parts[1]);
+  const HWY_NAMESPACE::Eigenstretch<double, Vector<dim>> law{law_of(b).shear};
+  const Vector<dim> lost = law.lost(stretch);
+  wrench.force -= lost;
+  wrench.torque = law.add_torque(lost, du, first ? m.a_i : m.a_j, own, wrench.torque);
+  return -0.25 * law.twice_lost_energy(lost, du, stretch);
+}
+
+template <int dim>
+void PlasticFlow<dim>::add_force_on(int i, const Particles &p, const Evaluation<dim> &e,
+                                    Wrench<dim> &wrench) const
+{
+  if (has_flowed())
+    e.body.bonds().for_each_bond_of(
+        i, [&](BondId, const Bond<dim> &b) { add_change(b, i, p, wrench); });
+}
+
+template <int dim>
 PlasticRows<dim> PlasticFlow<dim>::rows(const Particles &p, Evaluation<dim> &e) const
 {
   return {e.arrays(p),        constants_,        &e.body.bonds().segments(),
@@ -137,30 +167,15 @@ void PlasticFlow<dim>::for_each_force(const Particles &p, Evaluation<dim> &e, Vi
       sum_plastic(rows, range, Rows::Sums::forces);
     for (int i = range.begin; i < range.end; ++i) {
       const double *const sum = sums.data() + (i - range.begin);
-      Vector<dim> force;
-      Spin<dim> torque;
+      Wrench<dim> wrench;
       for (int c = 0; c < dim; ++c)
-        force[c] = sum[c * TractionScreen::block];
+        wrench.force[c] = sum[c * TractionScreen::block];
       for (int c = 0; c < n_spins<dim>; ++c)
-        torque[c] = sum[(dim + c) * TractionScreen::block];
+        wrench.torque[c] = sum[(dim + c) * TractionScreen::block];
       double energy = sum[n_particle_dofs<dim> * TractionScreen::block];
-      e.body.bonds().for_each_entry_of(i, [&](BondId, const Bond<dim> &b) {
-        if (!blocks_->is_plastic(b.i) && !blocks_->is_plastic(b.j))
-          return;
-        const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
-        const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i),
-                                get(p.displacement, b.j));
-        const auto part = stretch(b, turn_i, turn_j);
-        const double stiffness = 2 * b.shear_i * b.area / b.distance;
-        const Vector<dim> f = stiffness * (part[0] + part[1]),
-                          rest = stiffness * m.du - f; // without the pressures' part
-        const bool first = b.i == i;
-        force += first ? Vector<dim>(-f) : f;
-        torque += first ? Spin<dim>(cross(part[0], rest) - cross(m.a_i, f))
-                        : Spin<dim>(cross(part[1], rest) + cross(m.a_j, f));
-        energy -= 0.25 * f.dot(2 * m.du - part[0] - part[1]);
-      });
-      visit(i, force, torque, energy);
+      e.body.bonds().for_each_entry_of(
+          i, [&](BondId, const Bond<dim> &b) { energy += add_change(b, i, p, wrench); });
+      visit(i, wrench, energy);
     }
   }
 }
@@ -171,12 +186,11 @@ void PlasticFlow<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
   e.plastic_energy.clear();
   if (!blocks_)
     return;
-  for_each_force(p, e,
-                 [&](int i, const Vector<dim> &force, const Spin<dim> &torque, double energy) {
-                   ligament::add(p.force, i, force);
-                   ligament::add(p.torque, i, torque);
-                   e.plastic_energy.push_back(energy);
-                 });
+  for_each_force(p, e, [&](int i, const Wrench<dim> &wrench, double energy) {
+    ligament::add(p.force, i, wrench.force);
+    ligament::add(p.torque, i, wrench.torque);
+    e.plastic_energy.push_back(energy);
+  });
 }
 
 template <int dim>
@@ -184,9 +198,8 @@ void PlasticFlow<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
                                     std::vector<double> &energy) const
 {
   if (blocks_)
-    for_each_force(p, e, [&](int i, const Vector<dim> &, const Spin<dim> &, double of_bonds) {
-      energy[i] += of_bonds;
-    });
+    for_each_force(p, e,
+                   [&](int i, const Wrench<dim> &, double of_bonds) { energy[i] += of_bonds; });
 }
 
 template <int dim>

@@ -39,6 +39,8 @@ public:
   std::vector<int> particles() const override;
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
+                    Wrench<dim> &wrench) const override;
   void add_energies(const Particles &particles, Evaluation<dim> &evaluation,
                     std::vector<double> &energy) const override;
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
@@ -66,6 +68,9 @@ private:
   /// What no traction answers of Du: the parts of both particles, in m.
   std::array<Vector<dim>, 2> stretch(const Bond<dim> &bond, const Turn<dim> &turn_i,
                                      const Turn<dim> &turn_j) const;
+  /// Adds what plastic strains change in a bond of particle i; returns its half of the energy (J).
+  double add_change(const Bond<dim> &bond, int i, const Particles &particles,
+                    Wrench<dim> &wrench) const;
   PlasticRows<dim> rows(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// visit(i, force, torque, energy): what plastic strains change in those of a particle's bonds;
   /// of the energy (J) each particle has half.

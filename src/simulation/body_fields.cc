@@ -1,5 +1,6 @@
 #include "src/simulation/body_fields.h"
 
+#include "core/sums.h"
 #include "src/simulation/kept_tables.h"
 
 #include <cmath>
@@ -267,11 +268,13 @@ std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body)
 template <int dim>
 double crack_length(const CoupledBody<dim> &body, int axis)
 {
-  double sum = 0;
-  if (body.force())
-    for (const auto &broken : body.force()->broken_bonds())
-      sum += broken.area * std::abs(broken.normal[axis]);
-  return sum / body.thickness;
+  if (!body.force())
+    return 0;
+  const auto &broken = body.force()->broken_bonds();
+  const core::ExactSum sum = core::exact_sum(broken.size(), [&](std::size_t k) {
+    return broken[k].area * std::abs(broken[k].normal[axis]);
+  });
+  return sum.value() / body.thickness;
 }
 
 template ParticleFields particle_fields(const CoupledBody<2> &);

@@ -1,5 +1,6 @@
 #include "src/simulation/damping.h"
 
+#include "core/sums.h"
 #include "src/simulation/energy_ledger.h"
 
 #include <algorithm>
@@ -33,11 +34,14 @@ template <std::size_t n>
 double power(const std::array<std::vector<double>, n> &velocity,
              const std::array<std::vector<double>, n> &force)
 {
-  double sum = 0;
-  for (std::size_t c = 0; c < n; ++c)
-    for (std::size_t i = 0; i < force[c].size(); ++i)
-      sum += velocity[c][i] * force[c][i];
-  return sum;
+  return core::exact_sum(force[0].size(),
+                         [&](std::size_t i) {
+                           double power = 0;
+                           for (std::size_t c = 0; c < n; ++c)
+                             power += velocity[c][i] * force[c][i];
+                           return power;
+                         })
+      .value();
 }
 } // namespace
 

@@ -19,7 +19,7 @@ public:
   /// Between kick and drift.
   void after_kick(CoupledBody<dim> &body, const coupling::StepTime &step);
 
-  /// J, so far.
+  /// J, so far. Each step books numbers that are exact sums over the particles.
   double energy() const { return energy_; }
 
   /// Between drift and forces.

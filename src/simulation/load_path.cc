@@ -1,5 +1,7 @@
 #include "src/simulation/load_path.h"
 
+#include "core/sums.h"
+
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 
@@ -164,8 +166,10 @@ std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
     return {};
   const double least = lost_share * at_start_;
   if (counted_ < broken.size()) {
-    for (; counted_ < broken.size(); ++counted_)
-      at_least_ -= broken[counted_].area;
+    at_least_ -= core::exact_sum(broken.size() - counted_, [&](std::size_t k) {
+                   return broken[counted_ + k].area;
+                 }).value();
+    counted_ = broken.size();
     if (at_least_ <= least)
       at_least_ = smallest_section(body, axis_, Carrying::now);
   }

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/keyed_error.h"
+#include "core/sums.h"
 #include "packings/packing_file.h"
 #include "src/scene/geometry.h"
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ligament::program
 {
@@ -155,7 +155,9 @@ packings::RandomPacking<dim> irregular_packing(const Scene &scene)
     if (!material.empty())
       packing.seeds.material.push_back(material[row]);
   const auto &cells = packing.packing.volume;
-  const double mean = std::accumulate(cells.begin(), cells.end(), 0.) / double(cells.size());
+  const double volume =
+      core::exact_sum(cells.size(), [&](std::size_t k) { return cells[k]; }).value();
+  const double mean = volume / double(cells.size());
   const double ratio = std::pow(mean / mean_cell_volume(scene), 1. / dim);
   if (!(ratio > 0.9 && ratio < 1.1))
     throw core::KeyedError(

@@ -49,7 +49,7 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
   for (; seen_ < broken.size(); ++seen_)
     if (is_watched(broken[seen_])) {
       ++n_broken_;
-      energy_ += broken[seen_].energy;
+      energy_.add(broken[seen_].energy);
     }
   if (found_)
     return {};
@@ -77,7 +77,7 @@ void OverlapGuard<dim>::save(core::State &state) const
 {
   core::save_value(state, "recorder", "guard_seen", std::int64_t(seen_));
   core::save_value(state, "recorder", "guard_broken", std::int64_t(n_broken_));
-  core::save_value(state, "recorder", "guard_energy", energy_);
+  core::save_sum(state, "guard_energy", energy_);
   core::save_value(state, "recorder", "guard_found", std::int64_t(found_));
 }
 
@@ -86,7 +86,7 @@ void OverlapGuard<dim>::load(const core::State &state)
 {
   seen_ = std::size_t(core::load_integer(state, "recorder", "guard_seen"));
   n_broken_ = long(core::load_integer(state, "recorder", "guard_broken"));
-  energy_ = core::load_real(state, "recorder", "guard_energy");
+  energy_ = core::load_sum(state, "guard_energy");
   found_ = core::load_integer(state, "recorder", "guard_found") != 0;
 }
 

@@ -1,6 +1,7 @@
 // Watches that nothing breaks where the models overlap: the mesh there stands for intact bonds.
 #pragma once
 
+#include "core/exact_sum.h"
 #include "core/state.h"
 #include "src/simulation/coupled_body.h"
 
@@ -27,7 +28,7 @@ public:
   std::optional<std::string> look(const CoupledBody<dim> &body);
 
   long n_broken() const { return n_broken_; }
-  double energy() const { return energy_; } // J, released by those faces
+  double energy() const { return energy_.value(); } // J, released by those faces
 
   void save(core::State &state) const;
   void load(const core::State &state);
@@ -38,7 +39,7 @@ private:
   std::vector<particles::Watch> watch_; // of the particles; empty: nothing to watch
   std::size_t seen_ = 0;                // of the body's broken bonds
   long n_broken_ = 0;
-  double energy_ = 0;
+  core::ExactSum energy_;
   bool found_ = false;
 };
 } // namespace ligament::program

@@ -1,5 +1,7 @@
 #include "src/simulation/test_machine.h"
 
+#include "core/exact_sum.h"
+
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -18,8 +20,8 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
                                  int component)
 {
   using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
-  Eigen::Matrix<double, dim + 1, dim + 1> squares = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
-  Row sum = Row::Zero();
+  std::array<core::ExactSum, (dim + 1) * (dim + 1)> squares;
+  std::array<core::ExactSum, dim + 1> sums;
   const auto &state = body.zone->state;
   for (int i = 0; i < state.n_owned; ++i) {
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
@@ -29,10 +31,20 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
     for (int c = 0; c < dim; ++c)
       row[c] = state.reference[c][i] / body.spacing;
     row[axis] = depth;
-    squares += row * row.transpose();
-    sum += state.displacement[component][i] * row;
+    for (int a = 0; a <= dim; ++a) {
+      for (int b = 0; b <= a; ++b)
+        squares[a * (dim + 1) + b].add(row[a] * row[b]);
+      sums[a].add(state.displacement[component][i] * row[a]);
+    }
   }
-  return squares.ldlt().solve(sum)[dim];
+  Eigen::Matrix<double, dim + 1, dim + 1> matrix;
+  Row right;
+  for (int a = 0; a <= dim; ++a) {
+    for (int b = 0; b <= a; ++b)
+      matrix(a, b) = matrix(b, a) = squares[a * (dim + 1) + b].value();
+    right[a] = sums[a].value();
+  }
+  return matrix.ldlt().solve(right)[dim];
 }
 } // namespace
 

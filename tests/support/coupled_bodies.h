@@ -6,6 +6,7 @@
 #include "dem/many_body_force.h"
 #include "packings/lattice_packing.h"
 
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -23,6 +24,7 @@ struct CoupledBodies
   double dt = 0; // s, 0.9 of the plain discrete step unless asked otherwise
   double dt_zone = 0;
   double spacing = 1;
+  double setup_time = 0; // s, of the coupler alone
 
   coupling::Bodies<dim> bodies() const { return {zone.get(), far.get()}; }
 };
@@ -105,17 +107,26 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material,
                                                    std::vector<core::BoundaryLoad<dim>>());
   auto bodies = body.bodies();
-  if (p.bridging) {
-    overlap.shape = p.weight;
-    body.bridging =
-        std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, *p.bridging, *body.timers);
-  }
+  const auto timed = [&](auto &&set_up) {
+    const auto start = std::chrono::steady_clock::now();
+    set_up();
+    body.setup_time =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (p.bridging)
+    timed([&] {
+      overlap.shape = p.weight;
+      body.bridging = std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, *p.bridging,
+                                                                      *body.timers);
+    });
   body.dt_zone = body.zone->force->stable_step(body.zone->state);
   body.dt = p.step_fraction * body.dt_zone;
   if (p.bridging)
     return body;
-  body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
-                                                               *body.timers);
+  timed([&] {
+    body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
+                                                                 *body.timers);
+  });
   return body;
 }
 

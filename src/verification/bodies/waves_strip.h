@@ -5,39 +5,19 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "dem/material.h"
-#include "packings/lattice_packing.h"
+#include "packings/periodic_lattice.h"
 
 #include <array>
 #include <limits>
 
 namespace ligament::program
 {
-/// Numbers of particles or cells along the axes across a bar: all alike, or each its own.
-template <int dim>
-struct Across
-{
-  Across(int all) { n.fill(all); } // implicit: most bars are square
-  Across(const std::array<int, dim - 1> &each) : n(each) {}
-  int operator[](int axis) const { return n[axis]; }
-  int columns() const { return dim == 2 ? n[0] : n[0] * n[dim - 2]; }
-
-  std::array<int, dim - 1> n;
-};
-
-/// Particles of spacing 1 in `layers` layers of `across` particles along each axis;
-/// layers are stacked along the last axis, neighbours across the sides are those of the other side.
-/// Missing neighbours of the first layer, and of the last one when `closed`, are free surface.
-/// The first layer lies at 0. Lengths in units of the spacing; `across` is at least 3.
-template <int dim>
-packings::Packing<dim> make_periodic_packing(packings::LatticeKind kind, const Across<dim> &across,
-                                             int layers, bool closed);
-
 /// Cubes of edge `size` from `lower` on along the last axis, `across` of them and periodic
 /// sideways; behind the layer `fine` each is higher by the factor `growth` than the one before, up
 /// to twice the size.
 template <int dim>
-fem::Mesh<dim> make_periodic_mesh(const Across<dim> &across, int layers, double size, double lower,
-                                  int fine = 0, double growth = 1);
+fem::Mesh<dim> make_periodic_mesh(const packings::Across<dim> &across, int layers, double size,
+                                  double lower, int fine = 0, double growth = 1);
 
 /// The same in 2D with cells of twice the size from the layer `fine` on, `coarse` layers of them;
 /// `across` is even.

@@ -2,7 +2,7 @@
 
 #include "dem/many_body_force.h"
 #include "packings/absorbing_sides.h"
-#include "src/verification/bodies/random_bar.h"
+#include "packings/periodic_random.h"
 #include "src/verification/cases/wave_passage.h"
 
 #include <fmt/format.h>
@@ -129,8 +129,8 @@ Packings<dim> lattice_packings(const StripParameters &p, double length)
   const auto bar = lattice_bar<dim>(p);
   const int across = p.cells_across * p.cell_size, layers = int(length / layer_height<dim>);
   return {bar.edge,
-          make_periodic_packing<dim>(bar.kind, across, bar.layers, false),
-          {make_periodic_packing<dim>(bar.kind, across, layers, true)}};
+          packings::make_periodic_packing<dim>(bar.kind, across, bar.layers, false),
+          {packings::make_periodic_packing<dim>(bar.kind, across, layers, true)}};
 }
 
 template <int dim>
@@ -139,14 +139,15 @@ Packings<dim> random_packings(const TwinParameters &p, const StripParameters &sp
   const double width = sp.cells_across * sp.cell_size;
   const double edge = sp.zone_length + double(sp.overlap_cells * sp.cell_size);
   const double all = 2 * length;
-  const auto seeds = make_periodic_seeds<dim>(width, length, p.seed);
+  const auto seeds = packings::make_periodic_seeds<dim>(width, length, p.seed);
   Packings<dim> packings{edge,
-                         pack_periodic<dim>(seeds, width, length, edge),
-                         {pack_periodic<dim>(seeds, width, length, all)}};
+                         packings::pack_periodic<dim>(seeds, width, length, edge),
+                         {packings::pack_periodic<dim>(seeds, width, length, all)}};
   // Two spacings behind the edge all cells of the zone have ended.
   if (p.disorder)
-    packings.twins.push_back(pack_periodic<dim>(
-        make_other_end<dim>(seeds, width, length, edge + 2, p.seed + 1), width, length, all));
+    packings.twins.push_back(packings::pack_periodic<dim>(
+        packings::make_other_end<dim>(seeds, width, length, edge + 2, p.seed + 1), width, length,
+        all));
   return packings;
 }
 

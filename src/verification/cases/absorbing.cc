@@ -79,9 +79,9 @@ double reflected(coupling::Bodies<dim> bodies, double dt, double duration, Energ
 
 /// Plane waves vary along the first and the last axis alone.
 template <int dim>
-Across<dim> thin(int across)
+packings::Across<dim> thin(int across)
 {
-  Across<dim> n = 3;
+  packings::Across<dim> n = 3;
   n.n[0] = across;
   return n;
 }
@@ -132,8 +132,9 @@ double reflected_by_packing(const AbsorbingParameters &p)
   const auto wave = fit_wave<dim>(2 * p.wave_length, p.angle, cell_size / 2.);
   const Course course(p, wave.angle);
   const auto kind = dim == 2 ? packings::LatticeKind::hexagonal : packings::LatticeKind::fcc;
-  auto packing = make_periodic_packing<dim>(kind, thin<dim>(wave.cells_across * cell_size / 2),
-                                            int(course.length / layer_height<dim>), true);
+  auto packing =
+      packings::make_periodic_packing<dim>(kind, thin<dim>(wave.cells_across * cell_size / 2),
+                                           int(course.length / layer_height<dim>), true);
   particles::Particles<dim> state;
   packings::fill_particles(packing, material().density, state);
   const auto constants = material().template elastic_constants<dim>();

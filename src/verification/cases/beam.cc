@@ -18,7 +18,7 @@ namespace
 double moment_ratio(int n, const dem::DemMaterial &material)
 {
   constexpr int period = 8, dofs = n_particle_dofs<2>;
-  auto packing = make_periodic_packing<2>(packings::LatticeKind::square, period, n, true);
+  auto packing = packings::make_periodic_packing<2>(packings::LatticeKind::square, period, n, true);
   const auto centre = packing.centre;
   particles::Particles<2> state;
   packings::fill_particles(packing, material.density, state);

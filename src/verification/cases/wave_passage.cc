@@ -14,7 +14,7 @@ BlochWaves<dim> make_bloch_waves(const dem::DemMaterial &material)
 {
   const auto kind = dim == 2 ? packings::LatticeKind::hexagonal : packings::LatticeKind::fcc;
   constexpr int across = 3, layers = 9;
-  auto packing = make_periodic_packing<dim>(kind, across, layers, true);
+  auto packing = packings::make_periodic_packing<dim>(kind, across, layers, true);
   particles::Particles<dim> state;
   packings::fill_particles(packing, material.density, state);
   const dem::ManyBodyForce<dim> force(std::move(packing), material, {});

@@ -3,6 +3,8 @@
 #include "core/check.h"
 #include "core/exact_sum.h"
 #include "core/flush_denormals.h"
+#include "core/state.h"
+#include "core/sums.h"
 
 #include <gtest/gtest.h>
 
@@ -262,6 +264,46 @@ TEST(ExactSum, WordsKeepIt)
   EXPECT_EQ(kept.words(), all.words());
   EXPECT_EQ(all.words().size(), std::size_t(ExactSum::n_words));
   EXPECT_THROW(ExactSum::from_words({1, 2}), ligament::core::InputError);
+}
+
+// Two parts of a body keep sums of their own; the tables of both together are those of the whole.
+TEST(ExactSum, TablesOfPartsAddUpByWords)
+{
+  using namespace ligament::core;
+  std::mt19937_64 random(5);
+  const auto terms = terms_within(40, 3000, random);
+  const auto part = [&](std::size_t begin, std::size_t end) {
+    return exact_sum(end - begin, [&](std::size_t i) { return terms[begin + i]; });
+  };
+  State whole, first, second;
+  save_sum(whole, "work", part(0, 3000));
+  save_sum(first, "work", part(0, 1234));
+  save_sum(second, "work", part(1234, 3000));
+  EXPECT_EQ(load_sum(whole, "work").words(), sum_of(terms).words());
+
+  std::map<std::int64_t, std::int64_t> words;
+  for (const State *state : {&first, &second}) {
+    const Table &rows = table(*state, "work");
+    for (std::size_t r = 0; r < rows.n_rows(); ++r)
+      words[rows.keys()[r]] += rows.integers("word")[r];
+  }
+  std::vector<std::int64_t> keys, values;
+  for (const auto &[key, word] : words) {
+    keys.push_back(key);
+    values.push_back(word);
+  }
+  Table rows(keys);
+  rows.add("word", values);
+  const ExactSum merged = load_sum({{"work", rows}}, "work");
+  EXPECT_EQ(merged.words(), sum_of(terms).words());
+  EXPECT_EQ(bits_of(merged.value()), bits_of(sum_of(terms).value()));
+
+  State nothing;
+  save_sum(nothing, "work", ExactSum());
+  EXPECT_EQ(bits_of(load_sum(nothing, "work").value()), bits_of(0.));
+  Table wrong({0});
+  wrong.add("word", std::vector<std::int64_t>{1});
+  EXPECT_THROW(load_sum({{"work", wrong}}, "work"), InputError);
 }
 
 TEST(ExactSum, DenormalSumsSurviveWhereTheyAreFlushed)

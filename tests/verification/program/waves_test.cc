@@ -1,5 +1,5 @@
 #include "dem/many_body_force.h"
-#include "src/verification/bodies/random_bar.h"
+#include "packings/periodic_random.h"
 #include "src/verification/bodies/waves_twin.h"
 #include "src/verification/cases/waves.h"
 #include "src/verification/instruments/bloch.h"
@@ -19,7 +19,7 @@ struct Hexagonal
   Hexagonal()
   {
     material.poissons_ratio = 0.3;
-    auto packing = make_periodic_packing<2>(packings::LatticeKind::hexagonal, 4, 9, true);
+    auto packing = packings::make_periodic_packing<2>(packings::LatticeKind::hexagonal, 4, 9, true);
     packings::fill_particles(packing, material.density, state);
     force = std::make_unique<dem::ManyBodyForce<2>>(std::move(packing), material,
                                                     std::vector<core::BoundaryLoad<2>>());
@@ -86,62 +86,15 @@ TEST(PeriodicStrip, ShearWavesAtTheWorstPositionOfTheMesh)
   EXPECT_LT(measure_wave<2>(p).reflected, 1e-4);
 }
 
-template <int dim>
-void test_random_bar()
-{
-  constexpr double width = dim == 2 ? 12 : 5, length = dim == 2 ? 40 : 16, edge = length / 2;
-  const auto seeds = make_periodic_seeds<dim>(width, length, 1);
-  const auto bar = pack_periodic<dim>(seeds, width, length, 2 * length);
-  const auto zone = pack_periodic<dim>(seeds, width, length, edge);
-  const auto other = pack_periodic<dim>(make_other_end<dim>(seeds, width, length, edge + 2, 2),
-                                        width, length, 2 * length);
-  // Cells fill the bar, and each is closed by faces across the sides, too.
-  double volume = 0;
-  for (const double v : bar.volume)
-    volume += v;
-  EXPECT_NEAR(volume, std::pow(width, dim - 1) * length, 1e-10 * volume);
-  std::vector<Vector<dim>> sum(bar.size(), Vector<dim>::Zero());
-  for (const auto &face : bar.faces) {
-    sum[face.i] += face.area * face.normal;
-    sum[face.j] -= face.area * face.normal;
-    EXPECT_LT((face.lever_i - face.lever_j).norm(),
-              4); // neighbours are near, whatever their places
-  }
-  for (const auto &face : bar.boundary_faces)
-    sum[face.i] += face.area * face.normal;
-  for (const auto &s : sum)
-    EXPECT_LT(s.norm(), 1e-11);
-  // The zone is the same in all, and what lies behind it is not.
-  ASSERT_LT(zone.size(), bar.size());
-  int n_moved = 0;
-  for (int i = 0; i < std::min(bar.size(), other.size()); ++i) {
-    const Vector<dim> x = get(bar.centre, i), y = get(other.centre, i);
-    if (i < zone.size()) {
-      const int k = int(zone.global_id[i]);
-      EXPECT_EQ(get(zone.centre, i), get(bar.centre, k));
-      EXPECT_EQ(get(other.centre, k), get(bar.centre, k));
-      EXPECT_NEAR(other.volume[k], bar.volume[k], 1e-12);
-      EXPECT_NEAR(zone.volume[i], bar.volume[k], 1e-12);
-    }
-    n_moved += (x - y).norm() > 0.1;
-  }
-  EXPECT_GT(n_moved, bar.size() / 4);
-}
-
-TEST(RandomBar, RepeatsItselfSideways)
-{
-  test_random_bar<2>();
-  test_random_bar<3>();
-}
-
 TEST(RandomBar, CarriesUniformStrain)
 {
   StripParameters parameters;
   parameters.material.poissons_ratio = 0.3;
   parameters.far_length = 60;
   const double width = parameters.cells_across * parameters.cell_size, edge = 22;
-  const auto seeds = make_periodic_seeds<2>(width, 40, 1);
-  const auto strip = make_strip<2>(parameters, pack_periodic<2>(seeds, width, 40, edge), edge);
+  const auto seeds = packings::make_periodic_seeds<2>(width, 40, 1);
+  const auto strip =
+      make_strip<2>(parameters, packings::pack_periodic<2>(seeds, width, 40, edge), edge);
   const auto &split = dynamic_cast<const coupling::FineScaleSplit<2> &>(*strip.coupler);
   EXPECT_LT(split.report().patch_residual, 1e-13);
 }

@@ -1,4 +1,4 @@
-#include "src/verification/bodies/random_bar.h"
+#include "packings/periodic_random.h"
 
 #include "core/check.h"
 #include "packings/clipped_cell.h"
@@ -10,21 +10,19 @@
 #include <cmath>
 #include <numeric>
 
-namespace ligament::program
+namespace ligament::packings
 {
 namespace
 {
-using packings::Seeds;
-
 // Cells of drawn seeds have no neighbours farther away.
 constexpr double margin = 4;
 constexpr int n_sweeps = 10;
 
 /// The bar with its nearest images beside it.
 template <int dim>
-packings::SpecimenParameters<dim> surroundings(double width, double length)
+SpecimenParameters<dim> surroundings(double width, double length)
 {
-  packings::SpecimenParameters<dim> p;
+  SpecimenParameters<dim> p;
   p.spacing = 1;
   p.lower = Vector<dim>::Constant(-margin);
   p.upper = Vector<dim>::Constant(width + margin);
@@ -69,15 +67,15 @@ Seeds<dim> with_images(const Seeds<dim> &seeds, double width)
 template <int dim>
 void move_to_centroids(Seeds<dim> &seeds, double width, double length, double from)
 {
-  const packings::SpecimenShape<dim> shape(surroundings<dim>(width, length));
+  const SpecimenShape<dim> shape(surroundings<dim>(width, length));
   const Seeds<dim> all = with_images(seeds, width);
-  const packings::PowerDiagram<dim> diagram(all, 1);
+  const PowerDiagram<dim> diagram(all, 1);
   for (int i = 0; i < seeds.size(); ++i) {
     Vector<dim> &x = seeds.centre[i];
     if (x[dim - 1] < from)
       continue;
-    packings::VoronoiCell<dim> cell(packings::start_half_width, packings::start_plane, 1e-13);
-    packings::clip_by_sides(cell, shape, x);
+    VoronoiCell<dim> cell(start_half_width, start_plane, 1e-13);
+    clip_by_sides(cell, shape, x);
     diagram.cut(cell, i);
     x += cell.moment() / cell.volume();
     for (int c = 0; c < dim - 1; ++c)
@@ -104,12 +102,11 @@ template <int dim>
 Seeds<dim> make_periodic_seeds(double width, double length, int seed)
 {
   core::require(width >= margin, "a periodic bar is at least four spacings wide");
-  packings::SpecimenParameters<dim> bar;
+  SpecimenParameters<dim> bar;
   bar.spacing = 1;
   bar.upper = Vector<dim>::Constant(width);
   bar.upper[dim - 1] = length;
-  auto seeds = packings::draw_seeds<dim>(packings::SpecimenShape<dim>(bar), 1, seed, 1, bar.lower,
-                                         bar.upper);
+  auto seeds = draw_seeds<dim>(SpecimenShape<dim>(bar), 1, seed, 1, bar.lower, bar.upper);
   for (int k = 0; k < n_sweeps; ++k)
     move_to_centroids(seeds, width, length, 0);
   return in_order(seeds);
@@ -131,12 +128,11 @@ Seeds<dim> make_other_end(const Seeds<dim> &seeds, double width, double length, 
 }
 
 template <int dim>
-packings::Packing<dim> pack_periodic(const Seeds<dim> &seeds, double width, double length,
-                                     double zone_end)
+Packing<dim> pack_periodic(const Seeds<dim> &seeds, double width, double length, double zone_end)
 {
   auto parameters = surroundings<dim>(width, length);
   parameters.zone_upper[dim - 1] = zone_end;
-  auto packing = packings::pack_seeds<dim>(parameters, with_images(seeds, width)).packing;
+  auto packing = pack_seeds<dim>(parameters, with_images(seeds, width)).packing;
 
   // Particles are in the order of their ids: images come last.
   const int n_seeds = seeds.size();
@@ -144,7 +140,7 @@ packings::Packing<dim> pack_periodic(const Seeds<dim> &seeds, double width, doub
   std::vector<int> particle_of(n_seeds, -1);
   for (; n < packing.size() && packing.global_id[n] < n_seeds; ++n)
     particle_of[packing.global_id[n]] = n;
-  std::vector<packings::Face<dim>> faces;
+  std::vector<Face<dim>> faces;
   for (auto face : packing.faces) {
     const int other_side = int(packing.global_id[face.j] / n_seeds);
     if (face.i >= n || other_side > n_shifts<dim> / 2)
@@ -169,6 +165,6 @@ template Seeds<2> make_periodic_seeds(double, double, int);
 template Seeds<3> make_periodic_seeds(double, double, int);
 template Seeds<2> make_other_end(const Seeds<2> &, double, double, double, int);
 template Seeds<3> make_other_end(const Seeds<3> &, double, double, double, int);
-template packings::Packing<2> pack_periodic(const Seeds<2> &, double, double, double);
-template packings::Packing<3> pack_periodic(const Seeds<3> &, double, double, double);
-} // namespace ligament::program
+template Packing<2> pack_periodic(const Seeds<2> &, double, double, double);
+template Packing<3> pack_periodic(const Seeds<3> &, double, double, double);
+} // namespace ligament::packings
