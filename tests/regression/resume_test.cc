@@ -296,6 +296,10 @@ TEST_F(Resume, SlowOtherScenesGoOnAsWell)
     if (name != "mesh") {
       EXPECT_GE(file_json(name + "_whole/run.json")["broken_bonds"], 5);
     }
+    const std::string rebuilt = name + "_rebuilt";
+    EXPECT_EQ(run_ligament("run torn.json --rebuild-interval 100 -o " + rebuilt + overrides).code,
+              0);
+    expect_same(rebuilt, name + "_whole");
     make_half(name, name + "_whole", overrides);
     fs::rename(name, "moved_" + name);   // nothing depends on the place
     const bool is_lost = name == "file"; // then the set-up seeks again
