@@ -119,7 +119,7 @@ void measure(const std::string &name, const Vector<dim> &size, double zone, doub
     const auto report = body.split->report();
     print(fmt::format("{}, r = {}, m = {}: {} overlap particles of {}, {} near nodes; reference: "
                       "particle of a lattice block",
-                      name, ratio, step_ratio, report.overlap_particles, body.zone->state.n_owned,
+                      name, ratio, step_ratio, report.overlap_particles, body.zone->state.size(),
                       report.near_nodes),
           (coupled - particles - far) / report.overlap_particles, "ns per overlap particle",
           reference);
@@ -141,7 +141,7 @@ void compare_regimes(const std::string &name, const Vector<dim> &size, double zo
   p.material.poissons_ratio = 0.25;
   auto body = tests::make_coupled_bodies<dim>(p);
   auto bodies = body.bodies();
-  const double share = double(body.split->report().overlap_particles) / body.zone->state.n_owned;
+  const double share = double(body.split->report().overlap_particles) / body.zone->state.size();
   const double force = nanoseconds([&] { body.zone->compute_forces(0); }) * share;
   coupling::StepTime time;
   time.dt = body.dt;
@@ -178,8 +178,8 @@ void measure_setup()
     const auto large = set_up(60 + 2 * 615 * std::sqrt(2));
     print(fmt::format("fcc, set-up {} patch fit of {} overlap particles of {}; reference: {} of {}",
                       fits ? "with" : "without", large.split->report().overlap_particles,
-                      large.zone->state.n_owned, small.split->report().overlap_particles,
-                      small.zone->state.n_owned),
+                      large.zone->state.size(), small.split->report().overlap_particles,
+                      small.zone->state.size()),
           large.setup_time, "s", small.setup_time);
   }
 }

@@ -74,12 +74,12 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
   const auto zone_before = zone.displacement;
   const auto far_before = far.displacement;
   for (int c = 0; c < dim; ++c) {
-    for (int i = 0; i < zone.n_owned; ++i)
+    for (int i = 0; i < zone.size(); ++i)
       zone.displacement[c][i] = strained(get(zone.reference, i), c);
     for (int i = 0; i < far.mesh().n_nodes(); ++i)
       far.displacement[c][i] = strained(far.mesh().nodes[i], c);
   }
-  std::vector<char> is_near(zone.n_owned, 0);
+  std::vector<char> is_near(zone.size(), 0);
   const std::vector<int> members = overlap_.member_particles();
   bodies.zone->force->for_each_face(
       zone,
@@ -97,7 +97,7 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
   dead_torque_ = zone.torque;
   const auto reverse = [&](auto &components) {
     for (auto &component : components)
-      for (int i = 0; i < zone.n_owned; ++i)
+      for (int i = 0; i < zone.size(); ++i)
         component[i] *= -is_near[i];
   };
   reverse(dead_);

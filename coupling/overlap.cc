@@ -116,8 +116,8 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
                                 const particles::ParticleForce<dim> &force)
 {
   const fem::CellLocator<dim> locator(mesh);
-  member_of_particle.assign(particles.n_owned, -1);
-  for (int i = 0; i < particles.n_owned; ++i) {
+  member_of_particle.assign(particles.size(), -1);
+  for (int i = 0; i < particles.size(); ++i) {
     const int cell = locator.find(get(particles.reference, i));
     if (cell < 0)
       continue;

@@ -141,15 +141,21 @@ void BondSlices<dim>::remove(int index)
 }
 
 template <int dim>
-SliceNearness BondSlices<dim>::nearness(const particles::RestBlocks<dim> &rest) const
+SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges, int n_particles) const
 {
+  using Rest = particles::RestBlocks<dim>;
+  std::vector<std::uint8_t> of(n_particles, 0);
+  const auto set = [&](const particles::ParticleRanges &some, int value) {
+    particles::for_each(some, [&](int i) { of[i] = std::uint8_t(value); });
+  };
+  set(ranges.turned, Rest::turned);
+  set(ranges.pressed, Rest::pressed);
+  set(ranges.stepped, Rest::awake);
   SliceNearness nearness;
   nearness.slice.assign(table_.n_slices(), 0);
   nearness.records.assign(table_.n_slices(), 0);
   for (int l = 0; l < table_.n_records(); ++l) {
-    const auto raise = [&](std::uint8_t &to, int particle) {
-      to = std::max(to, std::uint8_t(rest.nearness(particle)));
-    };
+    const auto raise = [&](std::uint8_t &to, int particle) { to = std::max(to, of[particle]); };
     raise(nearness.slice[l / slice_width], table_.particle[table_.lane[l] / record_size]);
     raise(nearness.records[l / slice_width], table_.particle[l]);
   }

@@ -1,5 +1,7 @@
 #include "dem/many_body_force.h"
 
+#include "particles/block_sum.h"
+
 namespace ligament::dem
 {
 template <int dim>
@@ -8,7 +10,7 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                                   const FractureLaw &fracture)
     : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
       rows_(body_), slices_(body_), interfaces_(body_.bonds()), contacts_(packing, materials),
-      search_(fracture, body_, interfaces_.members()), evaluation_(body_)
+      search_(fracture, body_, interfaces_.members()), evaluation_(body_), energy_evaluation_(body_)
 {
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
@@ -174,7 +176,7 @@ void ManyBodyForce<dim>::add_flowing_energy(const Particles &p, int sign, core::
 {
   std::vector<double> energy(body_.n_particles(), 0.);
   surface_.add_energies(p, evaluation_, energy);
-  for (int i = 0; i < body_.n_particles(); ++i) {
+  for (int i = 0; i < p.size(); ++i) {
     const double power =
         get(p.velocity, i).dot(get(p.force, i)) + get(p.spin, i).dot(get(p.torque, i));
     sum.add(sign *
@@ -187,16 +189,15 @@ void ManyBodyForce<dim>::add_flowing_energy(const Particles &p, int sign, core::
 template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
-  Evaluation<dim> e(body_);
+  Evaluation<dim> &e = energy_evaluation_;
   find_other_pressures(p, e);
-  std::vector<double> energy;
-  rows_.set_energies(p, e, energy);
+  rows_.set_energies(p, e, energy_);
   for (const auto *part : parts_)
-    part->add_energies(p, e, energy);
-  core::ExactSum sum;
-  for (int i = 0; i < body_.n_particles(); ++i)
-    sum.add(energy[i] + body_.volume_energy(i, e.pressure[i]));
-  return sum.value();
+    part->add_energies(p, e, energy_);
+  return particles::block_sum(
+             p.part.owned,
+             [&](int i) { return energy_[i] + body_.volume_energy(i, e.pressure[i]); })
+      .value();
 }
 
 template <int dim>

@@ -189,6 +189,9 @@ private:
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_; // of the last compute()
+  // Scratch of potential_energy(): fresh memory would take longer than the sweep.
+  mutable Evaluation<dim> energy_evaluation_;
+  mutable std::vector<double> energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
   double time_ = 0, last_time_ = 0; // s
 };

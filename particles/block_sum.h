@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/exact_sum.h"
+#include "particles/part.h"
 
 #include <algorithm>
 
@@ -31,6 +32,22 @@ core::ExactSum sum_over_blocks(int n, Visit &&visit)
   return all;
 }
 
+/// The same over ranges, each counted from its first particle: parts begin with a block.
+template <typename Visit>
+core::ExactSum sum_over_blocks(const ParticleRanges &ranges, Visit &&visit)
+{
+  core::ExactSum all;
+  for (const auto &[begin, end] : ranges) {
+    const int first = begin;
+    all.merge(sum_over_blocks(end - begin, [&](const auto &add) {
+      visit([&](auto &&term) {
+        add([&](int from, int to) { return term(first + from, first + to); });
+      });
+    }));
+  }
+  return all;
+}
+
 /// Of term(i), i from 0 to n - 1.
 template <typename Term>
 core::ExactSum block_sum(int n, Term &&term)
@@ -41,6 +58,16 @@ core::ExactSum block_sum(int n, Term &&term)
     for (int i = begin; i < std::min(begin + sum_block, n); ++i)
       sum += term(i);
     all.add(sum);
+  }
+  return all;
+}
+template <typename Term>
+core::ExactSum block_sum(const ParticleRanges &ranges, Term &&term)
+{
+  core::ExactSum all;
+  for (const auto &[begin, end] : ranges) {
+    const int first = begin;
+    all.merge(block_sum(end - begin, [&](int i) { return term(first + i); }));
   }
   return all;
 }

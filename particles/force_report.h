@@ -62,11 +62,11 @@ public:
   virtual double external_work() const { return 0; }
   virtual void reset_work() {}
 
-  /// Overwrites: stress tensors of the owned particles in Pa, Voigt order (in-plane in 2D).
+  /// Overwrites: stress tensors of all particles in Pa, Voigt order (in-plane in 2D).
   virtual void stresses(const Particles<dim> &particles, Components<n_strains<dim>> &stress) const
   {
     for (auto &component : stress)
-      component.assign(particles.n_owned, 0.);
+      component.assign(particles.size(), 0.);
   }
 
   virtual long n_bonds() const { return 0; }

@@ -57,11 +57,9 @@ template <int dim>
 template <typename Visit>
 void ParticleSolver<dim>::for_each_awake(Visit &&visit) const
 {
-  if (!rest_ || rest_->all_awake())
-    visit(0, state.n_owned);
-  else
-    for (const auto &[begin, end] : rest_->ranges().stepped)
-      visit(begin, end);
+  const bool all = !rest_ || rest_->all_awake();
+  for (const auto &[begin, end] : all ? state.part.stepped : rest_->ranges().stepped)
+    visit(begin, end);
 }
 
 template <int dim>
@@ -117,7 +115,7 @@ void ParticleSolver<dim>::drift(double dt)
 template <int dim>
 core::ExactSum ParticleSolver<dim>::kinetic_sum(double dt) const
 {
-  return block_sum(state.n_owned, [&](int i) {
+  return block_sum(state.part.owned, [&](int i) {
     if (std::isinf(state.mass[i])) // held
       return 0.;
     double twice = 0;
@@ -165,7 +163,7 @@ double sum_in_strands(int begin, int end, Term &&term)
 template <int dim>
 core::ExactSum ParticleSolver<dim>::damp_velocities(double factor, double dt)
 {
-  return sum_over_blocks(state.n_owned, [&](const auto &add) {
+  return sum_over_blocks(state.part.owned, [&](const auto &add) {
     const auto damp = [&](std::vector<double> &velocity, const std::vector<double> &force,
                           double gyration) {
       const double *const m = state.mass.data(), *const f = force.data();

@@ -21,7 +21,8 @@ public:
   /// u += dt v; orientations turn by dt spin (exactly, for a constant spin over the step).
   void drift(double dt);
 
-  void update_ghosts() {} // one rank owns all
+  /// Of particles that are seen, but not stepped: one process has none.
+  void update_ghosts() {}
 
   void compute_forces(double time) { force->compute(state, time); }
 

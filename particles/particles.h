@@ -4,22 +4,22 @@
 #include "core/names.h"
 #include "core/types.h"
 #include "particles/global_ids.h"
+#include "particles/part.h"
 
 #include <vector>
 
 namespace ligament::particles
 {
-/// Owned particles first, ghosts after. Total Lagrangian: reference centres, displacements and
-/// orientations against the reference. Orientation: 2D one angle (rad, unwrapped); 3D a unit
-/// quaternion (w, x, y, z). Held particles have infinite mass. Where nothing turns them they have
-/// no orientation: rotation, spin and torque are empty.
+/// In one order, which no process changes: rows of a lattice, places of seeds. Total Lagrangian:
+/// reference centres, displacements and orientations against the reference. Orientation: 2D one
+/// angle (rad, unwrapped); 3D a unit quaternion (w, x, y, z). Held particles have infinite mass.
+/// Where nothing turns them they have no orientation: rotation, spin and torque are empty.
 template <int dim>
 struct Particles
 {
   static constexpr int n_rotations = dim == 2 ? 1 : 4;
 
-  int n_owned = 0;
-  int n_ghosts = 0;
+  Part part;         // what is whose: by default all is one's own
   bool turns = true; // else rotation, spin and torque are empty
 
   Components<dim> reference;        // m, centre in the reference configuration
@@ -34,7 +34,7 @@ struct Particles
   double gyration = 1;              // m^2, inertia per mass, of all
   GlobalIds global_id;
 
-  int size() const { return n_owned + n_ghosts; }
+  int size() const { return int(mass.size()); }
 
   double inverse_mass(int i) const { return 1 / mass[i]; }       // 1/kg
   double inertia(int i) const { return gyration * mass[i]; }     // kg m^2
@@ -51,7 +51,7 @@ struct Particles
   void save(core::State &state, const core::Names &names) const;
   void load(const core::State &state, const core::Names &names);
 
-  /// n owned particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
+  /// n particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
   void resize(int n);
 
   /// From now on they have no orientation.
@@ -108,8 +108,7 @@ void Particles<dim>::load(const core::State &state, const core::Names &names)
 template <int dim>
 void Particles<dim>::resize(int n)
 {
-  n_owned = n;
-  n_ghosts = 0;
+  part = Part::whole(n);
   for_each_array([&](const char *, auto &array) { array.assign(n, 0); });
   if (dim == 3 && turns)
     rotation[0].assign(n, 1.);

@@ -17,9 +17,10 @@ template <int dim>
 RestBlocks<dim>::RestBlocks(const Particles<dim> &p,
                             const std::function<void(const VisitPair &)> &for_each_pair,
                             const RestLimits &limits)
-    : n_particles_(p.n_owned), limits_(limits),
+    : n_particles_(p.size()), limits_(limits),
       exact_(limits.displacement == 0 && limits.velocity == 0 && limits.rotation == 0 &&
-             limits.spin == 0)
+             limits.spin == 0),
+      part_(p.part)
 {
   cut(p);
   find_neighbours(for_each_pair);
@@ -167,6 +168,8 @@ void RestBlocks<dim>::update_ranges()
   n_awake_ = 0;
   for (const auto &range : ranges_.stepped)
     n_awake_ += range.end - range.begin;
+  if (!part_.is_whole(n_particles_))
+    ranges_ = ranges_.within(part_);
   rim_.clear();
   for (int b = 0; b < n_blocks(); ++b)
     if (nearness_[b] >= awake && nearness_[b] < moving)

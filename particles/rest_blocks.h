@@ -7,24 +7,6 @@
 
 namespace ligament::particles
 {
-/// Particles [begin, end).
-struct ParticleRange
-{
-  int begin, end;
-};
-
-/// What one step passes over, ascending: a force sees the pressures of its neighbours, and these
-/// the turns of theirs.
-struct AwakeRanges
-{
-  std::vector<ParticleRange> stepped; // forces, kick, drift
-  std::vector<ParticleRange> pressed; // and those within one bond
-  std::vector<ParticleRange> turned;  // and those within two
-
-  /// n particles, all awake.
-  static AwakeRanges of_all(int n) { return {{{0, n}}, {{0, n}}, {{0, n}}}; }
-};
-
 /// Motion from which on a block moves; zeros: any motion at all.
 struct RestLimits
 {
@@ -59,6 +41,7 @@ public:
   /// Before each drift: wakes what the present velocities reach, counts a step.
   void look(const Particles<dim> &particles);
 
+  /// Those of the part that are awake.
   const AwakeRanges &ranges() const { return ranges_; }
   bool all_awake() const { return n_awake_ == n_particles_; }
   bool is_awake(int particle) const { return nearness(particle) >= awake; }
@@ -106,6 +89,7 @@ private:
   std::vector<std::uint8_t> nearness_;       // of each block
   std::vector<int> raised_;                  // scratch
   std::vector<int> rim_;                     // blocks that are awake and don't move yet
+  Part part_;
   AwakeRanges ranges_;
   int n_awake_ = 0;
   long version_ = 0;

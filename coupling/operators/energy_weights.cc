@@ -11,7 +11,7 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
                                  const particles::Particles<dim> &particles,
                                  const particles::ParticleForce<dim> &force)
 {
-  const int n = particles.n_owned;
+  const int n = particles.size();
   constexpr double centroid = dim / (dim + 1.); // of a pyramid, from its apex
   // Sums over pyramids of volume times 1 - a; particles beyond the overlap keep exactly 0.
   std::vector<double> rest(n, 0.), volume(n, 0.);

@@ -77,12 +77,14 @@ struct Evaluation
   // Carried from one to the next.
   WayToLook way;
   SliceNearness nearness;
-  long nearness_version = -1; // of rest
+  long nearness_version = -1; // of the ranges
 
-  /// What is passed over; null: everything.
-  const particles::AwakeRanges *awake_ranges() const
+  /// What of these particles is passed over; null: all.
+  const particles::AwakeRanges *ranges(const particles::Particles<dim> &p) const
   {
-    return rest && !rest->all_awake() ? &rest->ranges() : nullptr;
+    if (rest && !rest->all_awake())
+      return &rest->ranges();
+    return p.part.is_whole(p.size()) ? nullptr : &p.part;
   }
   TractionScreen yield_screen()
   {

@@ -25,7 +25,7 @@ void RowBonds<dim>::set_forces(Particles &p, Evaluation<dim> &e) const
   std::vector<RowRange> nothing;
   const auto sweep = [&](bool by_particle) {
     return kernel_.forces(a, e.body.bonds().segments(), screen, yield, window_,
-                          e.look ? e.noted.rows : nothing, e.awake_ranges(), by_particle,
+                          e.look ? e.noted.rows : nothing, e.ranges(p), by_particle,
                           !(e.look && e.look->cleared_by_stress));
   };
   if (!e.look) {
@@ -33,7 +33,7 @@ void RowBonds<dim>::set_forces(Particles &p, Evaluation<dim> &e) const
     return;
   }
   const bool has_lattice = e.body.bonds().n_directions() > 0;
-  const bool may_look_by_particle = screen.by_particle && !e.awake_ranges() && yield.traction == 0;
+  const bool may_look_by_particle = screen.by_particle && !e.ranges(p) && yield.traction == 0;
   bool by_particle = may_look_by_particle && e.way.by_particle;
   const auto &others = e.body.other_particles();
   std::vector<double> before; // the sweep adds its own to them

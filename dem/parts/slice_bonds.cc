@@ -12,13 +12,16 @@ SliceBonds<dim>::SliceBonds(const BondedBody<dim> &body)
 }
 
 template <int dim>
-const SliceNearness *SliceBonds<dim>::awake_slices(Evaluation<dim> &e) const
+const SliceNearness *SliceBonds<dim>::awake_slices(const Particles &p, Evaluation<dim> &e) const
 {
-  if (!e.awake_ranges())
+  const auto *const ranges = e.ranges(p);
+  if (!ranges)
     return nullptr;
-  if (e.nearness_version != e.rest->version()) {
-    e.nearness = slices_.nearness(*e.rest);
-    e.nearness_version = e.rest->version();
+  constexpr long of_part = -2; // its ranges stay
+  const long version = ranges == &p.part ? of_part : e.rest->version();
+  if (e.nearness_version != version) {
+    e.nearness = slices_.nearness(*ranges, p.size());
+    e.nearness_version = version;
   }
   return &e.nearness;
 }
@@ -27,7 +30,7 @@ template <int dim>
 void SliceBonds<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) const
 {
   const LatticeArrays<dim> a = e.arrays(p);
-  const SliceNearness *const awake = awake_slices(e);
+  const SliceNearness *const awake = awake_slices(p, e);
   slices_.load(a, records_, awake);
   if (e.body.has_dilatation())
     slices_.add_pressures(a, records_, awake);
@@ -39,7 +42,7 @@ void SliceBonds<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
   const bool has_lattice = e.body.bonds().n_directions() > 0;
   std::vector<int> nothing;
   slices_.forces(e.arrays_with_forces(p), e.look ? e.look->table : BreakScreen{}, e.yield_screen(),
-                 records_, e.look ? e.noted.table : nothing, awake_slices(e),
+                 records_, e.look ? e.noted.table : nothing, awake_slices(p, e),
                  !(e.look && e.noted.own_terms && has_lattice && e.look->cleared_by_stress));
 }
 

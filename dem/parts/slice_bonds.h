@@ -22,7 +22,7 @@ public:
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
 
 private:
-  const SliceNearness *awake_slices(Evaluation<dim> &evaluation) const;
+  const SliceNearness *awake_slices(const Particles &particles, Evaluation<dim> &evaluation) const;
 
   BondSlices<dim> slices_;
   mutable core::LargeArray records_; // scratch: from the pressures to the forces or energies

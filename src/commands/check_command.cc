@@ -54,7 +54,7 @@ int check(const CommandLine &line, const ReadResult &input)
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
   const double output = output_seconds(scene, body, steps);
   const double seconds = setup_seconds + steps * cost.seconds_per_step + output;
-  const int particles = body.zone ? body.zone->state.n_owned : 0;
+  const int particles = body.zone ? body.zone->state.size() : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const auto *joined = body.coupler->overlap();
   const int overlap = joined ? int(joined->members.size()) : 0;

@@ -32,7 +32,7 @@ std::optional<double> saving_with(const ReadResult &input,
     core::Timers timers;
     auto body = make_body<dim>(*changed.scene, log, timers);
     const StepCost cost = measure_step_cost(*changed.scene, body, timers, moment);
-    return cost.saving(body.equivalent_particles, body.zone->state.n_owned);
+    return cost.saving(body.equivalent_particles, body.zone->state.size());
   } catch (const core::InputError &) {
     return {};
   }
@@ -79,7 +79,7 @@ CostAdvice advise(const ReadResult &input, const CoupledBody<dim> &body, const S
   std::stable_sort(advice.options.begin(), advice.options.end(),
                    [](const auto &a, const auto &b) { return a.saving > b.saving; });
   // What is not the particles' stays when the zone shrinks: overlap and far field.
-  const double particles = body.zone->state.n_owned;
+  const double particles = body.zone->state.size();
   const double others = particles * (1 / cost.discrete_share - 1); // in particles
   const double even = double(body.equivalent_particles) - others;
   if (even > body.coupler->overlap()->members.size())

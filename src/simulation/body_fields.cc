@@ -48,8 +48,8 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
   body.force()->stresses(state, stress);
-  std::vector<double> tensor(6 * state.n_owned);
-  for (int i = 0; i < state.n_owned; ++i)
+  std::vector<double> tensor(6 * state.size());
+  for (int i = 0; i < state.size(); ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
   fields.fields.push_back(make_field("stress", std::move(tensor)));
   return fields;
@@ -141,7 +141,7 @@ template <int dim>
 void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
 {
   const auto &state = body.zone->state;
-  n_faces_.assign(state.n_owned, 0);
+  n_faces_.assign(state.size(), 0);
   body.force()->for_each_face(state, [&](const auto &face) {
     if (face.bonded)
       ++n_faces_[face.i];
@@ -150,7 +150,7 @@ void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
     for (const int i : {broken.i, broken.j})
       ++n_faces_[i];
   auto cut = open_faces({}, body.cut_faces);
-  for (int i = 0; i < state.n_owned && !cut.empty(); ++i)
+  for (int i = 0; i < state.size() && !cut.empty(); ++i)
     if (const auto found = cut.find(state.global_id[i]); found != cut.end())
       n_faces_[i] += std::uint8_t(found->second);
 }
@@ -234,7 +234,7 @@ Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<di
     return s;
   const auto &state = body.zone->state;
   s.global_id = state.global_id.list();
-  for (int i = 0; i < state.n_owned; ++i)
+  for (int i = 0; i < state.size(); ++i)
     for (int c = 0; c < dim; ++c) {
       s.reference.push_back(state.reference[c][i]);
       s.displacement.push_back(displacement[c][i]);

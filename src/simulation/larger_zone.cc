@@ -123,7 +123,7 @@ int give_state_to_larger(const core::State &state, const fem::Mesh<dim> &old_mes
   const core::Table &old = core::table(state, "particles");
   auto &particles = larger.zone->state;
   int n_new = 0;
-  for (int i = 0; i < particles.n_owned; ++i)
+  for (int i = 0; i < particles.size(); ++i)
     if (!has(old, particles.global_id[i])) {
       require_free_side(larger, get(particles.reference, i));
       motion.carry(particles, i);

@@ -44,7 +44,7 @@ class Items
 {
 public:
   Items(const CoupledBody<dim> &body, int axis)
-      : n_particles_(body.zone ? body.zone->state.n_owned : 0),
+      : n_particles_(body.zone ? body.zone->state.size() : 0),
         n_nodes_(body.far ? body.far->mesh().n_nodes() : 0), low_(n_particles_ + n_nodes_),
         sets_(low_ + 2)
   {

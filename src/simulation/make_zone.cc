@@ -75,7 +75,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
-           body.zone->state.n_owned, body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
+           body.zone->state.size(), body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
 }
 
 template void make_zone(const Scene &, const ForceMaker<2> &, Reference &, CoupledBody<2> &,

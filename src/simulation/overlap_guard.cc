@@ -28,7 +28,7 @@ OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
   const auto *overlap = body.coupler->overlap();
   if (!overlap || !body.force()->can_break())
     return;
-  watch_.assign(body.zone->state.n_owned, Watch::none);
+  watch_.assign(body.zone->state.size(), Watch::none);
   for (const auto &m : overlap->members)
     watch_[m.particle] = m.pad ? Watch::exempt : Watch::watched;
   body.force()->set_noted_share(limit);

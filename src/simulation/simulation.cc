@@ -232,7 +232,7 @@ RunRecord Simulation<dim>::make_record() const
   for (int c = 0; c < dim; ++c)
     r.size.push_back(scene_.specimen.size[c]);
   r.thickness = body_.thickness;
-  r.particles = body_.zone ? body_.zone->state.n_owned : 0;
+  r.particles = body_.zone ? body_.zone->state.size() : 0;
   r.cells = body_.far ? body_.far->mesh().n_cells() : 0;
   const auto *overlap = body_.coupler->overlap();
   r.overlap_particles = overlap ? int(overlap->members.size()) : 0;

@@ -23,10 +23,10 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
   std::array<core::ExactSum, (dim + 1) * (dim + 1)> squares;
   std::array<core::ExactSum, dim + 1> sums;
   const auto &state = body.zone->state;
-  for (int i = 0; i < state.n_owned; ++i) {
+  particles::for_each(state.part.owned, [&](int i) {
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
     if (depth > side_depth)
-      continue;
+      return;
     Row row = Row::Ones();
     for (int c = 0; c < dim; ++c)
       row[c] = state.reference[c][i] / body.spacing;
@@ -36,7 +36,7 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
         squares[a * (dim + 1) + b].add(row[a] * row[b]);
       sums[a].add(state.displacement[component][i] * row[a]);
     }
-  }
+  });
   Eigen::Matrix<double, dim + 1, dim + 1> matrix;
   Row right;
   for (int a = 0; a <= dim; ++a) {

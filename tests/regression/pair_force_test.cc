@@ -71,7 +71,7 @@ TEST(PairForceTest, WavesPassTheOverlapAtTheSpeedOfTheSolid)
   auto &body = small.body;
   auto &zone = body.zone->state;
   const double k = M_PI / 120, omega = k * std::sqrt(1.2); // c_P of E = 1, nu = 1/4
-  for (int i = 0; i < zone.n_owned; ++i)
+  for (int i = 0; i < zone.size(); ++i)
     zone.velocity[1][i] = 1e-6 * std::sin(k * zone.reference[1][i]);
   for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
     body.far->velocity[1][i] = 1e-6 * std::sin(k * body.far->mesh().nodes[i][1]);
@@ -79,7 +79,7 @@ TEST(PairForceTest, WavesPassTheOverlapAtTheSpeedOfTheSolid)
   body.coupler->take_velocities(bodies);
   const auto amplitude = [&] {
     double sum = 0;
-    for (int i = 0; i < zone.n_owned; ++i)
+    for (int i = 0; i < zone.size(); ++i)
       sum += zone.mass[i] * zone.velocity[1][i] * std::sin(k * zone.reference[1][i]);
     return sum;
   };

@@ -19,7 +19,7 @@ double drift_of_noise(CoupledBodiesParameters<dim> p, double speed, int n_steps)
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-speed, speed);
   for (int c = 0; c < dim; ++c)
-    for (int i = 0; i < body.zone->state.n_owned; ++i)
+    for (int i = 0; i < body.zone->state.size(); ++i)
       body.zone->state.velocity[c][i] = uniform(random);
   for (int c = 0; c < dim; ++c)
     for (double &v : body.far->velocity[c])

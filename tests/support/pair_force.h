@@ -90,7 +90,7 @@ public:
   {
     Components<2> rows;
     for (auto &row : rows)
-      row.assign(p.n_owned, 0.);
+      row.assign(p.size(), 0.);
     for (const Spring &s : springs_)
       for (const int i : {s.i, s.j})
         for (int c = 0; c < 2; ++c)
@@ -99,7 +99,7 @@ public:
       rows[w.component][w.i] += w.stiffness;
     double largest = 0;
     for (int c = 0; c < 2; ++c)
-      for (int i = 0; i < p.n_owned; ++i)
+      for (int i = 0; i < p.size(); ++i)
         largest = std::max(largest, rows[c][i] * p.inverse_mass(i));
     return 2 / std::sqrt(largest);
   }
@@ -167,7 +167,7 @@ public:
   void stresses(const Particles &p, Components<3> &stress) const override
   {
     for (auto &component : stress)
-      component.assign(p.n_owned, 0.);
+      component.assign(p.size(), 0.);
     for (const Spring &s : springs_)
       if (s.intact) {
         const Vector<2> x = way(s, p);

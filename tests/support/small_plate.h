@@ -76,7 +76,7 @@ struct SmallBody
     };
     if (body.zone) {
       auto &state = body.zone->state;
-      for (int i = 0; i < state.n_owned; ++i)
+      for (int i = 0; i < state.size(); ++i)
         place({state.reference[0][i], state.reference[1][i]}, state.displacement, i);
     }
     if (body.far)

@@ -29,7 +29,7 @@ const double *set_displacement(particles::Particles<dim> &zone, const double *va
 {
   value = write(value, zone.displacement);
   for (int c = 0; c < n_spins<dim>; ++c)
-    for (int i = 0; i < zone.n_owned; ++i, ++value) {
+    for (int i = 0; i < zone.size(); ++i, ++value) {
       if constexpr (dim == 2)
         zone.rotation[0][i] = *value;
       else {
@@ -44,7 +44,7 @@ const double *set_displacement(particles::Particles<dim> &zone, const double *va
 template <int dim>
 int state_size(const CoupledBody<dim> &body)
 {
-  return (body.zone ? n_particle_dofs<dim> * body.zone->state.n_owned : 0) +
+  return (body.zone ? n_particle_dofs<dim> * body.zone->state.size() : 0) +
          (body.far ? dim * body.far->mesh().n_nodes() : 0);
 }
 
@@ -67,7 +67,7 @@ Eigen::VectorXd displacement(const CoupledBody<dim> &body)
     const auto &zone = body.zone->state;
     value = read(zone.displacement, value);
     for (int c = 0; c < n_spins<dim>; ++c)
-      for (int i = 0; i < zone.n_owned; ++i)
+      for (int i = 0; i < zone.size(); ++i)
         *value++ = dim == 2 ? zone.rotation[0][i] : 2 * zone.rotation[dim == 2 ? 0 : 1 + c][i];
   }
   if (body.far)

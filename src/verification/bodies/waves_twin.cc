@@ -177,10 +177,10 @@ double difference_energy(const particles::Particles<dim> &a, const particles::Pa
                          double end)
 {
   std::unordered_map<std::int64_t, int> of_id;
-  for (int j = 0; j < b.n_owned; ++j)
+  for (int j = 0; j < b.size(); ++j)
     of_id[b.global_id[j]] = j;
   double sum = 0;
-  for (int i = 0; i < a.n_owned; ++i) {
+  for (int i = 0; i < a.size(); ++i) {
     if (a.reference[dim - 1][i] > end)
       continue;
     const int j = of_id.at(a.global_id[i]);

@@ -196,7 +196,7 @@ double reflected_by_random_packing(const AbsorbingParameters &p)
   const double dt = unit.body.dt, h = 1e-3; // of the central differences
   // Half the curl of a motion along x: about -z in 2D, about +y in 3D.
   const double turn = dim == 2 ? -0.5 : 0.5;
-  for (int i = 0; i < zone.state.n_owned; ++i) {
+  for (int i = 0; i < zone.state.size(); ++i) {
     const double z = zone.state.reference[dim - 1][i];
     const auto slope = [&](double at) { return (wave(at + h) - wave(at - h)) / (2 * h); };
     zone.state.displacement[component][i] = wave(z);

@@ -70,7 +70,7 @@ void impose(Scene scene, const Material &material, Excess &worst)
       -size * uniaxial_strain<dim>(body.force()->elastic_constants().stiffness);
   auto &state = body.zone->state;
   std::vector<int> all;
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     set(state.displacement, i, Vector<dim>(strain * get(state.reference, i)));
     all.push_back(i);
   }
@@ -82,7 +82,7 @@ void impose(Scene scene, const Material &material, Excess &worst)
   keep_worst(worst.tension, force.max_tension(state, all) / size);
   Components<n_strains<dim>> stress;
   force.stresses(state, stress);
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     const Strain<dim> rest = get(stress, i) + size * Strain<dim>::Unit(dim - 1);
     keep_worst(worst.stress, rest.cwiseAbs().maxCoeff() / size);
   }

@@ -34,7 +34,7 @@ void hold(Scene &scene, int side, double displacement)
 template <int dim>
 double lateral_strain(const particles::Particles<dim> &zone, int axis)
 {
-  const int n = zone.n_owned;
+  const int n = zone.size();
   double x = 0, u = 0, xx = 0, xu = 0;
   for (int i = 0; i < n; ++i) {
     x += zone.reference[axis][i] / n;
@@ -86,7 +86,7 @@ void pull(Scene scene, Deviation &worst)
   for (int c = 1; c < dim; ++c)
     shift[c] = -ratio * strain * scene.specimen.size[c] / 2;
   motion.accelerations(motion.affine(gradient, shift), true);
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     keep_worst(worst.residual, get(zone.force, i).norm() / (unit.c11() * strain));
     keep_worst(worst.residual, get(zone.torque, i).norm() / (unit.c11() * strain));
   }

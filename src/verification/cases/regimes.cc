@@ -44,7 +44,7 @@ struct MovingBody
   {
     const Matrix<dim> h = rotation * stretch - Matrix<dim>::Identity();
     auto &zone = unit.body.zone->state;
-    for (int i = 0; i < zone.n_owned; ++i) {
+    for (int i = 0; i < zone.size(); ++i) {
       set(zone.displacement, i, Vector<dim>(h * get(zone.reference, i)));
       particles::set_orientation<dim>(zone, i, rotation);
     }
@@ -101,7 +101,7 @@ std::vector<Result> rotate(const std::string &name)
     const double unit = moving.unit.c11();
     const double h = body.coupler->overlap()->cell_size;
     keep_worst(force, moving.near_force().cwiseAbs().maxCoeff() / (unit * std::pow(h, dim - 1)));
-    for (int i = 0; i < body.zone->state.n_owned; ++i) {
+    for (int i = 0; i < body.zone->state.size(); ++i) {
       keep_worst(force, get(body.zone->state.force, i).norm() / unit);
       keep_worst(force, get(body.zone->state.torque, i).norm() / unit);
     }
@@ -156,7 +156,7 @@ Spin<dim> angular_momentum(const CoupledBody<dim> &body, const Eigen::SparseMatr
   for (int i = 0; i < far.mesh().n_nodes(); ++i)
     if (!far.is_released_node(i))
       sum += far.lumped_mass()[i] * core::moment(place(i), get(far.velocity, i));
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     Vector<dim> x = get(zone.reference, i) + get(zone.displacement, i), w = get(zone.velocity, i);
     const int index = overlap.member_of_particle[i];
     if (index >= 0)
@@ -222,7 +222,7 @@ std::vector<Result> spin(const std::string &name, const std::string &regime, dou
   omega[0] = rate; // 3D: across the band
   const auto velocity = [&](const Vector<dim> &x) { return core::spin_cross(omega, x); };
   auto &zone = body.zone->state;
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     set(zone.velocity, i, velocity(get(zone.reference, i)));
     set(zone.spin, i, omega);
   }
@@ -276,7 +276,7 @@ Pulled pull(Scene scene)
     body.coupler->compute_forces(bodies, step);
   }
   Pulled result = {TestMachine<2>(body).read(body, step.time).load, {}};
-  for (int i = 0; i < body.zone->state.n_owned; ++i)
+  for (int i = 0; i < body.zone->state.size(); ++i)
     result.motion.emplace_back(get(body.zone->state.reference, i),
                                get(body.zone->state.displacement, i));
   return result;

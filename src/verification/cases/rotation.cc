@@ -12,7 +12,7 @@ namespace
 {
 void turn(particles::Particles<2> &zone, std::mt19937 &)
 {
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     const Vector<2> x = get(zone.reference, i);
     set(zone.displacement, i, Vector<2>(-x[1] - x[0], x[0] - x[1]));
     zone.rotation[0][i] = M_PI / 2;
@@ -24,7 +24,7 @@ void turn(particles::Particles<3> &zone, std::mt19937 &random)
   std::normal_distribution<double> normal;
   const Vector<3> axis = Vector<3>(normal(random), normal(random), normal(random)).normalized();
   const Eigen::Quaterniond q(Eigen::AngleAxisd(M_PI / 2, axis));
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     const Vector<3> x = get(zone.reference, i);
     set(zone.displacement, i, Vector<3>(q * x - x));
     set(zone.rotation, i, Vec<4>(q.w(), q.x(), q.y(), q.z()));
@@ -46,7 +46,7 @@ void rotate(const std::string &packing, std::vector<Result> &results)
       turn(zone, random);
       unit.body.zone->compute_forces(0);
       double volume = 0;
-      for (int i = 0; i < zone.n_owned; ++i) {
+      for (int i = 0; i < zone.size(); ++i) {
         keep_worst(force, get(zone.force, i).norm() / unit.c11());
         keep_worst(force, get(zone.torque, i).norm() / unit.c11());
         volume += zone.volume[i];

@@ -24,7 +24,7 @@ BlochWaves<dim> make_bloch_waves(const dem::DemMaterial &material)
 template <int dim>
 void set_packet(particles::Particles<dim> &state, const Packet<dim> &packet, double amplitude)
 {
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     const auto [displacement, velocity] = packet.at(get(state.reference, i));
     for (int c = 0; c < dim; ++c) {
       state.displacement[c][i] = amplitude * displacement[c];
@@ -42,7 +42,7 @@ template <int dim>
 std::vector<Site<dim>> particle_sites(const particles::Particles<dim> &state, double end)
 {
   std::vector<Site<dim>> sites;
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     if (state.reference[dim - 1][i] > end)
       continue;
     Site<dim> site{get(state.reference, i), Eigen::VectorXd(n_particle_dofs<dim>),

@@ -18,7 +18,7 @@ double kinetic_energy(const Strip<dim> &strip)
 {
   const auto &state = strip.zone->state;
   double sum = 0;
-  for (int i = 0; i < state.n_owned; ++i)
+  for (int i = 0; i < state.size(); ++i)
     if (state.reference[dim - 1][i] < strip.mesh_begin)
       sum += state.mass[i] * get(state.velocity, i).squaredNorm() +
              state.inertia(i) * get(state.spin, i).squaredNorm();

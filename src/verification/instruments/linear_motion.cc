@@ -36,7 +36,7 @@ Eigen::Matrix<double, dim, dim + n_spins<dim>> rigid_motions(const Vector<dim> &
 
 template <int dim>
 LinearMotion<dim>::LinearMotion(CoupledBody<dim> &body)
-    : body_(body), n_particles_(body.zone ? body.zone->state.n_owned : 0),
+    : body_(body), n_particles_(body.zone ? body.zone->state.size() : 0),
       n_particle_values_(n_particle_dofs<dim> * n_particles_)
 {
   core::require(body.coupler->step_ratio() == 1, "linear motion needs the step ratio 1");

@@ -98,7 +98,7 @@ Vector<dim> momentum(const CoupledBodies<dim> &body)
 {
   Vector<dim> sum = Vector<dim>::Zero();
   const auto &zone = body.zone->state;
-  for (int i = 0; i < zone.n_owned; ++i)
+  for (int i = 0; i < zone.size(); ++i)
     sum += zone.mass[i] * get(zone.velocity, i);
   const auto &overlap = *body.bridging->overlap();
   Eigen::MatrixXd near(overlap.n_nodes(), dim);
@@ -214,7 +214,7 @@ TEST(BridgingDomain, WeightsShareTheMass)
   const auto &overlap = *body.bridging->overlap();
   const auto &zone = body.zone->state;
   double mass = body.bridging->near_mass().sum();
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     mass += zone.mass[i];
     const int index = overlap.member_of_particle[i];
     if (index < 0) {
@@ -247,7 +247,7 @@ TEST(BridgingDomain, WeightedForcesBalance)
   body.zone->compute_forces(0);
   Vector<2> sum = Vector<2>::Zero();
   double size = 0;
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     sum += get(zone.force, i);
     size += get(zone.force, i).norm();
   }
@@ -262,7 +262,7 @@ TEST(BridgingDomain, WeightedForcesBalance)
     zone.displacement[1][i] -= 2 * step;
     const double below = body.zone->potential_energy();
     zone.displacement[1][i] += step;
-    EXPECT_NEAR(-(above - below) / (2 * step), force[1][i], 1e-6 * size / zone.n_owned);
+    EXPECT_NEAR(-(above - below) / (2 * step), force[1][i], 1e-6 * size / zone.size());
   }
 }
 
@@ -287,7 +287,7 @@ TEST(BridgingDomain, TheGhostForceCorrectionIsExactAtItsState)
     auto body = make_coupled_bodies(p);
     auto &zone = body.zone->state;
     for (int c = 0; c < 2; ++c) {
-      for (int i = 0; i < zone.n_owned; ++i)
+      for (int i = 0; i < zone.size(); ++i)
         zone.displacement[c][i] = strain[c] * zone.reference[c][i];
       for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
         body.far->displacement[c][i] = strain[c] * body.far->mesh().nodes[i][c];
@@ -299,7 +299,7 @@ TEST(BridgingDomain, TheGhostForceCorrectionIsExactAtItsState)
     body.bridging->compute_forces(bodies, time);
     body.bridging->kick(bodies, time);
     double largest = 0;
-    for (int i = 0; i < zone.n_owned; ++i)
+    for (int i = 0; i < zone.size(); ++i)
       largest = std::max({largest, get(zone.velocity, i).norm(), std::abs(zone.spin[0][i])});
     for (const int node : body.bridging->overlap()->near_nodes)
       largest = std::max(largest, get(body.far->velocity, node).norm());

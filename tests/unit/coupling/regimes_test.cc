@@ -61,7 +61,7 @@ void move(CoupledBodies<dim> &body, const Matrix<dim> &rotation, const Matrix<di
 {
   const Matrix<dim> h = rotation * stretch - Matrix<dim>::Identity();
   auto &zone = body.zone->state;
-  for (int i = 0; i < zone.n_owned; ++i) {
+  for (int i = 0; i < zone.size(); ++i) {
     set(zone.displacement, i, Vector<dim>(h * get(zone.reference, i)));
     particles::set_orientation<dim>(zone, i, rotation);
   }

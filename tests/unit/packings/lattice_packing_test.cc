@@ -344,7 +344,7 @@ TEST(LatticePacking, FillsParticles)
   const auto packing = make_lattice_packing(specimen<3>(LatticeKind::fcc, 6));
   particles::Particles<3> particles;
   fill_particles(packing, 2450., particles);
-  ASSERT_EQ(particles.n_owned, packing.size());
+  ASSERT_EQ(particles.size(), packing.size());
   for (int i = 0; i < packing.size(); ++i) {
     const double m = 2450 * packing.volume[i];
     EXPECT_DOUBLE_EQ(particles.mass[i], m);

@@ -24,7 +24,7 @@ TEST(Inclusions, TakeTheParticlesOfTheirRegionsLaterOnesFirst)
   const auto &state = small.body.zone->state;
   const auto &force = *small.body.force();
   int n[3] = {};
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     const double x = state.reference[0][i], y = state.reference[1][i];
     const bool in_box = x > 1 && x < 5 && y > -1 && y < 3, in_ball = std::hypot(x - 2, y - 3) < 2.5;
     ASSERT_EQ(force.material(i), in_box ? 2 : in_ball ? 1 : 0);
@@ -64,7 +64,7 @@ TEST(Inclusions, ThePackingFileNamesThem)
   SmallBody small(
       small_scene(file + discrete + std::vector<std::string>{"/inclusions=[" + stiff + "}]"}));
   const auto &state = small.body.zone->state;
-  for (int i = 0; i < state.n_owned; ++i)
+  for (int i = 0; i < state.size(); ++i)
     ASSERT_EQ(small.body.force()->material(i), state.global_id[i] % 7 == 0);
   ASSERT_EQ(small.body.seeds->material.size(), std::size_t(small.body.seeds->size()));
   for (int k = 0; k < small.body.seeds->size(); ++k)

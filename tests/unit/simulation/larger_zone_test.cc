@@ -101,11 +101,11 @@ TEST_P(LargerZone, GoesOnUnderLoad)
   const int n_new = grow(old, larger);
   const auto &before = old.body.zone->state, &after = larger.body.zone->state;
   EXPECT_GT(n_new, 2 * 20 * 8);
-  EXPECT_EQ(after.n_owned, before.n_owned + n_new);
+  EXPECT_EQ(after.size(), before.size() + n_new);
 
   // What was there is where it was, to the last bit.
   const core::Names names = after.names(), old_names = before.names();
-  for (int i = 0; i < before.n_owned; ++i) {
+  for (int i = 0; i < before.size(); ++i) {
     const int k = names.index(before.global_id[i]);
     ASSERT_GE(k, 0);
     for (int c = 0; c < 2; ++c) {
@@ -129,7 +129,7 @@ TEST_P(LargerZone, GoesOnUnderLoad)
   const auto &old_v = old.body.far->velocity;
   int n_looked_at = 0;
   double largest_turn = 0;
-  for (int k = 0; k < after.n_owned; ++k) {
+  for (int k = 0; k < after.size(); ++k) {
     if (old_names.index(after.global_id[k]) >= 0)
       continue;
     const int cell = locator.find(get(after.reference, k));

@@ -80,7 +80,7 @@ struct OpenedPlate
   std::optional<double> open(double from, double to)
   {
     auto &state = small.body.zone->state;
-    for (int i = 0; i < state.n_owned; ++i)
+    for (int i = 0; i < state.size(); ++i)
       if (state.reference[1][i] > 0 && state.reference[0][i] > from && state.reference[0][i] < to)
         state.displacement[1][i] = 2e-3;
     small.body.force()->compute(state, ++time);

@@ -26,7 +26,7 @@ struct GuardedPlate
   template <typename IsBelow>
   std::optional<std::string> look(double share, IsBelow &&is_below)
   {
-    for (int i = 0; i < state().n_owned; ++i)
+    for (int i = 0; i < state().size(); ++i)
       state().displacement[1][i] = is_below(i) ? -share * strength : 0;
     small.body.force()->compute(state(), ++time);
     return guard.look(small.body);

@@ -90,7 +90,7 @@ TEST(RegimeControl, BendingBecomesNonlinear)
     u[1][i] = curvature * x * x / 2;
   };
   auto &state = body.zone->state;
-  for (int i = 0; i < state.n_owned; ++i)
+  for (int i = 0; i < state.size(); ++i)
     bend(state.displacement, i, state.reference[0][i], state.reference[1][i]);
   for (int i = 0; i < body.far->mesh().n_nodes(); ++i) {
     const Vector<2> &x = body.far->mesh().nodes[i];

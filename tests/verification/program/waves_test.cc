@@ -50,7 +50,7 @@ TEST(BlochWaves, ModeIsAnEigenvectorOfTheForce)
   const double k = 0.9;
   const auto mode = waves.mode(k, {1, 0});
   auto &state = body.state;
-  for (int i = 0; i < state.n_owned; ++i) {
+  for (int i = 0; i < state.size(); ++i) {
     const auto motion = (1e-9 * mode.amplitude * std::polar(1., k * state.reference[1][i])).eval();
     state.displacement[0][i] = motion[0].real();
     state.rotation[0][i] = motion[2].real();
