@@ -176,6 +176,9 @@ public:
       else
         forces<false>(piece);
     }
+    // Bonds of the table may reach farther than those of the lattice.
+    forces_at_ = sweep_.n_particles;
+    dilate_to(sweep_.n_particles);
   }
 
 private:
