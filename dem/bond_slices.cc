@@ -141,12 +141,19 @@ void BondSlices<dim>::remove(int index)
 }
 
 template <int dim>
-SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges, int n_particles) const
+SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges) const
 {
   using Rest = particles::RestBlocks<dim>;
-  std::vector<std::uint8_t> of(n_particles, 0);
+  std::vector<std::uint8_t> of(table_.n_records(), 0);
   const auto set = [&](const particles::ParticleRanges &some, int value) {
-    particles::for_each(some, [&](int i) { of[i] = std::uint8_t(value); });
+    auto range = some.begin();
+    for (int r = 0; r < table_.n_records(); ++r) {
+      const int i = table_.particle[r];
+      while (range != some.end() && range->end <= i)
+        ++range;
+      if (range != some.end() && range->begin <= i)
+        of[r] = std::uint8_t(value);
+    }
   };
   set(ranges.turned, Rest::turned);
   set(ranges.pressed, Rest::pressed);
@@ -154,10 +161,10 @@ SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges, in
   SliceNearness nearness;
   nearness.slice.assign(table_.n_slices(), 0);
   nearness.records.assign(table_.n_slices(), 0);
+  const auto raise = [&](std::uint8_t &to, int record) { to = std::max(to, of[record]); };
   for (int l = 0; l < table_.n_records(); ++l) {
-    const auto raise = [&](std::uint8_t &to, int particle) { to = std::max(to, of[particle]); };
-    raise(nearness.slice[l / slice_width], table_.particle[table_.lane[l] / record_size]);
-    raise(nearness.records[l / slice_width], table_.particle[l]);
+    raise(nearness.slice[l / slice_width], table_.lane[l] / record_size);
+    raise(nearness.records[l / slice_width], l);
   }
   return nearness;
 }

@@ -107,7 +107,7 @@ public:
   bool empty() const { return table_.n_records() == 0; }
 
   /// For the three sweeps below, which with it leave out what is at rest.
-  SliceNearness nearness(const particles::AwakeRanges &ranges, int n_particles) const;
+  SliceNearness nearness(const particles::AwakeRanges &ranges) const;
   const std::vector<int> &particles() const { return table_.particle; }
 
   /// Bond `index` of the network's table no longer carries.

@@ -74,12 +74,16 @@ std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) cons
     if (is_at_interface(b)) // one system for all their pressures
       of.insert(of.end(), interfaces_.members().begin(), interfaces_.members().end());
   }
+  const auto make_unique = [](std::vector<int> &list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  make_unique(of);
   std::vector<int> found = of;
   for (const int i : of)
     body_.bonds().for_each_bond_of(
         i, [&](BondId, const Bond<dim> &b) { found.push_back(b.i == i ? b.j : b.i); });
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  make_unique(found);
   if (rest_ && !rest_->is_exact())
     found.erase(
         std::remove_if(found.begin(), found.end(), [&](int i) { return !rest_->is_awake(i); }),
@@ -114,6 +118,7 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   surface_.find_reactions(p, evaluation_);
   surface_.book_work(p, evaluation_); // nothing moved
   broken_.take_mean(p, near, before, dt());
+  clear_forces_at_rest(p, evaluation_);
 }
 
 template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);

@@ -34,6 +34,7 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
                 "energy weights are set on an intact, elastic body");
   body_.set_energy_weights(weights);
   slices_ = SliceBonds<dim>(body_);
+  evaluation_.nearness_version = energy_evaluation_.nearness_version = -1;
   search_.reset(body_);
   find_other_particles();
 }
@@ -95,23 +96,25 @@ void ManyBodyForce<dim>::find_forces(Particles &p, Evaluation<dim> &e) const
   rows_.set_forces(p, e);
   for (const auto *part : parts_)
     part->add_forces(p, e);
-  clear_forces_at_rest(p);
+  clear_forces_at_rest(p, e);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::add_contacts(Particles &p)
 {
+  if (contacts_.all().empty())
+    return;
   contacts_.act(p, dt());
-  clear_forces_at_rest(p);
+  clear_forces_at_rest(p, evaluation_);
 }
 
 template <int dim>
-void ManyBodyForce<dim>::clear_forces_at_rest(Particles &p) const
+void ManyBodyForce<dim>::clear_forces_at_rest(Particles &p, const Evaluation<dim> &e) const
 {
-  if (!rest_ || rest_->is_exact() || rest_->all_awake())
+  if (!e.rest || e.rest->is_exact() || e.rest->all_awake())
     return;
   const auto clear = [&](int i) {
-    if (rest_->is_awake(i))
+    if (e.rest->is_awake(i))
       return;
     for (auto &f : p.force)
       f[i] = 0;
@@ -130,13 +133,12 @@ template <int dim>
 void ManyBodyForce<dim>::compute(Particles &p, double time)
 {
   if (time != time_) {
-    broken_.end_step(p, dt());
     last_time_ = time_;
     time_ = time;
+    broken_.end_step(p, dt());
   }
   surface_.set_time(time);
-  if (rest_ && !rest_->all_awake())
-    surface_.wake(*rest_);
+  surface_.wake(rest_);
   search_.ask(evaluation_, flow_);
   flow_.ask(evaluation_);
   find_forces(p, evaluation_);
@@ -160,8 +162,10 @@ void ManyBodyForce<dim>::flow(Particles &p)
   surface_.book_work(p, evaluation_); // with the reactions before
   core::ExactSum taken;
   add_flowing_energy(p, 1, taken);
+  const int n_before = flow_.blocks()->n_plastic_blocks();
   flow_.add(increments, p);
-  find_other_particles();
+  if (flow_.blocks()->n_plastic_blocks() > n_before)
+    find_other_particles();
   surface_.set_plastic([&](int i) { return flow_.blocks()->strain(i); });
   search_.ask(evaluation_, flow_);
   find_forces(p, evaluation_);
@@ -174,14 +178,15 @@ void ManyBodyForce<dim>::flow(Particles &p)
 template <int dim>
 void ManyBodyForce<dim>::add_flowing_energy(const Particles &p, int sign, core::ExactSum &sum)
 {
-  std::vector<double> energy(body_.n_particles(), 0.);
-  surface_.add_energies(p, evaluation_, energy);
-  for (int i = 0; i < p.size(); ++i) {
+  energy_.assign(body_.n_particles(), 0.);
+  surface_.add_energies(p, evaluation_, energy_);
+  const auto of_particle = [&](int i) {
     const double power =
         get(p.velocity, i).dot(get(p.force, i)) + get(p.spin, i).dot(get(p.torque, i));
-    sum.add(sign *
-            (energy[i] + body_.volume_energy(i, evaluation_.pressure[i]) + 0.5 * dt() * power));
-  }
+    return sign *
+           (energy_[i] + body_.volume_energy(i, evaluation_.pressure[i]) + 0.5 * dt() * power);
+  };
+  sum.merge(particles::block_sum(p.part.owned, of_particle));
   for (const double of_bonds : evaluation_.plastic_energy)
     sum.add(sign * of_bonds);
 }

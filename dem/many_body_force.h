@@ -148,7 +148,7 @@ private:
   void add_contacts(Particles &particles);
   void find_other_particles();
   /// Of particles that a threshold holds at rest but that awake ones have pulled.
-  void clear_forces_at_rest(Particles &particles) const;
+  void clear_forces_at_rest(Particles &particles, const Evaluation<dim> &evaluation) const;
   double dt() const { return time_ - last_time_; }
 
   /// Yields where the stress asks for it; forces and pressures follow.
@@ -184,12 +184,12 @@ private:
   PlasticFlow<dim> flow_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
-  /// In the order in which they act, after rows_.
+  /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
   std::vector<ForcePart<dim> *> parts_ = {&slices_, &surface_, &flow_, &interfaces_, &contacts_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_; // of the last compute()
-  // Scratch of potential_energy(): fresh memory would take longer than the sweep.
+  // Scratch of sums of energies: fresh memory would take longer than the sweep.
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;

@@ -68,8 +68,10 @@ void SurfaceLoads<dim>::set_time(double t)
 }
 
 template <int dim>
-void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> &rest)
+void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> *rest)
 {
+  if (!rest || rest->all_awake())
+    return;
   for (int l = 0; l < n_loads(); ++l) {
     if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0)))
       continue;
@@ -81,7 +83,7 @@ void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> &rest)
     for (const auto &face : tractions_)
       if (face.load == l)
         loaded.push_back(face.i);
-    rest.wake(loaded);
+    rest->wake(loaded);
   }
 }
 

@@ -23,8 +23,9 @@ public:
   void set_time(double t);
 
   std::vector<int> particles() const override;
-  /// The particles of each load, as soon as it acts: a support moves, a traction is applied.
-  void wake(particles::RestBlocks<dim> &rest) override;
+  /// Wakes the particles of each load as soon as it acts: a support moves, a traction is applied.
+  /// Null: nothing rests.
+  void wake(particles::RestBlocks<dim> *rest);
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
   /// Leaves reactions behind.
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;

@@ -85,7 +85,7 @@ public:
   /// Without, particles have no orientation: their arrays of rotation, spin and torque are empty.
   virtual bool has_rotations() const { return true; }
 
-  /// Overwrites force and torque of all owned particles with those of the present state; time
+  /// Overwrites force and torque of all particles that are stepped with those of the present state; time
   /// in s sets the prescribed boundaries.
   virtual void compute(Particles<dim> &particles, double time) = 0;
 

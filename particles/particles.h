@@ -40,7 +40,7 @@ struct Particles
   double inertia(int i) const { return gyration * mass[i]; }     // kg m^2
   double inverse_inertia(int i) const { return 1 / inertia(i); } // 1/(kg m^2)
 
-  /// Calls visit(name, array) for every array; halo, output and checkpoint read this list.
+  /// Calls visit(name, array) for every array: those that resize() makes.
   template <typename Visit>
   void for_each_array(Visit &&visit);
 

@@ -23,7 +23,7 @@ public:
   /// The step of dt (s) after the last break ends.
   void end_step(const Particles &particles, double dt);
 
-  /// At a time (s) at which bonds have been looked at already, none breaks any more.
+  /// Whether some did at this time (s): then no other does.
   bool have_broken_at(double time) const { return broken_at_ == time; }
 
   /// `energy` in J, released.

@@ -76,6 +76,7 @@ struct Evaluation
 
   // Carried from one to the next.
   WayToLook way;
+  std::vector<double> other_pressures; // Pa, of the other particles before the rows'
   SliceNearness nearness;
   long nearness_version = -1; // of the ranges
 

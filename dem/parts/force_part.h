@@ -11,8 +11,8 @@ namespace ligament::dem
 template <int dim>
 using VisitMoment = std::function<void(int, const Vector<dim> &, const Vector<dim> &)>;
 
-/// ManyBodyForce runs its parts in their order: all pressures first, then all forces. A part that
-/// has nothing to do says so with an empty particles() and returns at once.
+/// ManyBodyForce runs its parts in their order: all pressures first, then all forces. A part of
+/// which a body has nothing returns at once.
 template <int dim>
 class ForcePart
 {
@@ -23,9 +23,6 @@ public:
 
   /// Those to whose pressures it adds, in any order.
   virtual std::vector<int> particles() const = 0;
-
-  /// Something outside the body begins to act on it: wakes what it acts on.
-  virtual void wake(particles::RestBlocks<dim> &) {}
 
   /// Adds its lambda_i theta_i (Pa) to those of the parts before it.
   virtual void add_pressures(const Particles &, Evaluation<dim> &) const {}

@@ -36,7 +36,8 @@ void RowBonds<dim>::set_forces(Particles &p, Evaluation<dim> &e) const
   const bool may_look_by_particle = screen.by_particle && !e.ranges(p) && yield.traction == 0;
   bool by_particle = may_look_by_particle && e.way.by_particle;
   const auto &others = e.body.other_particles();
-  std::vector<double> before; // the sweep adds its own to them
+  std::vector<double> &before = e.other_pressures; // the sweep adds its own to them
+  before.clear();
   if (has_lattice && may_look_by_particle && !by_particle && e.body.has_dilatation())
     for (const int i : others)
       before.push_back(e.pressure[i]);

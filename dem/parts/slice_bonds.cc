@@ -20,7 +20,7 @@ const SliceNearness *SliceBonds<dim>::awake_slices(const Particles &p, Evaluatio
   constexpr long of_part = -2; // its ranges stay
   const long version = ranges == &p.part ? of_part : e.rest->version();
   if (e.nearness_version != version) {
-    e.nearness = slices_.nearness(*ranges, p.size());
+    e.nearness = slices_.nearness(*ranges);
     e.nearness_version = version;
   }
   return &e.nearness;

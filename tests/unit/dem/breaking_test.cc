@@ -71,6 +71,8 @@ struct Body
   {
     auto p = at_rest(packing, materials.base());
     disturb<dim>(p, packing.spacing, 0.05, Spin<dim>::Constant(0.3), 3);
+    for (int i = 0; i < p.size(); ++i)
+      p.velocity[0][i] = 1e-3 * (i % 5);
     const auto intact = make();
     const Forces<dim> before = at(*intact, p);
     std::vector<int> all(packing.size());
@@ -80,7 +82,13 @@ struct Body
         make({FractureLaw::Criterion::face_tension, 0.4 * intact->max_tension(p, all)});
     const Forces<dim> mean = at(*breaking, p);
     ASSERT_GT(breaking->broken_bonds().size(), 1u);
+    if (flows)
+      ASSERT_GT(breaking->plastic()->n_plastic_blocks(), 0);
     ASSERT_LT(long(breaking->broken_bonds().size()), intact->n_bonds() / 2);
+
+    // Nothing moved before it; over the next step, half as long, its half is half as large.
+    const double booked = breaking->breaking_step_error();
+    ASSERT_NE(booked, 0);
 
     std::vector<std::int64_t> ids(all.begin(), all.end());
     const core::Names names(ids);
@@ -107,6 +115,9 @@ struct Body
     ASSERT_GT(change, 0.01 * largest);
     constexpr double round_off = 1e-12; // some hundred operations
     EXPECT_LT(worst, round_off * largest);
+    breaking->compute(p, 1.5);
+    EXPECT_NEAR(breaking->breaking_step_error(), booked / 2, 1e-3 * std::abs(booked));
+
     // What the supports feel is what they feel after it.
     EXPECT_LT((mean.reaction - after.reaction).norm(), round_off * largest);
     EXPECT_GT((before.reaction - after.reaction).norm(), 1e-4 * largest);

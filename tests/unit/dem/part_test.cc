@@ -68,6 +68,7 @@ void expect_parts_to_be_the_whole(const Packing<dim> &packing, unsigned seed)
   whole.drift(dt);
 
   core::ExactSum kinetic_of_parts;
+  double energy_of_parts = 0;
   const int block = particles::sum_block;
   ASSERT_GT(n, 5 * block);
   const std::vector<int> cuts = {0, block, (n / block - 1) * block, n};
@@ -78,6 +79,7 @@ void expect_parts_to_be_the_whole(const Packing<dim> &packing, unsigned seed)
     own.state.part = part_of(force, own.state, cuts[k], cuts[k + 1]);
     ASSERT_LT(particles::count(own.state.part.stepped), n);
     own.compute_forces(0);
+    energy_of_parts += own.potential_energy();
     kinetic_of_parts.merge(own.kinetic_sum(dt));
     own.kick(dt);
     own.drift(dt);
@@ -90,10 +92,13 @@ void expect_parts_to_be_the_whole(const Packing<dim> &packing, unsigned seed)
       }
       for (int c = 0; c < n_spins<dim>; ++c)
         ASSERT_EQ(own.state.spin[c][i], expected.spin[c][i]) << i;
+      for (int c = 0; c < Particles<dim>::n_rotations; ++c)
+        ASSERT_EQ(own.state.rotation[c][i], expected.rotation[c][i]) << i;
     }
   }
   EXPECT_EQ(kinetic_of_parts.value(), kinetic.value());
   EXPECT_GT(kinetic.value(), 0);
+  EXPECT_NEAR(energy_of_parts, energy, 4e-16 * energy); // three are rounded, and added
   EXPECT_GT(energy, 0);
 }
 

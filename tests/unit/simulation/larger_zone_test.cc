@@ -166,13 +166,11 @@ TEST_P(LargerZone, GoesOnUnderLoad)
   // The jump is small, and the books close on both sides of it as well as without it.
   const double energy = motion_energy(old.body, old.now);
   const double jump = larger.body.regime_change - old.body.regime_change;
-  std::printf("jump %.2e of the energy\n", jump / energy);
   EXPECT_NE(jump, 0);
   EXPECT_LT(std::abs(jump), 1e-3 * energy);
   EXPECT_NEAR(larger.ledger().residual(), old.ledger().residual(), 1e-12 * energy);
   const double end = old.now.time + 100;
   const double residual = largest_residual(old, end), of_larger = largest_residual(larger, end);
-  std::printf("residuals %.2e %.2e of %.2e\n", residual, of_larger, energy);
   EXPECT_LT(of_larger, 2 * residual + 1e-12 * energy);
 
   // Both bodies go on alike: cells and particles differ by their dispersion, (kh)^2 of the waves
@@ -185,7 +183,6 @@ TEST_P(LargerZone, GoesOnUnderLoad)
       most = std::max(most, std::abs(there));
       difference = std::max(difference, std::abs(u[c][i] - there));
     }
-  std::printf("displacements differ by %.2e of %.2e\n", difference, most);
   EXPECT_LT(difference, kh * kh * most);
 }
 

@@ -148,7 +148,7 @@ TEST(CoupledChain, IsTheFineScaleSplitWhereRowsMoveAlike)
 TEST(CoupledChain, IsTheBridgingDomainWhereRowsMoveAlike)
 {
   using oracle::Correction;
-  for (const auto [scheme, correction] :
+  for (const auto &[scheme, correction] :
        {std::pair{Scheme::acceleration, Correction::acceleration},
         std::pair{Scheme::xiao_belytschko, Correction::whole_steps},
         std::pair{Scheme::xiao_belytschko_lumped, Correction::whole_steps_lumped},
