@@ -14,7 +14,8 @@ template <typename T>
 std::vector<T> from_words(const std::uint64_t *words, std::size_t n)
 {
   std::vector<T> values(n);
-  std::memcpy(values.data(), words, n * sizeof(T));
+  if (n > 0)
+    std::memcpy(values.data(), words, n * sizeof(T));
   return values;
 }
 

@@ -21,20 +21,24 @@ template <typename V>
 struct Pair
 {
   V x, y;
-
-  friend HWY_INLINE Pair operator+(const Pair &a, const Pair &b)
-  {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y)};
-  }
-  friend HWY_INLINE Pair operator-(const Pair &a, const Pair &b)
-  {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y)};
-  }
-  friend HWY_INLINE Pair operator*(V s, const Pair &a)
-  {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y)};
-  }
 };
+
+// Not friends: those are compiled for the machine at large, whose calling convention is another.
+template <typename V>
+HWY_INLINE Pair<V> operator+(const Pair<V> &a, const Pair<V> &b)
+{
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y)};
+}
+template <typename V>
+HWY_INLINE Pair<V> operator-(const Pair<V> &a, const Pair<V> &b)
+{
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y)};
+}
+template <typename V>
+HWY_INLINE Pair<V> operator*(V s, const Pair<V> &a)
+{
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y)};
+}
 
 /// s a + b
 template <typename V>
@@ -71,20 +75,23 @@ template <typename V>
 struct Triple
 {
   V x, y, z;
-
-  friend HWY_INLINE Triple operator+(const Triple &a, const Triple &b)
-  {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-  }
-  friend HWY_INLINE Triple operator-(const Triple &a, const Triple &b)
-  {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-  }
-  friend HWY_INLINE Triple operator*(V s, const Triple &a)
-  {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-  }
 };
+
+template <typename V>
+HWY_INLINE Triple<V> operator+(const Triple<V> &a, const Triple<V> &b)
+{
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <typename V>
+HWY_INLINE Triple<V> operator-(const Triple<V> &a, const Triple<V> &b)
+{
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <typename V>
+HWY_INLINE Triple<V> operator*(V s, const Triple<V> &a)
+{
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
 
 /// s a + b
 template <typename V>
