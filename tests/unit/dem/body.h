@@ -149,4 +149,15 @@ void disturb(Particles<dim> &p, double spacing, double amplitude, const Spin<dim
     turn_by<dim>(p, i, Spin<dim>::NullaryExpr([&] { return amplitude * uniform(random); }));
   }
 }
+/// A support moves and a side is drawn along.
+template <int dim>
+std::vector<core::BoundaryLoad<dim>> pull_and_press()
+{
+  std::vector<core::BoundaryLoad<dim>> loads(2);
+  loads[0].boundary = 3, loads[0].value[1] = 0.03;
+  loads[0].kind = core::BoundaryLoad<dim>::Kind::displacement;
+  loads[1].boundary = 1, loads[1].kind = core::BoundaryLoad<dim>::Kind::traction;
+  loads[1].value[0] = 0.02, loads[1].value[1] = -0.01;
+  return loads;
+}
 } // namespace ligament::dem::testing

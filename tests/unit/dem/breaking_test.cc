@@ -18,14 +18,12 @@ struct Breaking : ::testing::Test
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Breaking, Dimensions);
 
+/// With a second support, at the other end.
 template <int dim>
-std::vector<core::BoundaryLoad<dim>> pull_and_press()
+std::vector<core::BoundaryLoad<dim>> pull_and_press_and_hold()
 {
-  std::vector<core::BoundaryLoad<dim>> loads(3);
-  loads[0].boundary = 3, loads[0].value[1] = 0.03;
-  loads[0].kind = core::BoundaryLoad<dim>::Kind::displacement;
-  loads[1].boundary = 1, loads[1].kind = core::BoundaryLoad<dim>::Kind::traction;
-  loads[1].value[0] = 0.02, loads[1].value[1] = -0.01;
+  auto loads = pull_and_press<dim>();
+  loads.resize(3);
   loads[2].boundary = 0, loads[2].value[0] = -0.02;
   loads[2].kind = core::BoundaryLoad<dim>::Kind::displacement;
   return loads;
@@ -50,7 +48,7 @@ struct Body
   std::unique_ptr<ManyBodyForce<dim>> make(const FractureLaw &law = {}) const
   {
     auto force =
-        std::make_unique<ManyBodyForce<dim>>(packing, materials, pull_and_press<dim>(), law);
+        std::make_unique<ManyBodyForce<dim>>(packing, materials, pull_and_press_and_hold<dim>(), law);
     if (!weights.empty())
       force->set_energy_weights(weights);
     if (flows)

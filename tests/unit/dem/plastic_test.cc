@@ -37,17 +37,6 @@ struct Plastic : ::testing::Test
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Plastic, Dimensions);
 
-template <int dim>
-std::vector<core::BoundaryLoad<dim>> pull_and_press()
-{
-  std::vector<core::BoundaryLoad<dim>> loads(2);
-  loads[0].boundary = 3, loads[0].value[1] = 0.03;
-  loads[0].kind = core::BoundaryLoad<dim>::Kind::displacement;
-  loads[1].boundary = 1, loads[1].kind = core::BoundaryLoad<dim>::Kind::traction;
-  loads[1].value[0] = 0.02, loads[1].value[1] = -0.01;
-  return loads;
-}
-
 TYPED_TEST(Plastic, ForcesAreTheGradientAtFrozenPlasticStrain)
 {
   constexpr int dim = TypeParam::value;

@@ -1,5 +1,6 @@
 // The state of particles: names, masses, and what a kick makes of them.
 #include "particles/particle_solver.h"
+#include "tests/unit/particles/given_force.h"
 
 #include <gtest/gtest.h>
 
@@ -19,25 +20,6 @@ TEST(GlobalIds, ReadLikeTheArrayTheyWereMadeOf)
   EXPECT_EQ(GlobalIds(3).list(), (std::vector<std::int64_t>{0, 1, 2}));
   EXPECT_EQ(GlobalIds(std::vector<std::int64_t>()).size(), 0);
 }
-
-/// A force that is given.
-template <int dim>
-struct GivenForce : ParticleForce<dim>
-{
-  void compute(Particles<dim> &, double) override {}
-  double potential_energy(const Particles<dim> &) const override { return 0; }
-  double stable_step(const Particles<dim> &) const override { return 1; }
-  ElasticConstants<dim> elastic_constants() const override { return {}; }
-  void set_energy_weights(const std::vector<double> &) override {}
-  void add_tangent(const Particles<dim> &, const std::function<void(const QuadraticTerm<dim> &)> &,
-                   const std::vector<int> *) const override
-  {
-  }
-  void for_each_face(const Particles<dim> &, const std::function<void(const FaceView<dim> &)> &,
-                     const std::vector<int> *) const override
-  {
-  }
-};
 
 template <int dim>
 void check_kick()

@@ -3,6 +3,7 @@
 #include "core/dashpots.h"
 #include "particles/block_sum.h"
 #include "particles/particle_solver.h"
+#include "tests/unit/particles/given_force.h"
 
 #include <gtest/gtest.h>
 
@@ -15,25 +16,6 @@ namespace ligament::particles
 {
 namespace
 {
-/// A force that is given.
-template <int dim>
-struct GivenForce : ParticleForce<dim>
-{
-  void compute(Particles<dim> &, double) override {}
-  double potential_energy(const Particles<dim> &) const override { return 0; }
-  double stable_step(const Particles<dim> &) const override { return 1; }
-  ElasticConstants<dim> elastic_constants() const override { return {}; }
-  void set_energy_weights(const std::vector<double> &) override {}
-  void add_tangent(const Particles<dim> &, const std::function<void(const QuadraticTerm<dim> &)> &,
-                   const std::vector<int> *) const override
-  {
-  }
-  void for_each_face(const Particles<dim> &, const std::function<void(const FaceView<dim> &)> &,
-                     const std::vector<int> *) const override
-  {
-  }
-};
-
 template <int dim>
 using Solver = ParticleSolver<dim>;
 
