@@ -189,7 +189,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
                 fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
                 "the load will not reach its value", "");
   }
-  if (scene.loads.empty() && f.sound({"/loads"}))
+  if (scene.loads.empty() && !scene.time.has_phases() && f.sound({"/loads"}))
     f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
 }
 } // namespace ligament::program

@@ -57,6 +57,9 @@ void check_inclusions(const Scene &scene, const Box &specimen, const Layout *lay
 void check_fracture(const FractureParameters &fracture, const std::string &section,
                     const DiscreteZone &zone, Findings &findings);
 
+/// What loading by equilibria asks of loads, supports, damping and rest.
+void check_phases(const Scene &scene, Findings &findings);
+
 /// Loads against each other, and against the overlap. `layout` as above.
 void check_loads(const Scene &scene, const Layout *layout, Findings &findings);
 } // namespace ligament::program

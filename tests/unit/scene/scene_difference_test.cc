@@ -60,5 +60,11 @@ TEST(SceneDifference, OnlyALongerDurationAndOutputsDoNotMatter)
   EXPECT_EQ(keys(differences_that_matter(other, scene)), (Keys{"/time/duration"}));
   other["time"]["stop_when"] = "specimen_broken";
   EXPECT_EQ(keys(differences_that_matter(scene, other)), (Keys{"/time/stop_when"}));
+  Json phases = scene;
+  phases["time"]["loading"] = "static";
+  phases["time"]["calm"] = 4.0;
+  phases["time"]["static_solver"] = "cholesky";
+  EXPECT_EQ(keys(differences_that_matter(scene, phases)),
+            (Keys{"/time/loading", "/time/calm", "/time/static_solver"}));
 }
 } // namespace
