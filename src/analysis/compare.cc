@@ -5,6 +5,7 @@
 #include "src/analysis/compared_side.h"
 #include "src/analysis/crack_path.h"
 #include "src/analysis/field_error.h"
+#include "src/analysis/phases.h"
 #include "src/drawing/html.h"
 #include "src/drawing/plot.h"
 #include "src/output/broken_bonds.h"
@@ -359,6 +360,12 @@ private:
       return f ? fmt::format("{:.2f} x", *f) : "-";
     };
     line("particles", grouped(a.particles), grouped(b.particles), factor(r_.particle_ratio));
+    if (!a.phases.empty() || !b.phases.empty()) {
+      const auto skipped = [](const RunRecord &r) { return grouped(totals(r).skipped); };
+      line("steps", grouped(steps_done(a)), grouped(steps_done(b)),
+           factor(ratio(double(steps_done(b)), double(steps_done(a)))));
+      line("  skipped by static phases", skipped(a), skipped(b), "");
+    }
     line("wall time", duration(a.wall_seconds), duration(b.wall_seconds), factor(r_.time_ratio));
   }
 

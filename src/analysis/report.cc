@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "src/analysis/phases.h"
 #include "src/analysis/verdict.h"
 #include "src/drawing/html.h"
 #include "src/drawing/plot.h"
@@ -168,7 +169,9 @@ std::string model(const RunRecord &r)
     add("far field steps once per", fmt::format("{} steps", r.step_ratio));
   if (!r.regime.empty())
     add("regime of the overlap", r.regime);
-  add("steps", grouped(r.steps));
+  add("steps", grouped(steps_done(r)));
+  if (!r.phases.empty())
+    add("steps that static phases skipped", grouped(totals(r).skipped));
   add("simulated time", quantity(r.simulated_time, "s"));
   add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));
   const std::string most = r.peak_load ? "peak" : "largest";
@@ -266,7 +269,8 @@ std::string write_report(const std::string &run_folder, const std::vector<std::s
   std::string body = paragraph("headline", headline(record));
   body += paragraph(is_stable(record) ? "verdict" : "verdict bad",
                     record.verdict.empty() ? verdict(record) : record.verdict);
-  body += warnings(record) + pictures(fields.empty() ? folder : place, record);
+  body +=
+      warnings(record) + phases_section(record) + pictures(fields.empty() ? folder : place, record);
   if (std::filesystem::exists(folder.history())) {
     const Table history = read_history(folder, record);
     body +=

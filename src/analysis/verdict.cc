@@ -1,5 +1,6 @@
 #include "src/analysis/verdict.h"
 
+#include "src/analysis/phases.h"
 #include "src/output/format.h"
 
 #include <fmt/core.h>
@@ -31,9 +32,10 @@ std::string model_part(const RunRecord &r)
     return fmt::format("{} cells", grouped(r.cells));
   if (r.kind == "pure_dem") {
     std::string text = grouped(r.particles) + " particles";
-    if (r.wall_seconds > 0)
+    const double seconds = r.phases.empty() ? r.wall_seconds : totals(r).dynamic_s;
+    if (seconds > 0)
       text += fmt::format(", {:.3g} million particle-steps per second",
-                          1e-6 * double(r.particles) * double(r.steps) / r.wall_seconds);
+                          1e-6 * double(r.particles) * double(steps_done(r)) / seconds);
     return text;
   }
   std::string text =
@@ -74,9 +76,10 @@ bool is_stable(const RunRecord &r)
                       [](const RunWarning &w) { return w.energy.has_value(); });
 }
 
+// What equilibria of the pure discrete model would cost is not measured by steps.
 std::optional<double> predicted_saving(const RunRecord &r)
 {
-  if (r.particles == 0 || r.equivalent_particles == 0 || !r.discrete_seconds ||
+  if (!r.phases.empty() || r.particles == 0 || r.equivalent_particles == 0 || !r.discrete_seconds ||
       !(*r.discrete_seconds > 0) || !(r.wall_seconds > 0))
     return {};
   // Both models take the same number of steps: the coupler leaves the critical step alone.
@@ -87,6 +90,8 @@ std::optional<double> predicted_saving(const RunRecord &r)
 std::string verdict(const RunRecord &r)
 {
   std::vector<std::string> parts = {model_part(r)};
+  if (!r.phases.empty())
+    parts.push_back(phases_sentence(r));
   if (r.energy_residual)
     parts.push_back(residual_part(*r.energy_residual));
   if (r.status != "running" && !r.is_complete())

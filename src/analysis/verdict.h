@@ -9,7 +9,8 @@
 namespace ligament::program
 {
 /// Wall time of the pure discrete model of the same specimen over the wall time of this run, with
-/// the time per particle and step that this run measured. Empty when a figure is missing.
+/// the time per particle and step that this run measured. Empty when a figure is missing, and for runs
+/// with phases.
 std::optional<double> predicted_saving(const RunRecord &record);
 
 /// A warning with the energy that it cost.

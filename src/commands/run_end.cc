@@ -1,6 +1,7 @@
 #include "src/commands/run_end.h"
 
 #include "core/tell.h"
+#include "src/analysis/phases.h"
 #include "src/analysis/report.h"
 #include "src/analysis/verdict.h"
 #include "src/commands/peak_memory.h"
@@ -70,6 +71,12 @@ int end_of_run(const CommandLine &line, const std::string &name, const RunFolder
                                    {"energy_residual", nullptr},
                                    {"warnings", nlohmann::ordered_json::array()},
                                    {"output", folder.path}};
+    if (!record.phases.empty()) {
+      const PhaseTotals t = totals(record);
+      json["static_phases"] = t.n_static;
+      json["steps_skipped"] = t.skipped;
+      json["solves"] = t.solves;
+    }
     if (record.peak_load)
       json["peak_load"] = *record.peak_load;
     if (record.largest_load)

@@ -32,6 +32,8 @@ constexpr long phase_row_interval = 50;
 
 // Of the external work: a change of regime that takes more is worth a warning.
 constexpr double largest_regime_change = 1e-3;
+// Likewise: settling that takes more is a loss that the scene did not ask for.
+constexpr double largest_settled = 0.02;
 
 template <int dim>
 std::int64_t n_broken(const CoupledBody<dim> &body)
@@ -119,7 +121,11 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
                                            const coupling::StepTime &step, double damping)
 {
   const int ratio = body.coupler->step_ratio();
-  snapshots_.look(body, step, ratio * step.dt, keeps_copies(body));
+  const bool copies = keeps_copies(body);
+  if (in_static_phase_)
+    snapshots_.look_at_equilibrium(body, step, copies);
+  else
+    snapshots_.look(body, step, ratio * step.dt, copies);
   if (const auto finding = guard_.look(body))
     if (const auto stop = report_excess(*finding, step))
       return stop;
@@ -276,6 +282,10 @@ void Recorder<dim>::add_warnings(const CoupledBody<dim> &body, RunRecord &record
   if (std::abs(body.regime_change) > largest_regime_change * record.external_work.value_or(0))
     record.warnings.push_back(
         {"the change of regime took energy that no load had put in", body.regime_change});
+  if (std::abs(body.settled) > largest_settled * record.external_work.value_or(0))
+    record.warnings.push_back({"settling into equilibria took energy that was still in waves: "
+                               "/damping or absorbing sides take it as it comes",
+                               body.settled});
 }
 
 template <int dim>

@@ -66,16 +66,34 @@ Motion<dim> between(const Motion<dim> &before, const Motion<dim> &after, double 
 }
 
 template <int dim>
+Motion<dim> in_proportion(const Motion<dim> &before, const Motion<dim> &after, double time)
+{
+  const double interval = after.time - before.time, share = (time - before.time) / interval;
+  Motion<dim> m = before;
+  m.time = time;
+  for (int k = 0; k < dim; ++k)
+    for (std::size_t i = 0; i < m.displacement[k].size(); ++i) {
+      const double rise = after.displacement[k][i] - before.displacement[k][i];
+      m.displacement[k][i] += share * rise;
+      m.velocity[k][i] = rise / interval;
+    }
+  return m;
+}
+
+template <int dim>
 void SnapshotKeeper<dim>::look(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                double interval, bool wanted)
 {
   if (!body.zone || step.step == 0)
     return;
-  if (next_ == 0)
+  // After a jump in time: common times that were jumped over, a copy with which nothing is due.
+  const double slack = 0.5 * interval;
+  if (next_ == 0 || (!before_ && next_ < step.time - slack))
     next_ = common_time(common_time_index(step.time) + 1);
+  if (before_ && (next_ > step.time + slack || step.time - before_->time < slack))
+    before_.reset();
   if (before_) {
-    std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
-    kept_[0] = between(*before_, motion(body, step.time), step.dt, next_);
+    keep(between(*before_, motion(body, step.time), step.dt, next_));
     before_.reset();
     next_ = common_time(common_time_index(step.time) + 1);
   }
@@ -85,6 +103,34 @@ void SnapshotKeeper<dim>::look(const CoupledBody<dim> &body, const coupling::Ste
     before_ = motion(body, step.time);
   else
     next_ = common_time(common_time_index(step.time + interval) + 1);
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::look_at_equilibrium(const CoupledBody<dim> &body,
+                                              const coupling::StepTime &step, bool wanted)
+{
+  if (!body.zone)
+    return;
+  if (step.time == 0) { // no common time lies before it, and all do after
+    before_ = motion(body, 0);
+    return;
+  }
+  const int last = common_time_index(step.time);
+  if (before_ && before_->time < step.time)
+    for (int k = last - int(kept_.size()) + 1; k <= last; ++k) // no more would be kept
+      if (const double time = common_time(k); time > before_->time && time >= next_)
+        keep(in_proportion(*before_, motion(body, step.time), time));
+  next_ = common_time(last + 1);
+  before_.reset();
+  if (wanted)
+    before_ = motion(body, step.time);
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::keep(const Motion<dim> &motion)
+{
+  std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
+  kept_[0] = motion;
 }
 
 template <int dim>
@@ -141,6 +187,8 @@ void SnapshotKeeper<dim>::load(const core::State &state,
 
 template Motion<2> between(const Motion<2> &, const Motion<2> &, double, double);
 template Motion<3> between(const Motion<3> &, const Motion<3> &, double, double);
+template Motion<2> in_proportion(const Motion<2> &, const Motion<2> &, double);
+template Motion<3> in_proportion(const Motion<3> &, const Motion<3> &, double);
 template class SnapshotKeeper<2>;
 template class SnapshotKeeper<3>;
 } // namespace ligament::program

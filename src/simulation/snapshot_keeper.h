@@ -26,6 +26,10 @@ struct Motion
 template <int dim>
 Motion<dim> between(const Motion<dim> &before, const Motion<dim> &after, double dt, double time);
 
+/// The same between two equilibria, where displacements grow at constant rates.
+template <int dim>
+Motion<dim> in_proportion(const Motion<dim> &before, const Motion<dim> &after, double time);
+
 /// Runs of one scene with other meshes, zones or steps stop at other times: the motion at exactly
 /// the common times (see common_time_index) is the cubic through positions and velocities of the
 /// two looks around them.
@@ -39,6 +43,11 @@ public:
   void look(const CoupledBody<dim> &body, const coupling::StepTime &step, double interval,
             bool wanted);
 
+  /// The same in a static phase, at equilibria any time apart: between two of them the body moves
+  /// in proportion to time.
+  void look_at_equilibrium(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                           bool wanted);
+
   /// Writes what was kept, the latest first.
   void write(const CoupledBody<dim> &body, const RunFolder &folder) const;
 
@@ -50,6 +59,8 @@ public:
             BodyNames<dim> &names);
 
 private:
+  void keep(const Motion<dim> &motion);
+
   std::array<std::optional<Motion<dim>>, 3> kept_; // the later one first
   std::optional<Motion<dim>> before_; // at the last look, when a common time follows it
   double next_ = 0;                   // s, common time; 0 before the first look

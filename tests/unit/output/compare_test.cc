@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -50,6 +51,30 @@ TEST(Compare, FindsTheFactorsBetweenTwoRuns)
   EXPECT_TRUE(r.notes.empty()) << table(r);
   EXPECT_NE(r.plot.find("<svg"), std::string::npos);
   EXPECT_EQ(r.file_name, "compare_b");
+}
+
+// A run by equilibria beside one by steps: how many each of them did.
+TEST(Compare, CountsTheStepsOfPhases)
+{
+  SyntheticRun().write("stepped");
+  const RunFolder folder = SyntheticRun().write("by_equilibria");
+  EXPECT_EQ(table(compare("by_equilibria", "stepped")).find("skipped"), std::string::npos);
+  RunRecord record = read_run_record(folder.record());
+  record.phases = {{"static", 0, 1, 0, 64000, 3, 84, 0, 1, "a bond breaks", 1},
+                   {"dynamic", 1, 2, 2000, 0, 0, 0, 0, 77, "end", 1}};
+  write_run_record(folder.record(), record);
+  const RunFolder stepped{"stepped"};
+  record = read_run_record(stepped.record());
+  record.steps = 66000;
+  write_run_record(stepped.record(), record);
+  const CompareResult r = compare("by_equilibria", "stepped");
+  const auto line =
+      std::find_if(r.lines.begin(), r.lines.end(), [](const auto &l) { return l.name == "steps"; });
+  ASSERT_NE(line, r.lines.end());
+  EXPECT_EQ(line->run, "2 000");
+  EXPECT_EQ(line->reference, "66 000");
+  EXPECT_EQ(line->difference, "33.00 x");
+  EXPECT_NE(table(r).find("skipped by static phases"), std::string::npos);
 }
 
 // The run breaks first, and its last state is too near to its onset.

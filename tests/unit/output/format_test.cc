@@ -1,6 +1,7 @@
 // Numbers as people read them.
 #include "src/output/format.h"
 
+#include "src/analysis/phases.h"
 #include "src/analysis/verdict.h"
 #include "src/output/progress.h"
 
@@ -60,6 +61,43 @@ TEST(Verdict, ScalesTheMeasuredRateToThePureModel)
   EXPECT_EQ(verdict(r).find("nothing unstable"), std::string::npos);
   r.discrete_seconds = {};
   EXPECT_FALSE(predicted_saving(r));
+}
+
+// What the pure discrete model's equilibria would cost is not known: no saving is claimed.
+TEST(Verdict, SaysWhatPhasesStoodFor)
+{
+  RunRecord r;
+  r.kind = "coupled";
+  r.status = "done";
+  r.particles = 8700;
+  r.cells = 2350;
+  r.equivalent_particles = 121000;
+  r.wall_seconds = 20;
+  r.discrete_seconds = 12;
+  r.energy_residual = 3e-5;
+  r.steps = 121000000;
+  r.phases = {{"static", 0, 4, 0, 120000000, 3, 90, 5e4, 1, "a bond is to break", 1.5},
+              {"dynamic", 4, 4.1, 24000, 0, 0, 0, 4e4, 80, "calm", 6},
+              {"static", 4.1, 5, 0, 976000, 2, 60, 5e3, 0, "end", 0.5}};
+  EXPECT_FALSE(predicted_saving(r));
+  EXPECT_EQ(steps_done(r), 24000);
+  EXPECT_EQ(verdict(r), "8 700 particles and 2 350 cells stood for 121 000 particles; 2 static "
+                        "phases and 24 000 steps stood for 121 000 000 steps; energy residual "
+                        "3e-05; nothing unstable");
+  r.kind = "pure_dem"; // 8700 * 24000 / 6 s, not / 20 s
+  EXPECT_NE(verdict(r).find(", 34.8 million particle-steps per second"), std::string::npos)
+      << verdict(r);
+  const PhaseTotals t = totals(r);
+  EXPECT_EQ(t.n_static, 2);
+  EXPECT_EQ(t.n_dynamic, 1);
+  EXPECT_EQ(t.broken, 81);
+  EXPECT_EQ(t.solves, 5);
+  EXPECT_EQ(t.iterations, 150);
+  EXPECT_EQ(t.static_s, 2);
+
+  r.phases.clear();
+  EXPECT_EQ(steps_done(r), r.steps);
+  EXPECT_EQ(phases_section(r), "");
 }
 
 TEST(Verdict, SaysWhereTheBalanceIsNotClosed)

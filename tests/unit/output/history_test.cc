@@ -45,6 +45,26 @@ TEST(History, GivesTheSameNumbersBack)
   EXPECT_THROW(writer.set("laod", 1), core::InputError);
 }
 
+// Phases add columns and change none.
+TEST(History, HasColumnsForPhases)
+{
+  for (const int dimension : {2, 3}) {
+    std::vector<Column> without = history_columns(dimension), with;
+    std::vector<std::string> added;
+    for (const Column &column : history_columns(dimension, true))
+      if (column.name == "settled" || column.name == "static")
+        added.push_back(column.name + " in " + column.unit);
+      else
+        with.push_back(column);
+    EXPECT_EQ(added, (std::vector<std::string>{"settled in J", "static in 1"}));
+    ASSERT_EQ(with.size(), without.size());
+    for (std::size_t c = 0; c < with.size(); ++c) {
+      EXPECT_EQ(with[c].name, without[c].name);
+      EXPECT_EQ(with[c].unit, without[c].unit);
+    }
+  }
+}
+
 TEST(History, RowsReachTheDiskAtTheirInterval)
 {
   HistoryWriter writer("buffered.csv", {{"time", "s"}}, 3);

@@ -43,7 +43,7 @@ TEST(Manual, NamesTheColumnsOfTheHistory)
 {
   const std::string text = section("history.csv");
   for (const int dimension : {2, 3})
-    for (const Column &column : history_columns(dimension)) {
+    for (const Column &column : history_columns(dimension, true)) {
       expect_named(text, column.name);
       if (column.name != "crack_length")
         expect_unit(text, column.name, column.unit);
@@ -102,6 +102,7 @@ TEST(Manual, NamesTheKeysOfTheRecord)
   record.skipped.resize(1);
   record.states.resize(1);
   record.pictures.resize(1);
+  record.phases.resize(1);
   write_run_record("keys.json", record);
   expect_keys(nlohmann::json::parse(core::read_file("keys.json")),
               section("Figures of the report, keys of run.json"));

@@ -39,6 +39,8 @@ TEST(RunRecord, ComesBackWhole)
   r.trusted_until = 2e-4;
   r.broken_in_overlap = 7;
   r.warnings = {{"a face broke", 1e-3}, {"a key is not used"}};
+  r.phases = {{"static", 0, 12.5, 0, 120000000, 3, 84, -1.5e5, 1, "a bond is to break", 2.25},
+              {"dynamic", 12.5, 12.6, 40000, 0, 0, 0, -1e5, 77, "calm", 9}};
   write_run_record("run.json", r);
   const RunRecord back = read_run_record("run.json");
   EXPECT_EQ(back.title, r.title);
@@ -62,6 +64,19 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.states[0].particles, "fields/particles_peak.vtp");
   EXPECT_EQ(back.states[0].cells, "");
 
+  ASSERT_EQ(back.phases.size(), 2u);
+  EXPECT_EQ(back.phases[0].kind, "static");
+  EXPECT_EQ(back.phases[0].end, 12.5);
+  EXPECT_EQ(back.phases[0].steps_skipped, 120000000);
+  EXPECT_EQ(back.phases[0].solves, 3);
+  EXPECT_EQ(back.phases[0].iterations, 84);
+  EXPECT_EQ(back.phases[0].load, -1.5e5);
+  EXPECT_EQ(back.phases[0].seconds, 2.25);
+  EXPECT_EQ(back.phases[1].begin, 12.5);
+  EXPECT_EQ(back.phases[1].steps, 40000);
+  EXPECT_EQ(back.phases[1].broken, 77);
+  EXPECT_EQ(back.phases[1].reason, "calm");
+
   EXPECT_EQ(back.trusted_until, r.trusted_until);
   EXPECT_EQ(back.broken_in_overlap, 7);
   ASSERT_EQ(back.warnings.size(), 2u);
@@ -75,6 +90,14 @@ TEST(RunRecord, ComesBackWhole)
   const auto json = nlohmann::json::parse(core::read_file("run.json"));
   EXPECT_TRUE(json.at("stiffness").is_null());
   EXPECT_EQ(json.at("complete"), false);
+}
+
+// Records of runs by steps alone, and those of before, know no phases.
+TEST(RunRecord, NamesNoPhasesWhereThereAreNone)
+{
+  write_run_record("steps.json", {});
+  EXPECT_FALSE(nlohmann::json::parse(core::read_file("steps.json")).contains("phases"));
+  EXPECT_TRUE(read_run_record("steps.json").phases.empty());
 }
 
 TEST(RunRecord, RefusesDamage)

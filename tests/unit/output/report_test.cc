@@ -3,6 +3,7 @@
 
 #include "core/check.h"
 #include "src/analysis/compare.h"
+#include "src/analysis/phases.h"
 #include "src/analysis/verdict.h"
 #include "src/drawing/drawing.h"
 #include "src/output/format.h"
@@ -73,6 +74,42 @@ TEST(Report, DrawsOtherFieldsFromTheKeptStates)
   EXPECT_EQ(text.find("of the run<"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder.pictures() + "/peak_velocity.png"));
   EXPECT_THROW(write_report("redrawn", {"veloctiy"}), core::InputError);
+}
+
+// One row per phase; the page says how many steps were done. Long tables are folded.
+TEST(Report, ListsThePhases)
+{
+  const RunFolder folder = SyntheticRun().write("phases");
+  EXPECT_EQ(core::read_file(write_report("phases")).find("Phases"), std::string::npos);
+  RunRecord record = read_run_record(folder.record());
+  const PhaseEntry equilibrium{"static", 0, 12, 0, 1230000, 3, 84, 5e4, 1, "a bond <breaks>", 2.25},
+      steps{"dynamic", 12, 12.001, 4321, 0, 0, 0, 4e4, 77, "calm", 9};
+  record.phases = {equilibrium, steps};
+  write_run_record(folder.record(), record);
+  const std::string text = core::read_file(write_report("phases"));
+  EXPECT_NO_THROW(tests::parse_xml(text));
+  const auto row = [](const std::vector<std::string> &cells) {
+    std::string html = "<tr>";
+    for (const std::string &cell : cells)
+      html += "<td>" + cell + "</td>";
+    return html + "</tr>";
+  };
+  for (const std::string &part :
+       {row({"1", "static", "0 s", "12.0 s", "50.0 kN", "1", "-", "1 230 000", "3", "84", "2.2 s",
+             "a bond &lt;breaks&gt;"}),
+        row({"2", "dynamic", "12.0 s", "1.00 ms", "40.0 kN", "77", "4 321", "-", "-", "-", "9 s",
+             "calm"}),
+        row({"steps", "4 321"}), row({"steps that static phases skipped", "1 230 000"}),
+        std::string("78 faces broke")})
+    EXPECT_NE(text.find(part), std::string::npos) << part << phases_section(record);
+  EXPECT_EQ(text.find("<details><summary>All"), std::string::npos);
+
+  for (int k = 0; k < 30; ++k)
+    record.phases.push_back(steps);
+  write_run_record(folder.record(), record);
+  const std::string folded = core::read_file(write_report("phases"));
+  EXPECT_NO_THROW(tests::parse_xml(folded));
+  EXPECT_NE(folded.find("<details><summary>All 32</summary>"), std::string::npos);
 }
 
 TEST(Report, NeedsNoMoreThanTheRecord)

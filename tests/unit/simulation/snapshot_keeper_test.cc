@@ -64,4 +64,51 @@ TEST(SnapshotKeeper, KeepsTheLastCommonTimesThatAreWanted)
     EXPECT_EQ(s.reference[0], state.reference[0][0]);
   }
 }
+
+// Steps, a jump of equilibria 10 s apart, and steps again: what is kept lies on the motion of all.
+TEST(SnapshotKeeper, JumpsInTimeAreFilledInProportion)
+{
+  SmallBody small(small_scene());
+  auto &state = small.body.zone->state;
+  const RunFolder folder{"jumps"};
+  folder.create();
+  coupling::StepTime step{0, 0, 0.5};
+  SnapshotKeeper<2> keeper;
+  const auto look = [&](double time, bool is_static) {
+    step.time = time;
+    step.step = long(time / step.dt);
+    for (double &u : state.displacement[0])
+      u = 3 * time;
+    for (double &v : state.velocity[0])
+      v = 3;
+    if (is_static)
+      keeper.look_at_equilibrium(small.body, step, true);
+    else
+      keeper.look(small.body, step, step.dt, true);
+  };
+  const auto expect_kept = [&](double until) {
+    for (const auto &file : folder.snapshots())
+      std::filesystem::remove(file);
+    keeper.write(small.body, folder);
+    const int last = common_time_index(until);
+    for (int k = 0; k < 3; ++k) {
+      const Snapshot s = read_snapshot(folder.snapshots()[k]);
+      EXPECT_EQ(s.time, common_time(last - k));
+      EXPECT_NEAR(s.displacement[0], 3 * s.time, 1e-10);
+      EXPECT_NEAR(s.velocity[0], 3, 1e-10);
+    }
+  };
+  for (double time = 0; time <= 100; time += 10)
+    look(time, true);
+  expect_kept(100);
+  for (double time = 100; time <= 110; time += step.dt) // the first one again, as steps begin
+    look(time, false);
+  expect_kept(110);
+  for (const double time : {110., 111., 150., 200.})
+    look(time, true);
+  expect_kept(200);
+  for (double time = 205; time <= 220; time += step.dt) // without the state in which they begin
+    look(time, false);
+  expect_kept(220);
+}
 } // namespace
