@@ -74,7 +74,7 @@ TEST(SnapshotKeeper, JumpsInTimeAreFilledInProportion)
   folder.create();
   coupling::StepTime step{0, 0, 0.5};
   SnapshotKeeper<2> keeper;
-  const auto look = [&](double time, bool is_static) {
+  const auto look = [&](double time, bool is_static, bool wanted = true) {
     step.time = time;
     step.step = long(time / step.dt);
     for (double &u : state.displacement[0])
@@ -82,9 +82,9 @@ TEST(SnapshotKeeper, JumpsInTimeAreFilledInProportion)
     for (double &v : state.velocity[0])
       v = 3;
     if (is_static)
-      keeper.look_at_equilibrium(small.body, step, true);
+      keeper.look_at_equilibrium(small.body, step, wanted);
     else
-      keeper.look(small.body, step, step.dt, true);
+      keeper.look(small.body, step, step.dt, wanted);
   };
   const auto expect_kept = [&](double until) {
     for (const auto &file : folder.snapshots())
@@ -110,5 +110,21 @@ TEST(SnapshotKeeper, JumpsInTimeAreFilledInProportion)
   for (double time = 205; time <= 220; time += step.dt) // without the state in which they begin
     look(time, false);
   expect_kept(220);
+
+  // Steps begin where an equilibrium was looked at just before a common time.
+  const double due = common_time(common_time_index(220) + 2);
+  look(220.5, true);
+  look(due - 0.1, true);
+  for (double time = due - 0.1; time < due + 3; time += step.dt)
+    look(time, false);
+  expect_kept(due + 3);
+
+  // What nobody wanted is not made up behind the jump.
+  look(300, true, false);
+  const double after = 400;
+  for (double time = after; time < after + 2; time += step.dt)
+    look(time, false);
+  keeper.write(small.body, folder);
+  EXPECT_LE(read_snapshot(folder.snapshots()[0]).time, 300);
 }
 } // namespace
