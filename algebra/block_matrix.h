@@ -86,9 +86,9 @@ private:
 
   int n_rows_;
   bool closed_ = false;
-  std::vector<int> member_;                     // of all terms, one after the other
-  std::vector<std::int64_t> term_start_ = {0};  // into member_
-  std::vector<std::pair<int, int>> order_;      // members of the present term, ascending, and places
+  std::vector<int> member_;                    // of all terms, one after the other
+  std::vector<std::int64_t> term_start_ = {0}; // into member_
+  std::vector<std::pair<int, int>> order_;     // members of the present term, ascending, and places
   BlockMatrix matrix_;
 };
 } // namespace ligament::algebra

@@ -52,7 +52,9 @@ cholmod_sparse *lower_half(const BlockMatrix &matrix, int size, cholmod_common &
   std::size_t n_entries = 0;
   for (int row = 0; row < matrix.n_rows(); ++row)
     for (auto k = matrix.row_start()[row]; k < matrix.row_start()[row + 1]; ++k)
-      n_entries += matrix.column()[k] > row ? b * b : matrix.column()[k] == row ? b * (b + 1) / 2 : 0;
+      n_entries += matrix.column()[k] > row    ? b * b
+                   : matrix.column()[k] == row ? b * (b + 1) / 2
+                                               : 0;
   core::require<core::EnvironmentError>(n_entries < std::size_t(std::numeric_limits<int>::max()),
                                         "Cholesky: too many unknowns; take multigrid");
   const std::size_t n = std::size_t(matrix.n_rows()) * b;
@@ -83,7 +85,8 @@ cholmod_sparse *lower_half(const BlockMatrix &matrix, int size, cholmod_common &
 }
 
 /// An order of the unknowns that keeps the factor thin, found on whole blocks.
-std::vector<int> order_unknowns(const BlockMatrix &matrix, Ordering ordering, cholmod_common &common)
+std::vector<int> order_unknowns(const BlockMatrix &matrix, Ordering ordering,
+                                cholmod_common &common)
 {
   cholmod_sparse *blocks = lower_half(matrix, 0, common);
   std::vector<int> of_blocks(matrix.n_rows());

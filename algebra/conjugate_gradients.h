@@ -47,9 +47,10 @@ private:
 
 /// Solves A x = right from x on (zero where it is empty). apply(p, ap): ap = A p, A symmetric and
 /// not negative, right in its range. precondition(r, z): z near A^-1 r, symmetric and positive.
-/// project(v): takes out of v the motions that nothing resists, orthogonally (may do nothing). Stops
-/// at |r| <= tolerance (absolute). The residual is carried along; where round-off could have led it
-/// astray by a tenth of the tolerance it is taken anew, and the search ends when that no longer helps.
+/// project(v): takes out of v the motions that nothing resists, orthogonally (may do nothing).
+/// Stops at |r| <= tolerance (absolute). The residual is carried along; where round-off could have
+/// led it astray by a tenth of the tolerance it is taken anew, and the search ends when that no
+/// longer helps.
 template <typename Apply, typename Precondition, typename Project>
 CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project &&project,
                              const Eigen::VectorXd &right, Eigen::VectorXd &x, double tolerance,
@@ -81,7 +82,8 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
     if (since > 0 && (result.residual <= tolerance || result.residual <= doubt)) {
       if (since * doubt > 0.1 * tolerance)
         renew_residual();
-      if (result.residual > tolerance && (result.residual > 0.5 * renewed || result.residual <= doubt))
+      if (result.residual > tolerance &&
+          (result.residual > 0.5 * renewed || result.residual <= doubt))
         return result;
       renewed = result.residual;
       since = 0;

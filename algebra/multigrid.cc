@@ -8,11 +8,12 @@
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
-#include <mpi.h>
 #include <ml_MultiLevelPreconditioner.h>
+#include <mpi.h>
 
 #include <cstdlib>
 #include <limits>
+#include <vector>
 
 namespace ligament::algebra
 {
@@ -114,20 +115,33 @@ class Multigrid : public Preconditioner
 {
 public:
   Multigrid(const BlockMatrix &matrix, const Eigen::MatrixXd &modes)
-      : modes_(modes), communicator_(MPI_COMM_SELF), map_(int(matrix.n_unknowns()), 0, communicator_),
-        rows_(matrix, map_), levels_(rows_, settings(matrix, modes_), false)
+      : modes_(modes), communicator_(MPI_COMM_SELF),
+        map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
+        levels_(rows_, settings(matrix, modes_), false)
   {
     core::require<core::EnvironmentError>(levels_.ComputePreconditioner() == 0,
                                           "multigrid: ML cannot make its levels");
+    const Eigen::VectorXd diagonal = matrix.diagonal();
+    for (Eigen::Index k = 0; k < diagonal.size(); ++k)
+      if (diagonal[k] == 0)
+        inert_.push_back(int(k));
   }
 
   void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const override
   {
+    // Coarse functions may reach into inert unknowns: these are passed by, there and back.
+    const bool is_asked = (r(inert_).array() != 0).any();
+    Eigen::VectorXd others;
+    if (is_asked) {
+      others = r;
+      others(inert_).setZero();
+    }
     z.resize(r.size());
-    const Epetra_Vector right(View, map_, const_cast<double *>(r.data()));
+    const Epetra_Vector right(View, map_, const_cast<double *>((is_asked ? others : r).data()));
     Epetra_Vector result(View, map_, z.data());
-    core::require<core::EnvironmentError>(levels_.ApplyInverse(right, result) == 0,
-                                          "multigrid: ML failed");
+    const int failed = levels_.ApplyInverse(right, result);
+    core::require<core::EnvironmentError>(failed == 0, "multigrid: ML failed");
+    z(inert_) = r(inert_);
   }
 
   const char *name() const override { return "multigrid"; }
@@ -138,14 +152,15 @@ private:
   Epetra_Map map_;
   Rows rows_;
   ML_Epetra::MultiLevelPreconditioner levels_;
+  std::vector<int> inert_; // unknowns without entries
 };
 } // namespace
 
 std::unique_ptr<Preconditioner> make_multigrid(const BlockMatrix &matrix,
                                                const Eigen::MatrixXd &modes)
 {
-  core::require<core::EnvironmentError>(
-      matrix.n_unknowns() < std::numeric_limits<int>::max(), "multigrid: too many unknowns");
+  core::require<core::EnvironmentError>(matrix.n_unknowns() < std::numeric_limits<int>::max(),
+                                        "multigrid: too many unknowns");
   core::require(modes.rows() == matrix.n_unknowns() && modes.cols() > 0,
                 "multigrid: the modes don't fit the matrix");
   need_mpi();

@@ -1,4 +1,5 @@
-// What makes conjugate gradients on a body's stiffness short: a factor of a matrix near it, or multigrid.
+// What makes conjugate gradients on a body's stiffness short: a factor of a matrix near it, or
+// multigrid.
 #pragma once
 
 #include "algebra/block_matrix.h"
@@ -31,9 +32,9 @@ public:
 /// matrix: not negative; it is copied or factorised, and need not outlive the call. Its diagonal is
 /// raised by 1e-9 of itself, so that motions that nothing resists don't matter; unknowns without
 /// entries (held components, rotations that nodes lack) keep what they are given. modes: near null
-/// space (rigid motions), one column each, n_rows * block_size long; multigrid needs them. dimension:
-/// 2 or 3, of space. Throws core::EnvironmentError where the matrix isn't positive definite
-/// (Cholesky) or the library fails.
+/// space (rigid motions), one column each, n_rows * block_size long; multigrid needs them.
+/// dimension: 2 or 3, of space. Throws core::EnvironmentError where the matrix isn't positive
+/// definite (Cholesky) or the library fails.
 std::unique_ptr<Preconditioner> make_preconditioner(Preconditioning kind, const BlockMatrix &matrix,
                                                     const Eigen::MatrixXd &modes, int dimension);
 } // namespace ligament::algebra
