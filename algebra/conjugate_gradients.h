@@ -1,0 +1,126 @@
+// Preconditioned conjugate gradients for operators that are given as functions.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ligament::algebra
+{
+struct CgResult
+{
+  enum class End
+  {
+    converged,
+    stalled,   // at round-off, or max_iterations
+    indefinite // a direction that nothing resists, or whose curvature is negative
+  };
+  int iterations = 0;
+  double residual = 0; // |right - A x|
+  End end = End::stalled;
+};
+
+/// How near the computed residual can come to the true one.
+class RoundOff
+{
+public:
+  explicit RoundOff(double right) : right_(right) {}
+
+  void see(double direction, double image, double x)
+  {
+    if (direction > 0)
+      scale_ = std::max(scale_, image / direction);
+    x_ = std::max(x_, x);
+  }
+  /// Largest |A v| / |v| so far: below the norm of A, soon near it.
+  double scale() const { return scale_; }
+  /// Of one evaluation of right - A x.
+  double of_residual() const { return epsilon * (right_ + scale_ * x_); }
+
+  static constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+private:
+  double right_, scale_ = 0, x_ = 0;
+};
+
+/// Solves A x = right from x on (zero where it is empty). apply(p, ap): ap = A p, A symmetric and
+/// not negative, right in its range. precondition(r, z): z near A^-1 r, symmetric and positive.
+/// project(v): takes out of v the motions that nothing resists, orthogonally (may do nothing).
+/// Stops at |r| <= tolerance (absolute). The residual is carried along; where round-off could have
+/// led it astray by a tenth of the tolerance it is taken anew, and the search ends when that no
+/// longer helps.
+template <typename Apply, typename Precondition, typename Project>
+CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project &&project,
+                             const Eigen::VectorXd &right, Eigen::VectorXd &x, double tolerance,
+                             int max_iterations)
+{
+  CgResult result;
+  Eigen::VectorXd r, z(right.size()), p, ap(right.size());
+  RoundOff round_off(right.norm());
+  const auto renew_residual = [&] {
+    apply(x, ap);
+    round_off.see(x.norm(), ap.norm(), x.norm());
+    r = right - ap;
+    project(r);
+    result.residual = r.norm();
+  };
+  if (x.size() == 0) {
+    x.setZero(right.size());
+    r = right;
+    project(r);
+    result.residual = r.norm();
+  } else
+    renew_residual();
+
+  double renewed = std::numeric_limits<double>::infinity(); // |r| when it was last taken anew
+  double rz_before = 0;
+  int since = 0; // iterations since then
+  while (true) {
+    const double doubt = round_off.of_residual();
+    if (since > 0 && (result.residual <= tolerance || result.residual <= doubt)) {
+      if (since * doubt > 0.1 * tolerance)
+        renew_residual();
+      if (result.residual > tolerance &&
+          (result.residual > 0.5 * renewed || result.residual <= doubt))
+        return result;
+      renewed = result.residual;
+      since = 0;
+    }
+    if (result.residual <= tolerance) {
+      result.end = CgResult::End::converged;
+      return result;
+    }
+    if (result.iterations == max_iterations)
+      return result;
+
+    precondition(r, z);
+    project(z);
+    const double rz = r.dot(z);
+    if (since == 0)
+      p = z;
+    else
+      p = z + (rz / rz_before) * p;
+    rz_before = rz;
+    apply(p, ap);
+    const double curvature = p.dot(ap), pp = p.squaredNorm();
+    round_off.see(std::sqrt(pp), ap.norm(), x.norm());
+    // Not above round-off (or not a number): nothing resists p, unless r is but noise already.
+    if (!(rz > 0) || !(curvature > RoundOff::epsilon * round_off.scale() * pp)) {
+      renew_residual();
+      if (result.residual <= tolerance)
+        result.end = CgResult::End::converged;
+      else if (!(result.residual <= 10 * round_off.of_residual()))
+        result.end = CgResult::End::indefinite;
+      return result;
+    }
+    const double step = rz / curvature;
+    x += step * p;
+    r -= step * ap;
+    result.residual = r.norm();
+    ++result.iterations;
+    ++since;
+  }
+}
+} // namespace ligament::algebra

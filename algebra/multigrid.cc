@@ -1,0 +1,169 @@
+#include "algebra/multigrid.h"
+
+#include "algebra/raised_diagonal.h"
+#include "core/check.h"
+
+#include <Epetra_BasicRowMatrix.h>
+#include <Epetra_Map.h>
+#include <Epetra_MpiComm.h>
+#include <Epetra_Vector.h>
+#include <Teuchos_ParameterList.hpp>
+#include <ml_MultiLevelPreconditioner.h>
+#include <mpi.h>
+
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+namespace ligament::algebra
+{
+namespace
+{
+/// ML calls MPI even on one process.
+void need_mpi()
+{
+  int is_there = 0, was_there = 0;
+  MPI_Initialized(&is_there);
+  if (is_there)
+    return;
+  MPI_Finalized(&was_there);
+  core::require<core::EnvironmentError>(!was_there, "multigrid: MPI has been shut down already");
+  int threads = 0;
+  core::require<core::EnvironmentError>(
+      MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads) == MPI_SUCCESS,
+      "multigrid: MPI doesn't start");
+  // Who starts it ends it.
+  std::atexit([] {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (!ended)
+      MPI_Finalize();
+  });
+}
+
+/// The rows of a block matrix, raised on the diagonal, as Trilinos asks for them.
+class Rows : public Epetra_BasicRowMatrix
+{
+public:
+  Rows(const BlockMatrix &matrix, const Epetra_Map &map)
+      : Epetra_BasicRowMatrix(map.Comm()), matrix_(matrix.copy())
+  {
+    SetMaps(map, map);
+    matrix_.for_each_diagonal([](double &entry) { entry = raised(entry); });
+  }
+
+  int NumMyRowEntries(int row, int &n) const override
+  {
+    const int b = matrix_.block_size();
+    n = b * int(matrix_.row_start()[row / b + 1] - matrix_.row_start()[row / b]);
+    return 0;
+  }
+
+  int ExtractMyRowCopy(int row, int length, int &n, double *values, int *columns) const override
+  {
+    NumMyRowEntries(row, n);
+    if (n > length)
+      return -1;
+    const int b = matrix_.block_size(), r = row % b;
+    for (auto k = matrix_.row_start()[row / b]; k < matrix_.row_start()[row / b + 1]; ++k)
+      for (int c = 0; c < b; ++c) {
+        *values++ = matrix_.value()[k * b * b + r * b + c];
+        *columns++ = matrix_.column()[k] * b + c;
+      }
+    return 0;
+  }
+
+  int Multiply(bool, const Epetra_MultiVector &x, Epetra_MultiVector &y) const override
+  {
+    for (int k = 0; k < x.NumVectors(); ++k)
+      matrix_.multiply(x[k], y[k]);
+    return 0;
+  }
+
+  int ExtractDiagonalCopy(Epetra_Vector &diagonal) const override
+  {
+    Eigen::Map<Eigen::VectorXd>(diagonal.Values(), diagonal.MyLength()) = matrix_.diagonal();
+    return 0;
+  }
+
+  // Entry by entry: only Epetra's own loops ask, which are replaced above.
+  int ExtractMyEntryView(int, double *&, int &, int &) override { return -1; }
+  int ExtractMyEntryView(int, double const *&, int &, int &) const override { return -1; }
+
+private:
+  BlockMatrix matrix_;
+};
+
+Teuchos::ParameterList settings(const BlockMatrix &matrix, Eigen::MatrixXd &modes)
+{
+  Teuchos::ParameterList list;
+  ML_Epetra::SetDefaults("SA", list);
+  list.set("ML output", 0);
+  list.set("PDE equations", matrix.block_size());
+  list.set("aggregation: type", "Uncoupled");
+  list.set("smoother: type", "Chebyshev");
+  list.set("smoother: sweeps", 3);
+  list.set("coarse: type", "Amesos-KLU");
+  list.set("null space: type", "pre-computed");
+  list.set("null space: dimension", int(modes.cols()));
+  list.set("null space: vectors", modes.data());
+  list.set("null space: add default vectors", false);
+  return list;
+}
+
+class Multigrid : public Preconditioner
+{
+public:
+  Multigrid(const BlockMatrix &matrix, const Eigen::MatrixXd &modes)
+      : modes_(modes), communicator_(MPI_COMM_SELF),
+        map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
+        levels_(rows_, settings(matrix, modes_), false)
+  {
+    core::require<core::EnvironmentError>(levels_.ComputePreconditioner() == 0,
+                                          "multigrid: ML cannot make its levels");
+    const Eigen::VectorXd diagonal = matrix.diagonal();
+    for (Eigen::Index k = 0; k < diagonal.size(); ++k)
+      if (diagonal[k] == 0)
+        inert_.push_back(int(k));
+  }
+
+  void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const override
+  {
+    // Coarse functions may reach into inert unknowns: these are passed by, there and back.
+    const bool is_asked = (r(inert_).array() != 0).any();
+    Eigen::VectorXd others;
+    if (is_asked) {
+      others = r;
+      others(inert_).setZero();
+    }
+    z.resize(r.size());
+    const Epetra_Vector right(View, map_, const_cast<double *>((is_asked ? others : r).data()));
+    Epetra_Vector result(View, map_, z.data());
+    const int failed = levels_.ApplyInverse(right, result);
+    core::require<core::EnvironmentError>(failed == 0, "multigrid: ML failed");
+    z(inert_) = r(inert_);
+  }
+
+  const char *name() const override { return "multigrid"; }
+
+private:
+  Eigen::MatrixXd modes_; // ML keeps a pointer
+  Epetra_MpiComm communicator_;
+  Epetra_Map map_;
+  Rows rows_;
+  ML_Epetra::MultiLevelPreconditioner levels_;
+  std::vector<int> inert_; // unknowns without entries
+};
+} // namespace
+
+std::unique_ptr<Preconditioner> make_multigrid(const BlockMatrix &matrix,
+                                               const Eigen::MatrixXd &modes)
+{
+  core::require<core::EnvironmentError>(matrix.n_unknowns() < std::numeric_limits<int>::max(),
+                                        "multigrid: too many unknowns");
+  core::require(modes.rows() == matrix.n_unknowns() && modes.cols() > 0,
+                "multigrid: the modes don't fit the matrix");
+  need_mpi();
+  return std::make_unique<Multigrid>(matrix, modes);
+}
+} // namespace ligament::algebra

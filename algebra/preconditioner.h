@@ -1,0 +1,40 @@
+// What makes conjugate gradients on a body's stiffness short: a factor of a matrix near it, or
+// multigrid.
+#pragma once
+
+#include "algebra/block_matrix.h"
+
+#include <memory>
+
+namespace ligament::algebra
+{
+enum class Preconditioning
+{
+  automatic, // Cholesky in 2D up to most_unknowns_to_factorise, multigrid else
+  cholesky,  // supernodal, of CHOLMOD
+  multigrid  // smoothed aggregation, of Trilinos ML
+};
+
+/// Above, multigrid is the faster one; below, Cholesky.
+inline constexpr std::int64_t most_unknowns_to_factorise = 200000;
+
+/// z near A^-1 r, symmetric and positive definite. One thread at a time.
+class Preconditioner
+{
+public:
+  virtual ~Preconditioner() = default;
+
+  virtual void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const = 0;
+
+  virtual const char *name() const = 0;
+};
+
+/// matrix: not negative; it is copied or factorised, and need not outlive the call. Its diagonal is
+/// raised by 1e-9 of itself, so that motions that nothing resists don't matter; unknowns without
+/// entries (held components, rotations that nodes lack) keep what they are given. modes: near null
+/// space (rigid motions), one column each, n_rows * block_size long; multigrid needs them.
+/// dimension: 2 or 3, of space. Throws core::EnvironmentError where the matrix isn't positive
+/// definite (Cholesky) or the library fails.
+std::unique_ptr<Preconditioner> make_preconditioner(Preconditioning kind, const BlockMatrix &matrix,
+                                                    const Eigen::MatrixXd &modes, int dimension);
+} // namespace ligament::algebra
