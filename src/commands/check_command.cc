@@ -5,6 +5,7 @@
 #include "src/commands/cost_advice.h"
 #include "src/commands/peak_memory.h"
 #include "src/commands/scene_picture.h"
+#include "src/commands/static_cost.h"
 #include "src/launcher/program.h"
 #include "src/output/run_folder.h"
 #include "src/simulation/make_packing.h"
@@ -54,6 +55,10 @@ int check(const CommandLine &line, const ReadResult &input)
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
   const double output = output_seconds(scene, body, steps);
   const double seconds = setup_seconds + steps * cost.seconds_per_step + output;
+  // By steps alone; a run with phases skips most of them, and how many nobody knows.
+  std::optional<StaticCost> equilibrium;
+  if (scene.time.has_phases())
+    equilibrium = static_cost(body);
   const int particles = body.zone ? body.zone->state.size() : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const auto *joined = body.coupler->overlap();
@@ -70,16 +75,21 @@ int check(const CommandLine &line, const ReadResult &input)
   if (joined)
     fmt::print("  far field            {:>12} steps of the zone per step; {:.4g} s is stable\n",
                body.coupler->step_ratio(), body.dt_far);
-  fmt::print("  steps                {:>12}\n", steps);
+  if (equilibrium)
+    fmt::print("{}", to_text(*equilibrium, scene));
+  fmt::print("  steps                {:>12}{}\n", steps,
+             equilibrium ? " without phases, which skip most of them" : "");
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
-  fmt::print("  predicted time       {:>12}{}\n", duration_text(seconds),
+  fmt::print("  predicted time       {:>12}{}{}\n", duration_text(seconds),
+             equilibrium ? " of a purely dynamic run, no more is known" : "",
              scene.time.stop_when == StopWhen::end ? "" : ", less if it breaks earlier");
   double saving = 0;
   std::optional<CostAdvice> advice;
   if (joined) {
     saving = cost.saving(body.equivalent_particles, particles);
-    fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements\n", saving);
-    if (saving < 1) {
+    fmt::print("  predicted saving     {:>11.1f}x against pure discrete elements{}\n", saving,
+               equilibrium ? ", in each time step" : "");
+    if (saving < 1 && !equilibrium) { // the advice counts steps
       advice = advise(input, body, cost);
       fmt::print("{}", to_text(*advice, particles));
     }
@@ -107,6 +117,13 @@ int check(const CommandLine &line, const ReadResult &input)
                                    {"built", true},
                                    {"not_checked", nlohmann::json::array()},
                                    {"errors", nlohmann::json::array()}};
+    if (equilibrium) {
+      json["predicted_seconds"] = json["output_seconds"] = nullptr;
+      json["dynamic_seconds"] = seconds;
+      json["loading"] = word_of(scene.time.loading);
+      json["phases"] = nullptr;
+      json["equilibrium"] = to_json(*equilibrium);
+    }
     if (advice)
       json["advice"] = to_json(*advice);
     fmt::print("{}\n", json_text(json));

@@ -141,7 +141,9 @@ void Sweep::finish_check(const Case &c, const ChildEnd &end)
 {
   if (end.code == 0) {
     const std::string line = last_line(core::read_file(folder_.case_file(c.id, "check.out")));
-    predicted_[c.id] = nlohmann::json::parse(line).at("predicted_seconds");
+    // Nothing is predicted of bodies too large to be built for it, and of runs with phases.
+    const auto seconds = nlohmann::json::parse(line).at("predicted_seconds");
+    predicted_[c.id] = seconds.is_number() ? seconds.get<double>() : 0;
     return;
   }
   const bool refused = end.code == 2 || end.code == 3;

@@ -18,20 +18,23 @@ struct Outcome
 {
   int code;
   std::string last_line; // of standard output
+  std::string output;    // all of it
   nlohmann::json json() const { return nlohmann::json::parse(last_line); }
 };
 
 Outcome ligament(const std::string &arguments)
 {
   std::FILE *pipe = popen((LIGAMENT_PROGRAM " " + arguments + " 2>/dev/null").c_str(), "r");
-  Outcome outcome{-1, ""};
+  Outcome outcome{-1, "", ""};
   std::string line;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) {
+    outcome.output += char(c);
     if (c == '\n') {
       outcome.last_line = line;
       line.clear();
     } else
       line += char(c);
+  }
   outcome.code = WEXITSTATUS(pclose(pipe));
   return outcome;
 }
@@ -76,6 +79,42 @@ TEST(Program, RunEndsWithTheFieldsThatScriptsRead)
     EXPECT_TRUE(std::filesystem::exists(std::string("run/") + file)) << file;
 }
 
+// Nobody knows how many phases there will be: the only prediction is that of a run by steps alone.
+TEST(Program, CheckPredictsNoTimeOfPhases)
+{
+  const std::string scene = scene_file("check_phases.json");
+  const auto checked = ligament("check " + scene + pulled +
+                                "--set /time/loading=static --set /damping/mass=0.01 "
+                                "--set /time/duration=1e9 --json");
+  EXPECT_EQ(checked.code, 0);
+  const auto json = checked.json();
+  EXPECT_TRUE(json["predicted_seconds"].is_null());
+  EXPECT_TRUE(json["phases"].is_null());
+  EXPECT_EQ(json["loading"], "static");
+  EXPECT_GT(json["steps"], 1e8);
+  EXPECT_TRUE(json["output_seconds"].is_null());
+  EXPECT_GT(json["dynamic_seconds"], 0);
+  // Particles that are no pads have two displacements and a spin, free nodes two displacements.
+  const int particles = json["particles"], cells = json["cells"];
+  EXPECT_GT(json["equilibrium"]["unknowns"], 2 * particles);
+  EXPECT_LT(json["equilibrium"]["unknowns"], 3 * particles + 2 * 4 * cells);
+  EXPECT_NE(checked.output.find("unknown number of phases"), std::string::npos) << checked.output;
+  EXPECT_NE(checked.output.find("of a purely dynamic run"), std::string::npos) << checked.output;
+}
+
+// Particles have two displacements and a rotation, nodes of the mesh of 6 x 29 cells two
+// displacements, and one where the load holds the other.
+TEST(Program, CheckCountsTheUnknownsOfAnEquilibrium)
+{
+  const std::string check = "check " + scene_file("unknowns.json") + pulled +
+                            "--set /time/loading=static --set /damping/mass=0.01 --json ";
+  const auto discrete = ligament(check + "--set /far_field=none").json();
+  EXPECT_EQ(discrete["equilibrium"]["unknowns"], 3 * int(discrete["particles"]));
+  const auto mesh = ligament(check + "--set /discrete_zone=none").json();
+  ASSERT_EQ(mesh["cells"], 6 * 29);
+  EXPECT_EQ(mesh["equilibrium"]["unknowns"], 2 * 7 * 30 - 7);
+}
+
 TEST(Program, CheckAndCompareEndWithTheFieldsThatScriptsRead)
 {
   const std::string scene = scene_file("check.json");
@@ -85,6 +124,8 @@ TEST(Program, CheckAndCompareEndWithTheFieldsThatScriptsRead)
                                      "steps", "memory_bytes", "errors"}),
             std::vector<std::string>());
   EXPECT_TRUE(checked.json()["errors"].empty());
+  EXPECT_GT(checked.json()["predicted_seconds"], 0);
+  EXPECT_FALSE(checked.json().contains("equilibrium"));
 
   std::filesystem::remove_all("a");
   std::filesystem::remove_all("b");
