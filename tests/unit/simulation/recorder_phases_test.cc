@@ -1,4 +1,5 @@
 // Rows, channels and warnings of runs whose time jumps; runs by steps alone know nothing of them.
+#include "src/simulation/body_state.h"
 #include "src/simulation/recorder.h"
 #include "tests/support/small_plate.h"
 
@@ -156,6 +157,14 @@ TEST(RecorderOfPhases, WarnsOfSettlingAboveTwoPercentOfTheWork)
       EXPECT_EQ(record.warnings[0].energy, share * work);
     }
   }
+}
+
+TEST(RecorderOfPhases, TheStateOfTheBodyHasWhatSettlingTook)
+{
+  SmallBody one(small_scene()), other(small_scene());
+  one.body.settled = 1.25;
+  give_state(take_state(one.body), other.body);
+  EXPECT_EQ(other.body.settled, 1.25);
 }
 
 TEST(RecorderOfPhases, GoesOnInsideAStaticPhase)
