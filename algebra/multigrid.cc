@@ -9,6 +9,7 @@
 #include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
 #include <ml_MultiLevelPreconditioner.h>
+#include <ml_utils.h>
 #include <mpi.h>
 
 #include <cstdlib>
@@ -119,6 +120,8 @@ public:
         map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
         levels_(rows_, settings(matrix, modes_), false)
   {
+    // Eigenvalues are estimated from a random vector on: the same matrix, the same levels.
+    ML_set_random_seed(1);
     core::require<core::EnvironmentError>(levels_.ComputePreconditioner() == 0,
                                           "multigrid: ML cannot make its levels");
     const Eigen::VectorXd diagonal = matrix.diagonal();
