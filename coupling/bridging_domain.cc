@@ -166,16 +166,21 @@ void BridgingDomain<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
   {
     const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
-    auto &zone = bodies.zone->state;
-    for (int c = 0; c < dim; ++c)
-      for (std::size_t i = 0; i < dead_[c].size(); ++i)
-        zone.force[c][i] += dead_[c][i];
-    for (int c = 0; c < n_spins<dim>; ++c)
-      for (std::size_t i = 0; i < dead_torque_[c].size(); ++i)
-        zone.torque[c][i] += dead_torque_[c][i];
+    add_dead_load(bodies.zone->state);
   }
   const auto timing = this->timers_.scope(this->far_);
   bodies.far->compute_forces(step.time);
+}
+
+template <int dim>
+void BridgingDomain<dim>::add_dead_load(particles::Particles<dim> &zone) const
+{
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t i = 0; i < dead_[c].size(); ++i)
+      zone.force[c][i] += dead_[c][i];
+  for (int c = 0; c < n_spins<dim>; ++c)
+    for (std::size_t i = 0; i < dead_torque_[c].size(); ++i)
+      zone.torque[c][i] += dead_torque_[c][i];
 }
 
 template <int dim>

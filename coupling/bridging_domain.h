@@ -30,6 +30,14 @@ public:
   double damp_velocities(Bodies<dim> &bodies, const StepTime &step, double factor) override;
   CoupledEnergy energy(const Bodies<dim> &bodies, const StepTime &step) const override;
 
+  void expand(particles::Particles<dim> &zone, Components<dim> &nodal) const override;
+  void restrict_forces(particles::Particles<dim> &zone, Components<dim> &nodal) const override;
+  void compute_trial(Bodies<dim> &bodies, double time, double noted_share,
+                     Components<dim> &nodal_force) const override;
+  void subtract_near_stiffness(const Components<dim> &u,
+                               Components<dim> &nodal_force) const override;
+  Eigen::SparseMatrix<double> near_stiffness() const override { return stiffness_; }
+
   void take_velocities(Bodies<dim> &bodies) override;
   void save(core::State &state, const Bodies<dim> &bodies) const override;
   void load(const core::State &state, Bodies<dim> &bodies) override;
@@ -44,6 +52,7 @@ public:
 
 private:
   void find_dead_load(Bodies<dim> &bodies);
+  void add_dead_load(particles::Particles<dim> &zone) const;
   bool corrects_at_whole_steps() const;
   void push(Bodies<dim> &bodies, double dt);
   void move(Bodies<dim> &bodies, double dt);

@@ -101,6 +101,30 @@ public:
   /// Of the near cells at present.
   virtual NearMotion largest_motion() const { return {}; }
 
+  // A body in equilibrium, theory.md section 6. Motions are the velocities and spins of the
+  // particles and a field of all nodes; forces those of the particles and a field of all nodes.
+
+  /// Makes a motion one that the coupler carries: z = T y.
+  virtual void expand(particles::Particles<dim> &, Components<dim> & /*nodal*/) const {}
+  /// Makes of forces those on the y of z = T y: T^T f.
+  virtual void restrict_forces(particles::Particles<dim> &, Components<dim> & /*nodal*/) const {}
+  /// Forces of a state at rest at the loads of a time (s), in which neither half stays: see
+  /// particles::ParticleForce and fem::FemSolver. Overwrites forces of particles and nodes.
+  virtual void compute_trial(Bodies<dim> &bodies, double time, double noted_share,
+                             Components<dim> &nodal_force) const;
+  /// nodal_force -= K u of the cells that the coupler took over, about the reference.
+  virtual void subtract_near_stiffness(const Components<dim> & /*u*/,
+                                       Components<dim> & /*nodal_force*/) const
+  {
+  }
+  /// That K in N/m, dim rows per near node; empty without overlap.
+  virtual Eigen::SparseMatrix<double> near_stiffness() const { return {}; }
+  /// The body was moved from outside; what follows the nodes but is no part of their motion.
+  virtual void follow(Bodies<dim> &) {}
+  /// The present velocities are means over a step of the far field: those before its kick are made
+  /// of them, between forces and kick.
+  virtual void start_velocities(Bodies<dim> &bodies, const StepTime &) { take_velocities(bodies); }
+
   /// It wakes what it moves: blocks of the zone may rest.
   virtual bool can_rest() const { return false; }
   /// From now on overlap and far field wait for a wave, too; `strain` is that of the pull that

@@ -163,6 +163,13 @@ void FineMotion<dim>::finish_kick(const Nodal<dim> &coarse, particles::Particles
 {
   split_members<dim>(
       lanes_, {carried_.data(), coarse.data(), motion_.data(), pointers(particles.velocity)});
+  turn_with_mesh(coarse, particles);
+}
+
+template <int dim>
+void FineMotion<dim>::turn_with_mesh(const Nodal<dim> &coarse,
+                                     particles::Particles<dim> &particles) const
+{
   for (const auto &pad : pads_) {
     Spin<dim> spin = Spin<dim>::Zero();
     for (int a = 0; a < nc; ++a)
@@ -282,6 +289,76 @@ void FineMotion<dim>::load(const core::State &state, const particles::Particles<
       }
   }
   damper_energy_ = core::load_real(state, "fine_motion", "damper_energy");
+}
+
+template <int dim>
+template <typename Visit>
+void FineMotion<dim>::for_each_member(Visit &&visit) const
+{
+  for (const auto &batch : lanes_.batches)
+    for (int k = batch.begin; k < batch.end; ++k)
+      for (int l = 0; l < lanes_.n_members[k]; ++l) {
+        const Slot &slot = lanes_.slots[k];
+        std::array<int, nc> nodes;
+        Vec<nc> value;
+        for (int a = 0; a < nc; ++a) {
+          nodes[a] = batch.node[a][l];
+          value[a] = slot.value[a].value[l];
+        }
+        visit(slot.particle[l], slot.mass.value[l], 1 - slot.damping[l] / 2., nodes, value);
+      }
+}
+
+// The carrier is that of the damped motion: what it takes is (1 - damping/2) Phi x.
+template <int dim>
+void FineMotion<dim>::expand(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const
+{
+  Nodal<dim> carried = Nodal<dim>::Zero(coarse.rows(), dim);
+  auto &v = particles.velocity;
+  for_each_member([&](int i, double mass, double, const auto &nodes, const auto &value) {
+    for (int c = 0; c < dim; ++c) {
+      double mesh = 0;
+      for (int a = 0; a < nc; ++a)
+        mesh += value[a] * coarse(nodes[a], c);
+      if (mass == 0)
+        v[c][i] = mesh;
+      for (int a = 0; a < nc; ++a)
+        carried(nodes[a], c) += value[a] * mass * (v[c][i] - mesh);
+    }
+  });
+  carrier_.solve(carried);
+  for_each_member([&](int i, double mass, double left, const auto &nodes, const auto &value) {
+    for (int c = 0; c < dim && mass > 0; ++c)
+      for (int a = 0; a < nc; ++a)
+        v[c][i] -= left * value[a] * carried(nodes[a], c);
+  });
+  turn_with_mesh(coarse, particles);
+}
+
+template <int dim>
+void FineMotion<dim>::restrict_forces(particles::Particles<dim> &particles, Nodal<dim> &force) const
+{
+  Nodal<dim> carried = Nodal<dim>::Zero(force.rows(), dim);
+  auto &f = particles.force;
+  for_each_member([&](int i, double mass, double left, const auto &nodes, const auto &value) {
+    for (int c = 0; c < dim && mass > 0; ++c)
+      for (int a = 0; a < nc; ++a)
+        carried(nodes[a], c) += value[a] * left * f[c][i];
+  });
+  carrier_.solve(carried);
+  for_each_member([&](int i, double mass, double, const auto &nodes, const auto &value) {
+    for (int c = 0; c < dim; ++c) {
+      double taken = mass == 0 ? f[c][i] : 0;
+      for (int a = 0; a < nc; ++a)
+        taken += mass * value[a] * carried(nodes[a], c);
+      f[c][i] -= taken;
+      for (int a = 0; a < nc; ++a)
+        force(nodes[a], c) += value[a] * taken;
+    }
+  });
+  add_pad_torques(particles, force);
+  for (const auto &pad : pads_)
+    set(particles.torque, pad.particle, Spin<dim>(Spin<dim>::Zero()));
 }
 
 template class FineMotion<2>;

@@ -35,6 +35,12 @@ public:
   /// v = Phi V + w; pads also turn with the mesh.
   void write_velocities(const Nodal<dim> &coarse, particles::Particles<dim> &particles);
 
+  /// Motions of bodies at rest, without touching w: v = Phi V + w, w being v - Phi V less what the
+  /// mesh carries of it.
+  void expand(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const;
+  /// The transpose: forces of particles and near nodes become those on v and V.
+  void restrict_forces(particles::Particles<dim> &particles, Nodal<dim> &force) const;
+
   void scale(double factor);
 
   /// w, as the table "fluctuation", and what the damper has taken.
@@ -66,6 +72,10 @@ private:
 
   void make_lanes(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                   const std::function<double(double)> &damping);
+  /// visit(particle, mass, 1 - damping/2, nodes, values) for every member; pads have no mass.
+  template <typename Visit>
+  void for_each_member(Visit &&visit) const;
+  void turn_with_mesh(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const;
   void add_pad_torques(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
 
   MemberBatches<dim> lanes_;

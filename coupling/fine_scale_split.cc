@@ -47,6 +47,7 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                               fit.residual));
   }
   coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
+  linear_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
 
   Eigen::SparseMatrix<double> mass = take_over_cells(overlap_, far);
   mass += operators.mass;

@@ -46,6 +46,15 @@ public:
   void save(core::State &state, const Bodies<dim> &bodies) const override;
   void load(const core::State &state, Bodies<dim> &bodies) override;
 
+  void expand(particles::Particles<dim> &zone, Components<dim> &nodal) const override;
+  void restrict_forces(particles::Particles<dim> &zone, Components<dim> &nodal) const override;
+  void compute_trial(Bodies<dim> &bodies, double time, double noted_share,
+                     Components<dim> &nodal_force) const override;
+  void subtract_near_stiffness(const Components<dim> &u,
+                               Components<dim> &nodal_force) const override;
+  void follow(Bodies<dim> &bodies) override;
+  void start_velocities(Bodies<dim> &bodies, const StepTime &step) override;
+
   /// Splits the velocities into V and w.
   void take_velocities(Bodies<dim> &bodies) override;
 
@@ -72,7 +81,7 @@ public:
   const SplitReport &report() const { return report_; }
   const Overlap<dim> *overlap() const override { return &overlap_; }
   /// Coarse stiffness K_near including the patch fit, N/m.
-  const Eigen::SparseMatrix<double> &near_stiffness() const { return stiffness_; }
+  Eigen::SparseMatrix<double> near_stiffness() const override { return stiffness_; }
   /// M_c
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
 
@@ -119,9 +128,9 @@ private:
   Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
   RigidFrames<dim> parts_;
   Regime regime_ = Regime::linear;
-  std::unique_ptr<CoarseEnergy<dim>> coarse_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c
-  ScalarMatrix<dim> filter_;                          // D
+  std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference
+  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_;  // M_c
+  ScalarMatrix<dim> filter_;                           // D
   std::unique_ptr<LinearSolver> mass_solver_;
 
   Nodal<dim> force_;            // on the near nodes at the last kick, N

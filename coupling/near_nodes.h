@@ -19,6 +19,14 @@ public:
   {
   }
 
+  /// Near nodes' values of a field of all nodes.
+  Nodal<dim> of(const Components<dim> &field) const
+  {
+    Nodal<dim> values(nodes_->size(), dim);
+    read(field, values);
+    return values;
+  }
+
   /// U in m, V in m/s at present; valid until the next call of the same.
   const Nodal<dim> &displacement() const { return read(far_->displacement, displacement_); }
   const Nodal<dim> &velocity() const { return read(far_->velocity, velocity_); }

@@ -18,6 +18,18 @@ void Coupler<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
 }
 
 template <int dim>
+void Coupler<dim>::compute_trial(Bodies<dim> &bodies, double time, double noted_share,
+                                 Components<dim> &nodal_force) const
+{
+  if (bodies.zone)
+    bodies.zone->force->compute_trial(bodies.zone->state, time, noted_share);
+  if (bodies.far) {
+    bodies.far->compute_trial(time);
+    nodal_force = bodies.far->force;
+  }
+}
+
+template <int dim>
 void NullCoupler<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
 {
   if (bodies.zone) {

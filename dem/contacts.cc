@@ -156,7 +156,7 @@ typename Contacts<dim>::State Contacts<dim>::state(const Contact<dim> &c, const 
 }
 
 template <int dim>
-void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles &p)
+double Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles &p) const
 {
   const double stored = c.slip.norm();
   // The slip follows the face: turned into its plane, of the same length.
@@ -176,13 +176,26 @@ void Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles
   const Vector<dim> carried = c.slip;
   c.slip += increment;
   const double trial = c.slip.norm(), limit = c.friction * std::max(s.overlap, 0.);
+  double taken = 0;
   if (trial > limit) {
     const Vector<dim> slid = c.slip * (1 - limit / trial);
     c.slip -= slid;
     // Work of the mean force less the change of stored energy.
-    frictional_work_.add(0.5 * s.stiffness * (carried + c.slip).dot(slid));
+    taken = 0.5 * s.stiffness * (carried + c.slip).dot(slid);
   }
   remember(c, s, p);
+  return taken;
+}
+
+template <int dim>
+double Contacts<dim>::follow_slip(Contact<dim> &c, const State &s, const Particles &p) const
+{
+  if (c.friction <= 0)
+    return 0;
+  if (s.overlap > 0 || c.slip.squaredNorm() > 0)
+    return update_slip(c, s, p);
+  c.known = false; // apart: the next touch starts anew
+  return 0;
 }
 
 template <int dim>
@@ -224,12 +237,8 @@ void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
 {
   Contact<dim> &c = contacts_[k];
   const State s = state(c, p);
-  if (c.friction > 0) {
-    if (s.overlap > 0 || c.slip.squaredNorm() > 0)
-      update_slip(c, s, p);
-    else
-      c.known = false; // apart: the next touch starts anew
-  }
+  if (const double taken = follow_slip(c, s, p); taken != 0)
+    frictional_work_.add(taken);
   if (s.overlap > 0) // on i
     add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
   correct_step(c, s, dt, p);
@@ -242,6 +251,39 @@ void Contacts<dim>::add_forces(Particles &p, double dt)
 {
   for (std::size_t k = 0; k < contacts_.size(); ++k)
     add_force(k, p, dt);
+}
+
+template <int dim>
+std::vector<ClosedContact<dim>> Contacts<dim>::add_trial_forces(Particles &p) const
+{
+  std::vector<ClosedContact<dim>> closed;
+  for (Contact<dim> c : contacts_) {
+    const State s = state(c, p);
+    follow_slip(c, s, p);
+    if (s.overlap <= 0)
+      continue;
+    add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
+    constexpr double round_off = 1e-12;
+    const bool sticks = c.friction > 0 && c.slip.norm() < c.friction * s.overlap * (1 - round_off);
+    ClosedContact<dim> now{
+        c.face.i,    c.face.j, Vector<dim>::Zero(), Vector<dim>::Zero(), s.normal,
+        s.stiffness, sticks};
+    if (c.friction > 0 || c.is_joint()) {
+      now.lever_i = s.lever;
+      now.lever_j = s.lever - s.between;
+    }
+    closed.push_back(now);
+  }
+  return closed;
+}
+
+template <int dim>
+void Contacts<dim>::forget_steps()
+{
+  for (auto &c : contacts_) {
+    c.last_overlap.reset();
+    c.correction = 0;
+  }
 }
 
 template <int dim>
@@ -299,7 +341,7 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
 {
   Contact<dim> &c = contacts_[k];
   if (c.known)
-    update_slip(c, state(c, p), p);
+    frictional_work_.add(update_slip(c, state(c, p), p));
   const double before = compression_energy(c, p);
   if (j < 0) {
     frictional_work_.add(before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm());

@@ -43,6 +43,22 @@ struct Contact
   bool is_joint() const { return cut >= 0; }
 };
 
+/// One that is closed, as small motions about a state see it.
+template <int dim>
+struct ClosedContact
+{
+  int i, j;
+  Vector<dim> lever_i, lever_j, normal; // m, from the centres; unit, i -> j
+  double stiffness;                     // N/m
+  bool sticks;                          // faces don't slide along each other
+
+  /// Of the motion of j's side against i's: what pulls at i, over the stiffness.
+  Vector<dim> answer(const Vector<dim> &motion) const
+  {
+    return sticks ? motion : Vector<dim>(normal * normal.dot(motion));
+  }
+};
+
 template <int dim>
 class Contacts
 {
@@ -71,6 +87,13 @@ public:
   void add_forces(Particles &particles, double dt);
   /// The same for one contact, by its place in all().
   void add_force(std::size_t k, Particles &particles, double dt);
+
+  /// Adds forces and torques of a state that may not stay, after the slips of the last
+  /// add_forces(); nothing is remembered. Returns those that are closed.
+  std::vector<ClosedContact<dim>> add_trial_forces(Particles &particles) const;
+
+  /// Openings and closings since the last step happened in equilibrium: they cost nothing.
+  void forget_steps();
 
   /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
   double compression_energy(const Contact<dim> &contact, const Particles &particles) const;
@@ -117,7 +140,10 @@ private:
     double overlap, stiffness; // m, N/m
   };
   State state(const Contact<dim> &contact, const Particles &particles) const;
-  void update_slip(Contact<dim> &contact, const State &state, const Particles &particles);
+  /// Returns what friction took, in J.
+  double update_slip(Contact<dim> &contact, const State &state, const Particles &particles) const;
+  /// The same where there is friction, from when the faces touch.
+  double follow_slip(Contact<dim> &contact, const State &state, const Particles &particles) const;
   void add_force(const Contact<dim> &contact, const State &state, const Vector<dim> &force,
                  Particles &particles) const;
   void correct_step(Contact<dim> &contact, const State &state, double dt, const Particles &p);

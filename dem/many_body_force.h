@@ -51,6 +51,17 @@ public:
                    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
                    const std::vector<int> *of = nullptr) const override;
 
+  bool has_trials() const override { return true; }
+  void compute_trial(Particles &particles, double time, double noted_share) override;
+  double trial_share(const Particles &particles) const override;
+  /// The law linearised: the motion must be so small that its square is round-off.
+  void compute_linear(Particles &particles) override;
+  void add_other_tangent(
+      const Particles &particles,
+      const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;
+  void resume_at(double time) override;
+  void break_one_by_one() override { search_.break_one_by_one(); }
+
   void set_energy_weights(const std::vector<double> &weights) override;
 
   /// After set_energy_weights(). Stresses, tensions and the search for breaking bonds follow it.
@@ -188,7 +199,9 @@ private:
   std::vector<ForcePart<dim> *> parts_ = {&slices_, &surface_, &flow_, &interfaces_, &contacts_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
-  Evaluation<dim> evaluation_; // of the last compute()
+  Evaluation<dim> evaluation_;               // of the last compute()
+  Evaluation<dim> trial_;                    // of the last compute_trial()
+  std::vector<ClosedContact<dim>> touching_; // in it
   // Scratch of sums of energies: fresh memory would take longer than the sweep.
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_;

@@ -1,5 +1,5 @@
 // What the coupler asks of the many-body law: its energy linearised, its faces, and tensors.
-#include "dem/laws/linear_bond.h"
+#include "dem/linear_terms.h"
 #include "dem/many_body_force.h"
 #include "dem/partial_many_body.h"
 #include "dem/surface_law.h"
@@ -38,7 +38,7 @@ void ManyBodyForce<dim>::add_tangent(
 {
   const Asked asked(of, body_.n_particles());
   using Term = particles::QuadraticTerm<dim>;
-  constexpr int dofs = n_particle_dofs<dim>, spins = n_spins<dim>;
+  constexpr int dofs = n_particle_dofs<dim>;
   const auto place = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
     return get(particles.reference, i) + lever;
   };
@@ -47,17 +47,8 @@ void ManyBodyForce<dim>::add_tangent(
   body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) {
     if (b.joins_materials)
       return;
-    term.kind = Term::Kind::bond;
-    term.location = place(b.i, b.lever_i);
-    term.members = {b.i, b.j};
-    term.rows.setZero(dim + spins, 2 * dofs);
-    term.rows.template topLeftCorner<dim, dofs>() = opening_rows<dim>(b.lever_i, -1);
-    term.rows.template topRightCorner<dim, dofs>() = opening_rows<dim>(b.lever_j, 1);
-    term.rows.template block<spins, spins>(dim, dim) = -bending_rows(b);
-    term.rows.template block<spins, spins>(dim, dofs + dim) = bending_rows(b);
-    term.stiffness.resize(dim + spins);
+    set_bond_rows(b, particles, term);
     term.stiffness.head(dim).setConstant(law_of(b).shear);
-    term.stiffness.tail(spins) = bending_stiffness(b);
     add(term);
   });
 

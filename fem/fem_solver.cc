@@ -297,7 +297,7 @@ void FemSolver<dim>::distribute()
 }
 
 template <int dim>
-void FemSolver<dim>::compute_forces(double time)
+void FemSolver<dim>::add_up_forces(double time)
 {
   distribute();
   for (auto &f : force)
@@ -312,6 +312,37 @@ void FemSolver<dim>::compute_forces(double time)
     t.force = t.area * loads_[t.load].traction(time)[t.component];
     force[t.component][t.node] += t.force;
   }
+}
+
+template <int dim>
+void FemSolver<dim>::compute_trial(double time)
+{
+  add_up_forces(time);
+  for (LoadedComponent &h : held_components_)
+    h.force = released_node_[h.node] ? 0 : -force[h.component][h.node];
+}
+
+template <int dim>
+void FemSolver<dim>::add_held_motion(double from, double to, double factor,
+                                     Components<dim> &u) const
+{
+  for (const LoadedComponent &h : held_components_)
+    u[h.component][h.node] += factor * (prescribed(h, to) - prescribed(h, from));
+}
+
+template <int dim>
+void FemSolver<dim>::subtract_stiffness(Components<dim> &u, Components<dim> &f) const
+{
+  follow_masters(u);
+  kernel_->subtract_forces(u, f);
+  for (auto &component : f)
+    hand_to_masters(component);
+}
+
+template <int dim>
+void FemSolver<dim>::compute_forces(double time)
+{
+  add_up_forces(time);
   support_step_ = step_;
   for (LoadedComponent &h : held_components_) {
     h.force = support_force(h, time);

@@ -67,6 +67,15 @@ public:
   /// external work is booked.
   void compute_forces(double time);
 
+  /// The same of a state at rest that the body may not stay in: nothing is booked. On held
+  /// components acts what the cells exert alone; reaction() is what supports answer that with.
+  void compute_trial(double time);
+  /// Adds factor times how held components of all nodes move from one time to another (s).
+  void add_held_motion(double from, double to, double factor, Components<dim> &u) const;
+  /// force -= K u for any motion u of the own cells about the reference, m and N: hanging nodes are
+  /// made to follow, and hand what acts on them to their masters.
+  void subtract_stiffness(Components<dim> &u, Components<dim> &force) const;
+
   /// v += dt f/m of all nodes that are not released; held components get the velocity that
   /// brings them to their load's displacement at time + dt after drift(dt). Absorbing sides brake.
   void kick(double dt, double time);
@@ -134,14 +143,15 @@ public:
   Vector<dim> reaction(int load) const;
 
   /// Motion, absorbing sides and what the next work is booked against, between drift and
-  /// compute_forces, as the tables "nodes", "loaded_nodes", "far_dashpots" and "far_field". Names of
-  /// nodes: node_names(). Nodes without rows stay as they are.
+  /// compute_forces, as the tables "nodes", "loaded_nodes", "far_dashpots" and "far_field". Names
+  /// of nodes: node_names(). Nodes without rows stay as they are.
   void save(core::State &state, const core::Names &names) const;
   void load(const core::State &state, const core::Names &names);
 
   const Mesh<dim> &mesh() const { return mesh_; }
   const Body<dim> &body() const { return body_; }
   bool is_released_node(int node) const { return released_node_[node]; }
+  bool is_own_cell(int cell) const { return is_own_cell_[cell]; }
   bool is_held(int node, int component) const { return held_[component][node]; }
 
   Components<dim> displacement, velocity, force;
@@ -170,6 +180,8 @@ private:
   double support_force(const LoadedComponent &h, double time) const; // on the body, in N
   double held_drag(double dt) const; // J, taken from held components in the last kick
   void book_work();
+  /// Overwrites `force` by that of cells and tractions.
+  void add_up_forces(double time);
 
   /// visit(key, component of a node) for every one on which a load acts, key its name, component
   /// and 0 where it is held, 1 + the number of the load else.

@@ -20,6 +20,7 @@ struct QuadraticTerm
   {
     bond,      // between members 0 and 1: extension, shear, bending, twist
     wall,      // between member 0 and a prescribed boundary
+    contact,   // between members 0 and 1, which touch
     volumetric // of member 0, which its neighbours (the other members) enter
   };
   Kind kind = Kind::bond;
@@ -85,8 +86,8 @@ public:
   /// Without, particles have no orientation: their arrays of rotation, spin and torque are empty.
   virtual bool has_rotations() const { return true; }
 
-  /// Overwrites force and torque of all particles that are stepped with those of the present state; time
-  /// in s sets the prescribed boundaries.
+  /// Overwrites force and torque of all particles that are stepped with those of the present state;
+  /// time in s sets the prescribed boundaries.
   virtual void compute(Particles<dim> &particles, double time) = 0;
 
   /// From now on compute() may leave out what these blocks do not list, and wakes those on which
@@ -116,6 +117,33 @@ public:
   virtual void add_tangent(const Particles<dim> &particles,
                            const std::function<void(const QuadraticTerm<dim> &)> &add,
                            const std::vector<int> *of = nullptr) const = 0;
+
+  /// Whether it has the three looks below, which a body in equilibrium needs.
+  virtual bool has_trials() const { return false; }
+
+  /// The forces of a state that the body may not stay in, as compute() would find them at the loads
+  /// of that time, in s; but nothing breaks or flows, and nothing is booked or remembered. Faces
+  /// that reach this share of their limit are kept in mind for trial_share().
+  virtual void compute_trial(Particles<dim> &, double /*time*/, double /*noted_share*/) {}
+  /// Largest share of its limit that a face bears in the state of the last trial; 0 where none
+  /// reaches the noted one.
+  virtual double trial_share(const Particles<dim> &) const { return 0; }
+
+  /// Overwrites forces and torques by those of a small motion about the reference, to first order:
+  /// supports stand still, no load acts. Faces that touched in the last trial go on touching.
+  virtual void compute_linear(Particles<dim> &) {}
+  /// Terms near to what add_tangent() lacks of it: of these faces, and between materials.
+  virtual void add_other_tangent(const Particles<dim> &,
+                                 const std::function<void(const QuadraticTerm<dim> &)> &) const
+  {
+  }
+
+  /// The body is where no step led it: the next compute() is that of a step that began at `time`,
+  /// in s.
+  virtual void resume_at(double /*time*/) {}
+
+  /// Of several bonds that exceed their strength only the most loaded one breaks from now on.
+  virtual void break_one_by_one() {}
 
   /// What the force remembers beyond the particles' motion, at the time of the present positions
   /// and before compute(). load() follows the construction of the same body and the load of the

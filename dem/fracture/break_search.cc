@@ -94,7 +94,7 @@ double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materi
 }
 
 template <int dim>
-BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, bool of_table) const
+BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
 {
   double least = law_.strength;
   const Materials &materials = body.materials();
@@ -104,7 +104,7 @@ BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, bool of_table)
                                   materials.base().shear_modulus() /
                                   materials.all()[m].shear_modulus());
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  return {noted_share_ * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
+  return {share * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
           criterion().clearing != Clearing::by_face};
 }
 
@@ -113,8 +113,16 @@ template <int dim>
 void BreakSearch<dim>::ask(Evaluation<dim> &e, const PlasticFlow<dim> &flow) const
 {
   if (can_break())
-    e.look = BreakLook{screen(e.body, false), screen(e.body, true),
-                       criterion().clearing == Clearing::by_stress && !flow.has_flowed()};
+    e.look =
+        BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
+                  criterion().clearing == Clearing::by_stress && !flow.has_flowed(), noted_share_};
+}
+
+template <int dim>
+void BreakSearch<dim>::ask_trial(Evaluation<dim> &e, double share) const
+{
+  if (can_break())
+    e.look = BreakLook{screen(e.body, share, false), screen(e.body, share, true), false, share};
 }
 
 template <int dim>
@@ -191,7 +199,7 @@ BreakSearch<dim>::suspected_bonds(const StressedBody<dim> &state) const
   std::vector<BondTension<dim>> found;
   const auto test = [&](const BondId &id, const Bond<dim> &b) {
     const auto t = bond_tension(id, b, state);
-    if (t.utilisation >= noted_share_)
+    if (t.utilisation >= state.evaluation.look->share)
       found.push_back(t);
   };
   // A bond of two noted particles is its first one's.
@@ -268,15 +276,39 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
   keep_exceeding();
   sort_by_ids(found, state.particles); // few are left
   const bool all_at_once = criterion().apart == 0;
-  if (!all_at_once)
+  if (!all_at_once || one_by_one_)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
+  if (one_by_one_ && found.size() > 1)
+    found.resize(1);
   std::vector<BondId> exceeding;
   PlacesApart<dim> places(criterion().apart * state.body().spacing());
   for (const auto &t : found)
     if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);
   return exceeding;
+}
+
+template <int dim>
+double BreakSearch<dim>::largest_share(const StressedBody<dim> &state) const
+{
+  if (!can_break())
+    return 0;
+  const double asked = state.evaluation.look->share;
+  auto found = suspected_bonds(state);
+  // A bound of the utilisation that is below another bond's utilisation needs no closer look.
+  std::sort(found.begin(), found.end(),
+            [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
+  double largest = 0;
+  constexpr std::size_t some = 32;
+  for (std::size_t k = 0; k < found.size() && found[k].utilisation > largest; k += some) {
+    std::vector<BondTension<dim>> now(found.begin() + k,
+                                      found.begin() + std::min(k + some, found.size()));
+    find_tensions(now, state, asked);
+    for (const auto &t : now)
+      largest = std::max(largest, t.utilisation);
+  }
+  return largest >= asked ? largest : 0;
 }
 
 template <int dim>

@@ -38,11 +38,19 @@ public:
 
   /// The next evaluation notes what could break.
   void ask(Evaluation<dim> &evaluation, const PlasticFlow<dim> &flow) const;
+  /// Of a state that may not stay: it notes what reaches this share of its limit.
+  void ask_trial(Evaluation<dim> &evaluation, double share) const;
   /// After it: leaves out what the stresses clear of the particles that it noted.
   void clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &evaluation);
 
   /// Those that break now, in this order.
   std::vector<BondId> exceeding_bonds(const StressedBody<dim> &state) const;
+
+  /// Of several bonds only the most loaded one breaks from now on.
+  void break_one_by_one() { one_by_one_ = true; }
+
+  /// Largest utilisation of any bond; 0 where none reaches the share that was asked for.
+  double largest_share(const StressedBody<dim> &state) const;
 
   /// See ForceReport::utilisation.
   Utilisation<dim> utilisation(const StressedBody<dim> &state,
@@ -63,14 +71,14 @@ public:
 private:
   const CriterionIn<dim> &criterion() const { return law_.criterion.template in<dim>(); }
   /// What the kernels look for; of the table's bonds in terms of the first material's.
-  BreakScreen screen(const BondedBody<dim> &body, bool of_table) const;
+  BreakScreen screen(const BondedBody<dim> &body, double share, bool of_table) const;
   /// Of a bond in Pa.
   double strength_of(const Bond<dim> &bond, const Materials &materials) const;
   double size_factor(const Bond<dim> &bond) const;
   /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond,
                                 const StressedBody<dim> &state) const;
-  /// The bonds whose bound reaches the noted share, some of them twice.
+  /// The bonds whose bound reaches the share that was asked for, some of them twice.
   std::vector<BondTension<dim>> suspected_bonds(const StressedBody<dim> &state) const;
   /// Utilisations by the criterion in place of their bounds; where they stay below `least`,
   /// something not smaller and below it may stand instead.
@@ -81,6 +89,7 @@ private:
   std::vector<int> at_interfaces_; // ascending
   double noted_share_ = 1;         // of the limit
   double largest_size_factor_ = 1; // of the bonds
+  bool one_by_one_ = false;
   StressScreen<dim> screen_;
 };
 } // namespace ligament::dem

@@ -23,6 +23,9 @@ public:
   /// The step of dt (s) after the last break ends.
   void end_step(const Particles &particles, double dt);
 
+  /// No step followed the last break.
+  void forget_step() { jumps_.clear(); }
+
   /// Whether some did at this time (s): then no other does.
   bool have_broken_at(double time) const { return broken_at_ == time; }
 

@@ -32,6 +32,13 @@ public:
   /// Adds forces and torques, after all other parts; slips follow the motion. See Contacts.
   void act(Particles &particles, double dt) { contacts_.add_forces(particles, dt); }
 
+  /// See Contacts.
+  std::vector<ClosedContact<dim>> add_trial_forces(Particles &particles) const
+  {
+    return contacts_.add_trial_forces(particles);
+  }
+  void forget_steps() { contacts_.forget_steps(); }
+
   std::vector<int> particles() const override { return {}; }
   void add_energies(const Particles &particles, Evaluation<dim> &,
                     std::vector<double> &energy) const override;

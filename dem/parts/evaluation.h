@@ -14,6 +14,7 @@ struct BreakLook
 {
   BreakScreen rows, table; // of lattice bonds, and of the others in terms of the first material's
   bool cleared_by_stress;  // what is noted by particle is asked again with its neighbours' stresses
+  double share;            // of their limit, from which bonds are looked for
 };
 
 /// Where they were found: those that break are among the bonds of these particles.

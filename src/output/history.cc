@@ -10,7 +10,7 @@
 
 namespace ligament::program
 {
-std::vector<Column> history_columns(int dimension)
+std::vector<Column> history_columns(int dimension, bool has_phases)
 {
   std::vector<Column> columns = {{"time", "s"},    {"step", "1"},         {"load", "N"},
                                  {"stress", "Pa"}, {"displacement", "m"}, {"strain", "1"}};
@@ -19,8 +19,12 @@ std::vector<Column> history_columns(int dimension)
         "impulses", "breaking", "fracture", "friction", "damper_fine", "damper_gap", "damping",
         "absorbed", "regime_change", "external_work", "residual"})
     columns.push_back({energy, "J"});
+  if (has_phases)
+    columns.insert(columns.end() - 2, {"settled", "J"}); // before external_work and residual
   columns.push_back({"broken_bonds", "1"});
   columns.push_back({"crack_length", dimension == 2 ? "m" : "m^2"});
+  if (has_phases)
+    columns.push_back({"static", "1"});
   return columns;
 }
 

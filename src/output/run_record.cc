@@ -52,6 +52,22 @@ void for_each_field(RunWarning &r, Visit &&visit)
 }
 
 template <typename Visit>
+void for_each_field(PhaseEntry &r, Visit &&visit)
+{
+  visit("kind", r.kind);
+  visit("begin", r.begin);
+  visit("end", r.end);
+  visit("steps", r.steps);
+  visit("steps_skipped", r.steps_skipped);
+  visit("solves", r.solves);
+  visit("iterations", r.iterations);
+  visit("load", r.load);
+  visit("broken", r.broken);
+  visit("reason", r.reason);
+  visit("seconds", r.seconds);
+}
+
+template <typename Visit>
 void for_each_field(StateEntry &r, Visit &&visit)
 {
   visit("name", r.name);
@@ -208,6 +224,8 @@ void write_run_record(const std::string &path, const RunRecord &record)
   Json json;
   RunRecord copy = record;
   for_each_field(copy, Writer{json});
+  if (!copy.phases.empty())
+    Writer{json}("phases", copy.phases);
   json["complete"] = record.is_complete();
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   try {
@@ -234,6 +252,8 @@ RunRecord read_run_record(const std::string &path)
   try {
     const Json json = Json::parse(core::read_file(path));
     for_each_field(record, Reader{json});
+    if (json.contains("phases"))
+      Reader{json}("phases", record.phases);
   } catch (const core::EnvironmentError &error) {
     throw core::InputError(std::string(error.what()) + " (not the output folder of a run?)");
   } catch (const Json::exception &error) {

@@ -44,6 +44,22 @@ struct StateEntry
   std::string particles, cells; // files, relative to the output folder; empty: none of these
 };
 
+/// A part of a run in scenes whose loading is not dynamic: an equilibrium that was carried on to a
+/// higher load, or the time steps behind a break.
+struct PhaseEntry
+{
+  std::string kind;          // static, dynamic
+  double begin = 0, end = 0; // s, times of the scene
+  long steps = 0;            // done one by one
+  long steps_skipped = 0;    // that an equilibrium stands for
+  int solves = 0;            // of linear systems
+  int iterations = 0;        // of all of them
+  double load = 0;           // N, at the end; 0 where nothing has a component
+  std::int64_t broken = 0;   // faces that broke in it
+  std::string reason;        // why it ended
+  double seconds = 0;        // wall time
+};
+
 /// Figures that are not known stay empty and are null in the file.
 struct RunRecord
 {
@@ -104,6 +120,8 @@ struct RunRecord
   std::vector<StateEntry> states;
   std::vector<PictureEntry> pictures;
   std::vector<RunWarning> warnings;
+  /// In the order of time; empty, and not in the file, where loading is dynamic.
+  std::vector<PhaseEntry> phases;
 
   /// It came to the end that its scene asks for.
   bool is_complete() const { return status == "done"; }

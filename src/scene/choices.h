@@ -50,6 +50,22 @@ enum class StopWhen
   specimen_broken
 };
 
+/// How a run comes from one breaking bond to the next.
+enum class Loading
+{
+  dynamic,      // by steps all the way
+  quasi_static, // by equilibria, and steps from a break until the body is calm again
+  sequential    // by equilibria alone, bond by bond
+};
+
+/// What makes the linear systems of equilibria easy to solve.
+enum class StaticSolver
+{
+  automatic,
+  cholesky,
+  multigrid
+};
+
 /// What a load prescribes.
 enum class LoadKind
 {
@@ -86,6 +102,18 @@ inline const std::vector<std::string> &words(Guard)
 inline const std::vector<std::string> &words(StopWhen)
 {
   static const std::vector<std::string> list = {"end", "specimen_broken"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(Loading)
+{
+  static const std::vector<std::string> list = {"dynamic", "static", "sequential"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(StaticSolver)
+{
+  static const std::vector<std::string> list = {"automatic", "cholesky", "multigrid"};
   return list;
 }
 

@@ -169,6 +169,11 @@ struct TimeParameters
   std::optional<double> step; // s; refused above the stable one
   StopWhen stop_when = StopWhen::end;
   double rest_threshold = 0; // strain from which on a wave wakes what is at rest
+  Loading loading = Loading::dynamic;
+  double calm = 8; // transits of a shear wave through the zone without a break, then it is calm
+  StaticSolver static_solver = StaticSolver::automatic;
+
+  bool has_phases() const { return loading != Loading::dynamic; }
 };
 
 /// One of the quantities that pictures show.

@@ -140,6 +140,9 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").usually(1e-18, 1e2, "us ns ps").above(0);
   s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
   s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)", words(StopWhen()));
+  s.add("loading", t.loading, "dynamic: by time steps all the way; static: by equilibria up to the load at which the next bond breaks, with time steps from there until the body is calm again; sequential: by equilibria alone, bond by bond, without dynamics", words(Loading()));
+  s.add("calm", t.calm, "for loading static: transits of a shear wave through the discrete zone without a break after which time steps may end; they go on while the kinetic energy is above 1 % of the potential one, up to 50 transits").above(0).at_most(50).usually(2, 30, "");
+  s.add("static_solver", t.static_solver, "for loading static and sequential: what the equilibria are solved with; automatic: cholesky for small bodies in 2D, multigrid for all others", words(StaticSolver()));
 }
 
 void declare_picture(Section &s, PictureParameters &p)

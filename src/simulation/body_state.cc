@@ -21,6 +21,7 @@ core::State take_state(const CoupledBody<dim> &body)
     body.far->save(state, node_names(body));
   body.coupler->save(state, body.bodies());
   core::save_value(state, "body", "regime_change", body.regime_change);
+  core::save_value(state, "body", "settled", body.settled);
   return state;
 }
 
@@ -34,6 +35,7 @@ void give_state(const core::State &state, CoupledBody<dim> &body)
   auto bodies = body.bodies();
   body.coupler->load(state, bodies);
   body.regime_change = core::load_real(state, "body", "regime_change");
+  body.settled = core::load_real(state, "body", "settled");
 }
 
 template core::State take_state(const CoupledBody<2> &);

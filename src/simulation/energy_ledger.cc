@@ -17,6 +17,7 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"damper_gap", body.gap_filter},
           {"damping", damping},
           {"regime_change", regime_change},
+          {"settled", settled},
           {"absorbed", absorbed},
           {"external_work", external_work},
           {"residual", residual()}};
@@ -30,6 +31,7 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   ledger.body = body.coupler->energy(body.bodies(), step);
   ledger.damping = damping;
   ledger.regime_change = body.regime_change;
+  ledger.settled = body.settled;
   if (body.zone)
     ledger.absorbed += body.zone->dashpots.energy();
   if (body.far)

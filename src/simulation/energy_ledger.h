@@ -18,6 +18,7 @@ struct EnergyLedger
   double absorbed = 0; // by absorbing sides and their layers
   double external_work = 0;
   double regime_change = 0; // taken where the coupler changed its regime
+  double settled = 0;       // taken where the body settled into an equilibrium
 
   double kinetic() const { return body.kinetic_discrete + body.kinetic_far; }
   double potential() const { return body.potential_discrete + body.potential_far + body.blended; }
@@ -25,7 +26,7 @@ struct EnergyLedger
   {
     return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter +
            force.fracture + force.friction + force.breaking_step_error + damping + absorbed +
-           regime_change + force.plastic - external_work;
+           regime_change + settled + force.plastic - external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;

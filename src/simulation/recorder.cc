@@ -26,6 +26,10 @@ constexpr int rows_per_flush = 50; // of the history
 // The load path is looked at this often, in steps of the far field.
 constexpr long break_interval = 50;
 
+// Where equilibria take the place of steps, the steps behind a break have a row this often unless
+// the scene says otherwise, in steps of the far field: such a scene lasts much longer than a break.
+constexpr long phase_row_interval = 50;
+
 // Of the external work: a change of regime that takes more is worth a warning.
 constexpr double largest_regime_change = 1e-3;
 
@@ -39,6 +43,22 @@ double history_interval_of(const Scene &scene)
 {
   return scene.output.history_interval > 0 ? scene.output.history_interval
                                            : scene.time.duration / 2000;
+}
+
+template <int dim>
+double row_interval(const Scene &scene, const CoupledBody<dim> &body)
+{
+  const double interval = history_interval_of(scene);
+  if (!scene.time.has_phases() || scene.output.history_interval > 0)
+    return interval;
+  return std::min(interval, phase_row_interval * body.coupler->step_ratio() * body.dt);
+}
+
+/// When the next of outputs at this distance is due. Where time jumps those in between are missed;
+/// counted from the first one, they would all be made up for.
+double next_output(const Scene &scene, double due, double interval, double now)
+{
+  return scene.time.has_phases() ? now + interval : due + interval;
 }
 
 /// Seconds of the faster one of two calls.
@@ -86,10 +106,11 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
                         bool draws_pictures, bool goes_on)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body),
-      history_(folder.history(), history_columns(dim), rows_per_flush, goes_on),
+      history_(folder.history(), history_columns(dim, scene.time.has_phases()), rows_per_flush,
+               goes_on),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
       n_steps_(n_steps), draws_pictures_(draws_pictures),
-      history_interval_(history_interval_of(scene)), guard_(body), path_(machine_.axis())
+      history_interval_(row_interval(scene, body)), guard_(body), path_(machine_.axis())
 {
 }
 
@@ -102,12 +123,12 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (const auto finding = guard_.look(body))
     if (const auto stop = report_excess(*finding, step))
       return stop;
-  if (!broken_time_ && step.step / ratio % break_interval == 0)
+  if (!broken_time_ && (in_static_phase_ || step.step / ratio % break_interval == 0))
     look_for_break(body, step);
   if (broken_time_ && scene_.time.stop_when == StopWhen::specimen_broken)
     return Stop{false, fmt::format("specimen broken at {:.4g} s", *broken_time_)};
 
-  const bool history = step.time >= next_history_ - 1e-9 * history_interval_;
+  const bool history = in_static_phase_ || step.time >= next_history_ - 1e-9 * history_interval_;
   const bool fields = step.time >= next_fields_;
   const bool progress = step.step / ratio % 20 == 0 && progress_.is_due();
   if (!history && !fields && !progress)
@@ -131,7 +152,7 @@ template <int dim>
 void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                    double damping)
 {
-  next_history_ += history_interval_;
+  next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
   const EnergyLedger ledger = read_ledger(body, step, damping);
   history_.set("time", step.time);
@@ -141,7 +162,10 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   history_.set("displacement", r.displacement);
   history_.set("strain", r.strain);
   for (const auto &[name, value] : ledger.channels())
-    history_.set(name, value);
+    if (name != "settled" || scene_.time.has_phases())
+      history_.set(name, value);
+  if (scene_.time.has_phases())
+    history_.set("static", in_static_phase_);
   history_.set("broken_bonds", double(n_broken(body)));
   history_.set("crack_length", crack_length(body, machine_.axis()));
   history_.end_row();
@@ -175,7 +199,7 @@ void Recorder<dim>::keep_copies(const CoupledBody<dim> &body, double time, doubl
 template <int dim>
 void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
-  next_fields_ += scene_.output.field_interval;
+  next_fields_ = next_output(scene_, next_fields_, scene_.output.field_interval, step.time);
   BodyState state = present_state(body, step.time);
   state.bonds = broken_bonds(body);
   state_fields_.complete(body, state);
@@ -393,6 +417,7 @@ void Recorder<dim>::save(core::State &state) const
   core::save_value(state, "recorder", "next_history", next_history_);
   core::save_value(state, "recorder", "next_fields", next_fields_);
   core::save_value(state, "recorder", "quasi_static", std::int64_t(quasi_static_));
+  core::save_value(state, "recorder", "in_static_phase", std::int64_t(in_static_phase_));
   core::save_value(state, "recorder", "fields_copied_at", fields_copied_at_);
   save_optional(state, "recorder", "broken_time", broken_time_);
   save_optional(state, "recorder", "trusted_until", trusted_until_);
@@ -436,6 +461,7 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   next_history_ = core::load_real(state, "recorder", "next_history");
   next_fields_ = core::load_real(state, "recorder", "next_fields");
   quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
+  in_static_phase_ = core::load_integer(state, "recorder", "in_static_phase") != 0;
   fields_copied_at_ = core::load_real(state, "recorder", "fields_copied_at");
   broken_time_ = load_optional(state, "recorder", "broken_time");
   trusted_until_ = load_optional(state, "recorder", "trusted_until");

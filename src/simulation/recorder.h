@@ -45,6 +45,10 @@ public:
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping);
 
+  /// Until it is said again: whether observe() looks at equilibria of a static phase. Each of them
+  /// is a row of the history.
+  void in_static_phase(bool is_static) { in_static_phase_ = is_static; }
+
   /// Logs what leaves the range of the models, from when on nothing counts; a stop when the scene's
   /// guard says so.
   std::optional<Stop> report_excess(const std::string &finding, const coupling::StepTime &step);
@@ -104,7 +108,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_, first_step_ = 0;
-  bool draws_pictures_;
+  bool draws_pictures_, in_static_phase_ = false;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   OverlapGuard<dim> guard_;

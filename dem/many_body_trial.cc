@@ -1,0 +1,94 @@
+// Looks at states in which the body does not stay: for a solver that seeks its equilibrium.
+#include "dem/linear_terms.h"
+#include "dem/many_body_force.h"
+
+namespace ligament::dem
+{
+template <int dim>
+void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_share)
+{
+  core::require(!flow_.has_law(), "bodies that flow have no trial states");
+  surface_.set_time(time);
+  search_.ask_trial(trial_, noted_share);
+  trial_.has_loads = true;
+  find_forces(p, trial_);
+  touching_ = contacts_.add_trial_forces(p);
+  evaluation_.reactions = trial_.reactions;
+}
+
+template <int dim>
+double ManyBodyForce<dim>::trial_share(const Particles &p) const
+{
+  return search_.largest_share(stressed(p, trial_));
+}
+
+template <int dim>
+void ManyBodyForce<dim>::compute_linear(Particles &p)
+{
+  Evaluation<dim> &e = energy_evaluation_;
+  e.has_loads = false;
+  find_forces(p, e);
+  e.has_loads = true;
+  const auto moved = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
+    return get(p.displacement, i) + Turn<dim>::of(p, i).change(lever);
+  };
+  for (const auto &c : touching_) {
+    const Vector<dim> f = c.stiffness * c.answer(moved(c.j, c.lever_j) - moved(c.i, c.lever_i));
+    add(p.force, c.i, f);
+    add(p.force, c.j, Vector<dim>(-f));
+    add(p.torque, c.i, cross(c.lever_i, f));
+    add(p.torque, c.j, cross(c.lever_j, Vector<dim>(-f)));
+  }
+}
+
+// A bond between materials as one of its two sides in series, without the volumes.
+template <int dim>
+void ManyBodyForce<dim>::add_other_tangent(
+    const Particles &p, const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const
+{
+  constexpr int dofs = n_particle_dofs<dim>;
+  particles::QuadraticTerm<dim> term;
+  body_.bonds().for_each_interface([&](BondId, const Bond<dim> &b) {
+    set_bond_rows(b, p, term);
+    const double compliance =
+        b.lever_i.dot(b.normal) / (2 * b.shear_i) - b.lever_j.dot(b.normal) / (2 * b.shear_j);
+    term.stiffness.head(dim).setConstant(b.weight * b.area / compliance);
+    add(term);
+  });
+  term.kind = particles::QuadraticTerm<dim>::Kind::contact;
+  for (const auto &c : touching_) {
+    term.location = get(p.reference, c.i) + c.lever_i;
+    term.members = {c.i, c.j};
+    const Eigen::Matrix<double, dim, dim> answers =
+        c.sticks ? Eigen::Matrix<double, dim, dim>(Eigen::Matrix<double, dim, dim>::Identity())
+                 : Eigen::Matrix<double, dim, dim>(c.normal * c.normal.transpose());
+    term.rows.setZero(dim, 2 * dofs);
+    term.rows.template leftCols<dofs>() = answers * opening_rows<dim>(c.lever_i, -1);
+    term.rows.template rightCols<dofs>() = answers * opening_rows<dim>(c.lever_j, 1);
+    term.stiffness.setConstant(dim, c.stiffness);
+    add(term);
+  }
+}
+
+template <int dim>
+void ManyBodyForce<dim>::resume_at(double time)
+{
+  broken_.forget_step();
+  last_time_ = time_ = time;
+  contacts_.forget_steps();
+}
+
+// The rest of the class is instantiated in its own file.
+template void ManyBodyForce<2>::compute_trial(Particles &, double, double);
+template void ManyBodyForce<3>::compute_trial(Particles &, double, double);
+template double ManyBodyForce<2>::trial_share(const Particles &) const;
+template double ManyBodyForce<3>::trial_share(const Particles &) const;
+template void ManyBodyForce<2>::compute_linear(Particles &);
+template void ManyBodyForce<3>::compute_linear(Particles &);
+template void ManyBodyForce<2>::add_other_tangent(
+    const Particles &, const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
+template void ManyBodyForce<3>::add_other_tangent(
+    const Particles &, const std::function<void(const particles::QuadraticTerm<3> &)> &) const;
+template void ManyBodyForce<2>::resume_at(double);
+template void ManyBodyForce<3>::resume_at(double);
+} // namespace ligament::dem

@@ -1,0 +1,180 @@
+#include "src/simulation/static_solver.h"
+
+#include "algebra/conjugate_gradients.h"
+#include "core/check.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+namespace ligament::program
+{
+namespace
+{
+constexpr double tolerance = 1e-9; // of the largest load
+constexpr int most_iterations = 2000;
+} // namespace
+
+template <int dim>
+StaticSolver<dim>::StaticSolver(CoupledBody<dim> &body, algebra::Preconditioning kind)
+    : body_(body), kind_(kind), system_(body)
+{
+  core::require(!body.zone || body.force()->has_trials(),
+                "/time/loading: this force has no equilibrium to be sought; choose \"dynamic\"");
+}
+
+template <int dim>
+void StaticSolver<dim>::prepare()
+{
+  if (!knows_free_motions_)
+    find_free_motions();
+  if (preconditioner_)
+    return;
+  // Where the coupler took over more than the cells had, only a stiffer penalty leaves the matrix
+  // positive.
+  for (double penalty = 1;; penalty *= 10)
+    try {
+      preconditioner_ = algebra::make_preconditioner(kind_, system_.near_stiffness(penalty),
+                                                     system_.rigid_motions(), dim);
+      return;
+    } catch (const core::EnvironmentError &) {
+      if (penalty > 100)
+        throw;
+    }
+}
+
+// Of the rigid motions, as far as supports let them be, those that cost no energy.
+template <int dim>
+void StaticSolver<dim>::find_free_motions()
+{
+  knows_free_motions_ = true;
+  Eigen::MatrixXd motions = system_.rigid_motions();
+  Eigen::MatrixXd kept(motions.rows(), 0);
+  for (int k = 0; k < motions.cols(); ++k) {
+    Eigen::VectorXd x = motions.col(k);
+    const double before = x.norm();
+    for (int twice = 0; twice < 2; ++twice)
+      x -= kept * (kept.transpose() * x).eval();
+    if (x.norm() <= 1e-9 * before)
+      continue;
+    kept.conservativeResize(Eigen::NoChange, kept.cols() + 1);
+    kept.col(kept.cols() - 1) = x.normalized();
+  }
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Eigen::VectorXd noise =
+      Eigen::VectorXd::NullaryExpr(motions.rows(), [&] { return uniform(random); });
+  const double stiff = noise.dot(system_.stiffness_times(noise)) / noise.squaredNorm();
+  Eigen::MatrixXd stiffness(kept.cols(), kept.cols());
+  for (int k = 0; k < kept.cols(); ++k)
+    stiffness.col(k) = kept.transpose() * system_.stiffness_times(kept.col(k));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      Eigen::MatrixXd((stiffness + stiffness.transpose()) / 2));
+  constexpr double nothing = 1e-10;
+  free_motions_.resize(motions.rows(), 0);
+  for (int k = 0; k < kept.cols(); ++k)
+    if (eigen.eigenvalues()[k] < nothing * stiff) {
+      free_motions_.conservativeResize(Eigen::NoChange, free_motions_.cols() + 1);
+      free_motions_.col(free_motions_.cols() - 1) = kept * eigen.eigenvectors().col(k);
+    }
+}
+
+template <int dim>
+void StaticSolver<dim>::project(Eigen::VectorXd &y) const
+{
+  if (free_motions_.cols() > 0)
+    y -= free_motions_ * (free_motions_.transpose() * y).eval();
+}
+
+template <int dim>
+algebra::CgResult StaticSolver<dim>::solve(const Eigen::VectorXd &right, double absolute,
+                                           Eigen::VectorXd &y)
+{
+  prepare();
+  y.resize(0);
+  const auto result = algebra::conjugate_gradients(
+      [&](const Eigen::VectorXd &p, Eigen::VectorXd &kp) { kp = system_.stiffness_times(p); },
+      [&](const Eigen::VectorXd &r, Eigen::VectorXd &z) {
+        preconditioner_->apply(r, z);
+        system_.drop_inert(z);
+      },
+      [&](Eigen::VectorXd &v) { project(v); }, right, y, absolute, most_iterations);
+  ++n_solves_;
+  n_iterations_ += result.iterations;
+  return result;
+}
+
+template <int dim>
+Eigen::VectorXd StaticSolver<dim>::balance(double time, double &norm)
+{
+  Eigen::VectorXd r = system_.forces(time);
+  project(r);
+  norm = r.norm();
+  largest_load_ = std::max(largest_load_, system_.load_force());
+  return r;
+}
+
+template <int dim>
+typename StaticSolver<dim>::End StaticSolver<dim>::find_equilibrium(double time,
+                                                                    Eigen::VectorXd &moved)
+{
+  if (!knows_free_motions_)
+    find_free_motions();
+  const auto start = system_.place();
+  moved = Eigen::VectorXd::Zero(system_.size());
+  constexpr int most_steps = 25, patience = 8;
+  double least = std::numeric_limits<double>::infinity();
+  int since_least = 0;
+  End end = End::stalled;
+  for (int step = 0; step < most_steps && since_least < patience; ++step) {
+    double norm = 0;
+    const Eigen::VectorXd r = balance(time, norm);
+    const double goal = tolerance * (largest_load_ > 0 ? largest_load_ : norm);
+    if (!(norm > goal))
+      return End::converged;
+    since_least = norm < 0.5 * least ? 0 : since_least + 1;
+    least = std::min(least, norm);
+    Eigen::VectorXd y;
+    const auto result = solve(r, std::max(0.3 * goal, 1e-5 * norm), y);
+    if (result.end == algebra::CgResult::End::indefinite) {
+      end = End::indefinite;
+      break;
+    }
+    system_.displace(y);
+    moved += y;
+  }
+  system_.put_back(start);
+  return end;
+}
+
+template <int dim>
+typename StaticSolver<dim>::End StaticSolver<dim>::find_response(double from, double to,
+                                                                 Eigen::VectorXd &y)
+{
+  const Eigen::VectorXd held = system_.held_motion(from, to);
+  Eigen::VectorXd right = system_.forces(to);
+  right -= system_.forces(from);
+  right -= system_.stiffness_times(held);
+  if (!knows_free_motions_)
+    find_free_motions();
+  project(right);
+  const double norm = right.norm();
+  if (norm == 0) {
+    y = held;
+    return End::converged;
+  }
+  const auto result = solve(right, 1e-9 * norm, y);
+  y += held;
+  switch (result.end) {
+  case algebra::CgResult::End::indefinite:
+    return End::indefinite;
+  case algebra::CgResult::End::stalled:
+    return result.residual < 1e-6 * norm ? End::converged : End::stalled;
+  default:
+    return End::converged;
+  }
+}
+
+template class StaticSolver<2>;
+template class StaticSolver<3>;
+} // namespace ligament::program

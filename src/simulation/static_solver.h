@@ -1,0 +1,66 @@
+// Equilibrium of the body at given loads, and how it answers when they grow.
+#pragma once
+
+#include "algebra/preconditioner.h"
+#include "src/simulation/static_system.h"
+
+#include <memory>
+
+namespace ligament::program
+{
+/// Newton's method with the stiffness about the reference, each step by preconditioned conjugate
+/// gradients on y (theory.md section 6).
+template <int dim>
+class StaticSolver
+{
+public:
+  enum class End
+  {
+    converged,
+    stalled,   // forces stay out of balance
+    indefinite // nothing resists a motion, or it helps it: the body no longer carries
+  };
+
+  /// The body must outlive it and have trials.
+  StaticSolver(CoupledBody<dim> &body, algebra::Preconditioning kind);
+
+  /// From the present place to equilibrium at the loads of `time` (s), held components being where
+  /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
+  End find_equilibrium(double time, Eigen::VectorXd &moved);
+
+  /// How far the body moves from its place, where it is in equilibrium at the loads of `from`, when
+  /// they become those of `to`, to first order: y with held components.
+  End find_response(double from, double to, Eigen::VectorXd &y);
+
+  /// Bonds have broken: the next solve makes a new preconditioner.
+  void renew() { preconditioner_.reset(); }
+
+  StaticSystem<dim> &system() { return system_; }
+
+  /// So far.
+  int n_solves() const { return n_solves_; }
+  int n_iterations() const { return n_iterations_; }
+  /// The largest load so far, in N, which forces out of balance are measured by.
+  double largest_load() const { return largest_load_; }
+  void set_largest_load(double force) { largest_load_ = force; }
+  const char *preconditioner() const { return preconditioner_ ? preconditioner_->name() : "none"; }
+  /// Motions that no support resists.
+  int n_free_motions() const { return int(free_motions_.cols()); }
+
+private:
+  void prepare();
+  void find_free_motions();
+  void project(Eigen::VectorXd &y) const;
+  algebra::CgResult solve(const Eigen::VectorXd &right, double tolerance, Eigen::VectorXd &y);
+  Eigen::VectorXd balance(double time, double &norm);
+
+  CoupledBody<dim> &body_;
+  algebra::Preconditioning kind_;
+  StaticSystem<dim> system_;
+  Eigen::MatrixXd free_motions_; // orthonormal columns
+  bool knows_free_motions_ = false;
+  std::unique_ptr<algebra::Preconditioner> preconditioner_;
+  int n_solves_ = 0, n_iterations_ = 0;
+  double largest_load_ = 0;
+};
+} // namespace ligament::program

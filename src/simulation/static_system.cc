@@ -1,0 +1,283 @@
+#include "src/simulation/static_system.h"
+
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+/// Of small motions, in spacings: rotations enter forces squared, and this squared is round-off.
+constexpr double amplitude = 1e-14;
+} // namespace
+
+template <int dim>
+StaticSystem<dim>::StaticSystem(CoupledBody<dim> &body)
+    : body_(body), n_particles_(body.zone ? body.zone->state.size() : 0),
+      n_nodes_(body.far ? body.far->mesh().n_nodes() : 0)
+{
+  if (body.zone)
+    motion_ = body.zone->state;
+  find_inert();
+}
+
+template <int dim>
+void StaticSystem<dim>::find_inert()
+{
+  is_inert_.assign(std::size_t(block) * (n_particles_ + n_nodes_), 0);
+  const auto set = [&](int row, int first, int end) {
+    for (int c = first; c < end; ++c)
+      is_inert_[row * block + c] = 1;
+  };
+  for (int i = 0; i < n_particles_; ++i)
+    if (!body_.zone->state.turns)
+      set(i, dim, block);
+  if (const auto *overlap = body_.coupler->overlap())
+    for (const auto &m : overlap->members)
+      if (m.pad)
+        set(m.particle, 0, block);
+  for (int i = 0; i < n_nodes_; ++i) {
+    set(node_block(i), dim, block);
+    for (int c = 0; c < dim; ++c)
+      if (body_.far->is_held(i, c))
+        set(node_block(i), c, c + 1);
+  }
+  if (body_.far)
+    for (const auto &hanging : body_.far->mesh().hanging)
+      set(node_block(hanging.node), 0, dim);
+}
+
+template <int dim>
+long StaticSystem<dim>::n_unknowns() const
+{
+  return long(std::count(is_inert_.begin(), is_inert_.end(), 0));
+}
+
+template <int dim>
+Components<dim> StaticSystem<dim>::nodal_zero() const
+{
+  Components<dim> nodal;
+  for (auto &component : nodal)
+    component.assign(n_nodes_, 0.);
+  return nodal;
+}
+
+template <int dim>
+void StaticSystem<dim>::take(const Eigen::VectorXd &y, particles::Particles<dim> &zone,
+                             Components<dim> &nodal) const
+{
+  for (int i = 0; i < n_particles_; ++i) {
+    const double *const of = y.data() + std::size_t(i) * block;
+    for (int c = 0; c < dim; ++c)
+      zone.velocity[c][i] = of[c];
+    for (int c = 0; c < n_spins<dim> && zone.turns; ++c)
+      zone.spin[c][i] = of[dim + c];
+  }
+  for (int i = 0; i < n_nodes_; ++i)
+    for (int c = 0; c < dim; ++c)
+      nodal[c][i] = y[std::size_t(node_block(i)) * block + c];
+  if (body_.far)
+    body_.far->follow_masters(nodal);
+  body_.coupler->expand(zone, nodal);
+}
+
+template <int dim>
+Eigen::VectorXd StaticSystem<dim>::give(const particles::Particles<dim> &zone,
+                                        const Components<dim> &nodal, double factor) const
+{
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(size());
+  for (int i = 0; i < n_particles_; ++i) {
+    double *const of = f.data() + std::size_t(i) * block;
+    for (int c = 0; c < dim; ++c)
+      of[c] = factor * zone.force[c][i];
+    for (int c = 0; c < n_spins<dim> && zone.turns; ++c)
+      of[dim + c] = factor * zone.torque[c][i];
+  }
+  for (int i = 0; i < n_nodes_; ++i)
+    for (int c = 0; c < dim; ++c)
+      f[std::size_t(node_block(i)) * block + c] = factor * nodal[c][i];
+  drop_inert(f);
+  return f;
+}
+
+template <int dim>
+void StaticSystem<dim>::drop_inert(Eigen::VectorXd &y) const
+{
+  for (int k = 0; k < size(); ++k)
+    if (is_inert_[k])
+      y[k] = 0;
+}
+
+template <int dim>
+Eigen::VectorXd StaticSystem<dim>::forces(double time, double noted_share)
+{
+  auto bodies = body_.bodies();
+  Components<dim> nodal = nodal_zero();
+  body_.coupler->compute_trial(bodies, time, noted_share, nodal);
+  if (!body_.zone) {
+    body_.coupler->restrict_forces(motion_, nodal);
+    return give(motion_, nodal, 1);
+  }
+  body_.coupler->restrict_forces(body_.zone->state, nodal);
+  return give(body_.zone->state, nodal, 1);
+}
+
+template <int dim>
+double StaticSystem<dim>::load_force() const
+{
+  double sum = 0;
+  for (int l = 0; l < int(body_.loads.size()); ++l) {
+    ligament::Vector<dim> force = ligament::Vector<dim>::Zero();
+    if (body_.zone)
+      force += body_.force()->reaction(l);
+    if (body_.far)
+      force += body_.far->reaction(l);
+    sum += force.norm();
+  }
+  return sum;
+}
+
+template <int dim>
+Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
+{
+  Components<dim> nodal = nodal_zero();
+  take(y, motion_, nodal);
+  double scale = 1;
+  if (body_.zone) {
+    double largest = 0;
+    for (const auto &v : motion_.velocity)
+      for (const double value : v)
+        largest = std::max(largest, std::abs(value));
+    for (const auto &w : motion_.spin)
+      for (const double value : w)
+        largest = std::max(largest, body_.spacing * std::abs(value));
+    scale = largest > 0 ? amplitude * body_.spacing / largest : 1;
+    for (int c = 0; c < dim; ++c)
+      for (int i = 0; i < n_particles_; ++i)
+        motion_.displacement[c][i] = scale * motion_.velocity[c][i];
+    for (int c = 0; c < n_spins<dim> && motion_.turns; ++c)
+      for (int i = 0; i < n_particles_; ++i)
+        if constexpr (dim == 2)
+          motion_.rotation[c][i] = scale * motion_.spin[c][i];
+        else
+          motion_.rotation[c + 1][i] = scale / 2 * motion_.spin[c][i];
+    if (dim == 3 && motion_.turns)
+      std::fill(motion_.rotation[0].begin(), motion_.rotation[0].end(), 1.);
+    body_.force()->compute_linear(motion_);
+    const auto undo = [&](auto &components) {
+      for (auto &component : components)
+        for (double &value : component)
+          value /= scale;
+    };
+    undo(motion_.force);
+    undo(motion_.torque);
+  }
+  Components<dim> force = nodal_zero();
+  if (body_.far) {
+    body_.far->subtract_stiffness(nodal, force);
+    body_.coupler->subtract_near_stiffness(nodal, force);
+  }
+  body_.coupler->restrict_forces(motion_, force);
+  return give(motion_, force, -1);
+}
+
+template <int dim>
+Eigen::VectorXd StaticSystem<dim>::held_motion(double from, double to, double factor) const
+{
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(size());
+  if (!body_.far)
+    return y;
+  Components<dim> nodal = nodal_zero();
+  body_.far->add_held_motion(from, to, factor, nodal);
+  for (int i = 0; i < n_nodes_; ++i)
+    for (int c = 0; c < dim; ++c)
+      y[std::size_t(node_block(i)) * block + c] = nodal[c][i];
+  return y;
+}
+
+template <int dim>
+void StaticSystem<dim>::displace(const Eigen::VectorXd &y, double factor)
+{
+  Components<dim> nodal = nodal_zero();
+  if (body_.zone) {
+    auto &zone = body_.zone->state;
+    take(y, zone, nodal);
+    body_.zone->drift(factor);
+  } else
+    take(y, motion_, nodal);
+  for (int c = 0; c < dim && body_.far; ++c)
+    for (int i = 0; i < n_nodes_; ++i)
+      body_.far->displacement[c][i] += factor * nodal[c][i];
+  if (body_.far)
+    body_.far->distribute();
+  auto bodies = body_.bodies();
+  body_.coupler->follow(bodies);
+}
+
+template <int dim>
+void StaticSystem<dim>::set_velocities(const Eigen::VectorXd &y, const coupling::StepTime &step)
+{
+  Components<dim> nodal = nodal_zero();
+  take(y, body_.zone ? body_.zone->state : motion_, nodal);
+  if (body_.far)
+    body_.far->velocity = nodal;
+  auto bodies = body_.bodies();
+  body_.coupler->start_velocities(bodies, step);
+}
+
+template <int dim>
+typename StaticSystem<dim>::Place StaticSystem<dim>::place() const
+{
+  Place place;
+  if (body_.zone) {
+    place.zone = body_.zone->state.displacement;
+    place.rotation = body_.zone->state.rotation;
+  }
+  if (body_.far)
+    place.far = body_.far->displacement;
+  return place;
+}
+
+template <int dim>
+void StaticSystem<dim>::put_back(const Place &place)
+{
+  if (body_.zone) {
+    body_.zone->state.displacement = place.zone;
+    body_.zone->state.rotation = place.rotation;
+  }
+  if (body_.far)
+    body_.far->displacement = place.far;
+  auto bodies = body_.bodies();
+  body_.coupler->follow(bodies);
+}
+
+template <int dim>
+Eigen::MatrixXd StaticSystem<dim>::rigid_motions() const
+{
+  constexpr int n_motions = dim + n_spins<dim>;
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(size(), n_motions);
+  const auto put = [&](int row, const ligament::Vector<dim> &x, bool turns) {
+    for (int c = 0; c < dim; ++c)
+      motions(row * block + c, c) = 1;
+    if constexpr (dim == 2) {
+      motions(row * block, 2) = -x[1];
+      motions(row * block + 1, 2) = x[0];
+    } else
+      for (int k = 0; k < 3; ++k)
+        motions.template block<3, 1>(row * block, 3 + k) = ligament::Vector<3>::Unit(k).cross(x);
+    for (int k = 0; k < n_spins<dim> && turns; ++k)
+      motions(row * block + dim + k, dim + k) = 1;
+  };
+  for (int i = 0; i < n_particles_; ++i)
+    put(i, get(body_.zone->state.reference, i), body_.zone->state.turns);
+  for (int i = 0; i < n_nodes_; ++i)
+    put(node_block(i), body_.far->mesh().nodes[i], false);
+  for (int k = 0; k < size(); ++k)
+    if (is_inert_[k])
+      motions.row(k).setZero();
+  return motions;
+}
+
+template class StaticSystem<2>;
+template class StaticSystem<3>;
+} // namespace ligament::program

@@ -1,0 +1,73 @@
+// The body as a static solver sees it: unknowns, what is out of balance, and how stiff it answers.
+#pragma once
+
+#include "algebra/block_matrix.h"
+#include "src/simulation/coupled_body.h"
+
+namespace ligament::program
+{
+/// Vectors have a block of dim displacements (m) and the spins' rotations (rad) for each particle,
+/// then for each node, whose rotations are none. Motions z of the body are T y (theory.md eqs.
+/// (Q1), (Q2)); forces on y are T^T f. Pads, hanging nodes, held components and rotations that
+/// nothing has are inert: no unknown, and no force on them.
+template <int dim>
+class StaticSystem
+{
+public:
+  static constexpr int block = n_particle_dofs<dim>;
+
+  explicit StaticSystem(CoupledBody<dim> &body);
+
+  int size() const { return int(is_inert_.size()); }
+  long n_unknowns() const;
+
+  /// What acts on the unknowns in the present state at the loads of `time` (s), in N and N m; see
+  /// ParticleForce::compute_trial.
+  Eigen::VectorXd forces(double time, double noted_share = 1);
+  /// Sum over the loads of what each exerts on the body, in N; of the last forces().
+  double load_force() const;
+
+  /// K y: minus what a small motion y about the reference makes act. Inert numbers of y count.
+  Eigen::VectorXd stiffness_times(const Eigen::VectorXd &y);
+
+  /// Motion of held components alone between two times, over a factor.
+  Eigen::VectorXd held_motion(double from, double to, double factor = 1) const;
+
+  /// Moves the body by factor T y; its velocities are lost.
+  void displace(const Eigen::VectorXd &y, double factor = 1);
+  /// Velocities T y of the body before the kick of a step in which the far field acts.
+  void set_velocities(const Eigen::VectorXd &y, const coupling::StepTime &step);
+
+  /// Where the body is, and back there.
+  struct Place
+  {
+    Components<dim> zone, far;
+    Components<particles::Particles<dim>::n_rotations> rotation;
+  };
+  Place place() const;
+  void put_back(const Place &place);
+
+  /// A sparse matrix near to K on all y (theory.md eq. (Q4)); overlap particles hang on the mesh by
+  /// `penalty` times the springs that serve best.
+  algebra::BlockMatrix near_stiffness(double penalty) const;
+
+  void drop_inert(Eigen::VectorXd &y) const;
+
+  /// Translations and rotations about the middle of the specimen, one column each, as motions y.
+  Eigen::MatrixXd rigid_motions() const;
+
+private:
+  int node_block(int node) const { return n_particles_ + node; }
+  void find_inert();
+  void take(const Eigen::VectorXd &y, particles::Particles<dim> &zone, Components<dim> &nodal) const;
+  Eigen::VectorXd give(const particles::Particles<dim> &zone, const Components<dim> &nodal,
+              double factor) const;
+  void expand_into_velocities(const Eigen::VectorXd &y);
+  Components<dim> nodal_zero() const;
+
+  CoupledBody<dim> &body_;
+  int n_particles_, n_nodes_;
+  std::vector<char> is_inert_;       // of each number of y
+  particles::Particles<dim> motion_; // scratch: a small motion of the zone
+};
+} // namespace ligament::program
