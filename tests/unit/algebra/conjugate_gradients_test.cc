@@ -106,6 +106,33 @@ TEST(ConjugateGradients, NoticeALoadThatNothingResists)
   EXPECT_EQ(solve(a, VectorXd::Random(n), x, 1e-10).end, End::indefinite);
 }
 
+TEST(ConjugateGradients, NoticeWhatRoundOffResists)
+{
+  VectorXd values = VectorXd::Ones(n);
+  values[17] = 1e-17;
+  const MatrixXd a = values.asDiagonal();
+  VectorXd x;
+  EXPECT_EQ(solve(a, VectorXd::Ones(n), x, 1e-10).end, End::indefinite);
+}
+
+TEST(ConjugateGradients, StopWhereTheOperatorIsNotExacter)
+{
+  const MatrixXd a = with_eigenvalues(VectorXd::LinSpaced(n, 1, 100));
+  const VectorXd right = VectorXd::Random(n);
+  VectorXd x;
+  const auto single = [&](const VectorXd &p, VectorXd &ap) {
+    ap = (a * p).cast<float>().cast<double>();
+  };
+  const auto result = algebra::conjugate_gradients(
+      single, [](const VectorXd &r, VectorXd &z) { z = r; }, [](VectorXd &) {}, right, x, 1e-13,
+      100000);
+  EXPECT_EQ(result.end, End::stalled);
+  EXPECT_LT(result.iterations, 100000);
+  VectorXd image;
+  single(x, image);
+  EXPECT_DOUBLE_EQ(result.residual, (right - image).norm());
+}
+
 TEST(ConjugateGradients, ProjectFreeMotionsOut)
 {
   // Without an inverse near zero: a chain of springs, free to move as a whole.
