@@ -40,7 +40,7 @@ function(third_party header result)
     set(party deal.II)
   elseif(header MATCHES "^(trilinos/)?(Amesos|Epetra|Teuchos|AztecOO|Ifpack|ml_|Tpetra|Belos)")
     set(party Trilinos)
-  elseif(header STREQUAL "cholmod.h")
+  elseif(header MATCHES "^(cholmod|omp)\\.h$") # its threads are OpenMP's
     set(party CHOLMOD)
   elseif(header MATCHES "^(trilinos/)?zoltan")
     set(party Zoltan)

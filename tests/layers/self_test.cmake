@@ -46,7 +46,7 @@ must_pass(src/simulation/make_force.cc "#include \"dem/law.h\"\ndem::Law law;")
 must_pass(src/simulation/make_force.h "Academy::law(); // not of dem")
 must_pass(src/verification/cases/waves.cc "#include \"dem/law.h\"")
 
-must_pass(algebra/factor.cc "#include <cholmod.h>\n#include \"core/types.h\"")
+must_pass(algebra/factor.cc "#include <cholmod.h>\n#include <omp.h>\n#include \"core/types.h\"")
 
 must_fail(core/types.h "#include \"particles/particles.h\"")
 must_fail(algebra/factor.h "#include \"particles/particles.h\"")
