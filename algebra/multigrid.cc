@@ -29,6 +29,8 @@ void need_mpi()
     return;
   MPI_Finalized(&was_there);
   core::require<core::EnvironmentError>(!was_there, "multigrid: MPI has been shut down already");
+  // A process on its own: no daemon beside it (Open MPI; others and mpirun don't ask).
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", false);
   int threads = 0;
   core::require<core::EnvironmentError>(
       MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads) == MPI_SUCCESS,

@@ -15,7 +15,7 @@ enum class Preconditioning
   multigrid  // smoothed aggregation, of Trilinos ML
 };
 
-/// Where set-up and some six solves take equally long (bench/algebra.cc, reference BLAS).
+/// Where set-up and some ten solves take equally long (bench/algebra.cc, reference BLAS).
 constexpr std::int64_t most_unknowns_to_factorise(int dimension)
 {
   return dimension == 2 ? 20000 : 5000;
