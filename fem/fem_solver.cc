@@ -331,6 +331,13 @@ void FemSolver<dim>::add_held_motion(double from, double to, double factor,
 }
 
 template <int dim>
+void FemSolver<dim>::add_held_gap(double time, Components<dim> &u) const
+{
+  for (const LoadedComponent &h : held_components_)
+    u[h.component][h.node] += prescribed(h, time) - displacement[h.component][h.node];
+}
+
+template <int dim>
 void FemSolver<dim>::subtract_stiffness(Components<dim> &u, Components<dim> &f) const
 {
   follow_masters(u);

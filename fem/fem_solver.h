@@ -72,6 +72,8 @@ public:
   void compute_trial(double time);
   /// Adds factor times how held components of all nodes move from one time to another (s).
   void add_held_motion(double from, double to, double factor, Components<dim> &u) const;
+  /// Adds what they lack to where their loads have them at the time.
+  void add_held_gap(double time, Components<dim> &u) const;
   /// force -= K u for any motion u of the own cells about the reference, m and N: hanging nodes are
   /// made to follow, and hand what acts on them to their masters.
   void subtract_stiffness(Components<dim> &u, Components<dim> &force) const;

@@ -29,8 +29,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       reference_(from ? from->reference : core::State()),
       body_(make_body<dim>(scene_, log_, timers_, reference_, make_force)),
       regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
-      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures,
-                from != nullptr),
+      phases_(scene_, body_, log_), recorder_(scene_, folder_, body_, log_, timers_, progress,
+                                              clock_.n_steps, draws_pictures, from != nullptr),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
   setup_seconds_ = timers_.total();
@@ -54,6 +54,7 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   clock_.now.step = long(manifest.step);
   clock_.now.time = manifest.time;
   damping_.load(run);
+  phases_.load(run);
   recorder_.load(run, checkpoint.kept, body_, clock_.now.step);
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
@@ -79,6 +80,7 @@ core::State Simulation<dim>::run_state() const
   core::State run;
   regime_.save(run);
   damping_.save(run);
+  phases_.save(run);
   recorder_.save(run);
   return run;
 }
@@ -157,7 +159,8 @@ Clock Simulation<dim>::clock_of() const
 template <int dim>
 void Simulation<dim>::let_rest()
 {
-  if (!body_.zone || !body_.force()->can_rest() || !body_.coupler->can_rest())
+  if (!body_.zone || !body_.force()->can_rest() || !body_.coupler->can_rest() ||
+      scene_.time.has_phases()) // an equilibrium moves all
     return;
   const double strain = scene_.time.rest_threshold;
   body_.zone->let_rest(particles::RestLimits::of_strain(
@@ -183,6 +186,28 @@ void Simulation<dim>::report_rest(RunRecord &record)
 }
 
 template <int dim>
+std::optional<Stop> Simulation<dim>::look()
+{
+  if (const auto reason = regime_.look(body_, clock_.now, log_))
+    if (const auto stop = recorder_.report_excess(*reason, clock_.now))
+      return stop;
+  return recorder_.observe(body_, clock_.now, damping_.energy());
+}
+
+template <int dim>
+std::optional<Stop> Simulation<dim>::skip_steps()
+{
+  if (!phases_.are_due(body_, clock_))
+    return {};
+  if (clock_.now.step > 0)
+    if (const auto stop = look())
+      return stop;
+  const auto timing = timers_.scope(timers_.section("equilibria"));
+  recorder_.in_static_phase(true);
+  return phases_.advance(body_, clock_, damping_.energy(), [&] { return look(); });
+}
+
+template <int dim>
 std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
 {
   auto bodies = body_.bodies();
@@ -192,11 +217,13 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     let_rest();
   while (!clock_.is_at_end()) {
     if (clock_.now.step % ratio == 0) {
-      if (const auto reason = regime_.look(body_, clock_.now, log_))
-        if (const auto stop = recorder_.report_excess(*reason, clock_.now))
-          return stop;
-      if (const auto stop = recorder_.observe(body_, clock_.now, damping_.energy()))
+      if (const auto stop = skip_steps())
         return stop;
+      if (clock_.is_at_end())
+        break;
+      if (const auto stop = look())
+        return stop;
+      recorder_.in_static_phase(false);
       if (!asked_by_.empty())
         return {};
     }
@@ -279,6 +306,7 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
 
   run_loop(request, record);
   record.regime = regime_.history();
+  record.phases = phases_.entries(body_, clock_);
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;

@@ -9,23 +9,10 @@
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/recorder.h"
 #include "src/simulation/regime_control.h"
+#include "src/simulation/static_phases.h"
 
 namespace ligament::program
 {
-/// Steps of a run and where it stands.
-struct Clock
-{
-  coupling::StepTime now;
-  long n_steps = 0;
-
-  bool is_at_end() const { return now.step >= n_steps; }
-  void advance()
-  {
-    ++now.step;
-    now.time = double(now.step) * now.dt;
-  }
-};
-
 template <int dim>
 class Simulation
 {
@@ -66,6 +53,11 @@ private:
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;
   void build_anew();
+  /// Between forces and kick of a step in which the far field acts: what ends the run, or nothing.
+  std::optional<Stop> look();
+  /// The same of all steps that an equilibrium stands for, where one is due; at its end in the last
+  /// of them.
+  std::optional<Stop> skip_steps();
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop(const EndRequest &request);
   /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
@@ -85,6 +77,7 @@ private:
   RegimeControl<dim> regime_;
   BodyDamping<dim> damping_;
   Clock clock_;
+  StaticPhases<dim> phases_;
   Recorder<dim> recorder_;
 
   std::optional<CheckpointKeeper> keeper_;

@@ -200,14 +200,15 @@ algebra::BlockMatrix StaticSystem<dim>::near_stiffness(double penalty) const
   const Eigen::SparseMatrix<double> near = body_.coupler->near_stiffness();
   const auto *overlap = body_.coupler->overlap();
   const auto near_block = [&](Eigen::Index k) {
-    return node_block(overlap->near_nodes[k / dim]);
+    return node_block(overlap->near_nodes[k % overlap->n_nodes()]);
   };
 
-  of_zone([&](const Term &term) { assembly.announce(term.members.data(), int(term.members.size())); });
+  of_zone(
+      [&](const Term &term) { assembly.announce(term.members.data(), int(term.members.size())); });
   of_cells([&](const std::vector<int> &members, const fem::CellMatrix<dim> &) {
     assembly.announce(members.data(), int(members.size()));
   });
-  for (int k = 0; k < near.outerSize(); k += dim)
+  for (int k = 0; k < near.outerSize(); ++k)
     for (Eigen::SparseMatrix<double>::InnerIterator it(near, k); it; ++it) {
       const int pair[] = {near_block(it.row()), near_block(it.col())};
       assembly.announce(pair, 2);
@@ -234,7 +235,7 @@ algebra::BlockMatrix StaticSystem<dim>::near_stiffness(double penalty) const
   for (int k = 0; k < near.outerSize(); ++k)
     for (Eigen::SparseMatrix<double>::InnerIterator it(near, k); it; ++it) {
       const int row = near_block(it.row()), column = near_block(it.col());
-      const int c = int(it.row() % dim), d = int(it.col() % dim);
+      const int c = int(it.row()) / overlap->n_nodes(), d = int(it.col()) / overlap->n_nodes();
       if (is_inert_[row * block + c] || is_inert_[column * block + d])
         continue;
       one.fill(0);

@@ -1,5 +1,6 @@
 #include "src/simulation/static_system.h"
 
+#include <Eigen/Geometry>
 
 #include <algorithm>
 
@@ -138,6 +139,16 @@ double StaticSystem<dim>::load_force() const
 }
 
 template <int dim>
+double StaticSystem<dim>::round_off() const
+{
+  const double modulus = body_.far ? body_.far->body().stiffness(0, 0)
+                                   : body_.force()->elastic_constants().stiffness(0, 0);
+  const double length =
+      body_.spacing > 0 ? body_.spacing : body_.far->mesh().cell_size[0].minCoeff();
+  return 1e-15 * modulus * (dim == 2 ? length * body_.thickness : length * length);
+}
+
+template <int dim>
 Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
 {
   Components<dim> nodal = nodal_zero();
@@ -189,10 +200,28 @@ Eigen::VectorXd StaticSystem<dim>::held_motion(double from, double to, double fa
     return y;
   Components<dim> nodal = nodal_zero();
   body_.far->add_held_motion(from, to, factor, nodal);
+  put_nodal(nodal, y);
+  return y;
+}
+
+template <int dim>
+Eigen::VectorXd StaticSystem<dim>::held_gap(double time) const
+{
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(size());
+  if (!body_.far)
+    return y;
+  Components<dim> nodal = nodal_zero();
+  body_.far->add_held_gap(time, nodal);
+  put_nodal(nodal, y);
+  return y;
+}
+
+template <int dim>
+void StaticSystem<dim>::put_nodal(const Components<dim> &nodal, Eigen::VectorXd &y) const
+{
   for (int i = 0; i < n_nodes_; ++i)
     for (int c = 0; c < dim; ++c)
       y[std::size_t(node_block(i)) * block + c] = nodal[c][i];
-  return y;
 }
 
 template <int dim>
@@ -249,6 +278,32 @@ void StaticSystem<dim>::put_back(const Place &place)
     body_.far->displacement = place.far;
   auto bodies = body_.bodies();
   body_.coupler->follow(bodies);
+}
+
+template <int dim>
+typename StaticSystem<dim>::Velocities StaticSystem<dim>::velocities() const
+{
+  Velocities v;
+  if (body_.zone) {
+    v.zone = body_.zone->state.velocity;
+    v.spin = body_.zone->state.spin;
+  }
+  if (body_.far)
+    v.far = body_.far->velocity;
+  return v;
+}
+
+template <int dim>
+void StaticSystem<dim>::put_back(const Velocities &v)
+{
+  if (body_.zone) {
+    body_.zone->state.velocity = v.zone;
+    body_.zone->state.spin = v.spin;
+  }
+  if (body_.far)
+    body_.far->velocity = v.far;
+  auto bodies = body_.bodies();
+  body_.coupler->take_velocities(bodies);
 }
 
 template <int dim>

@@ -27,11 +27,17 @@ public:
   /// Sum over the loads of what each exerts on the body, in N; of the last forces().
   double load_force() const;
 
+  /// A force in N that is round-off in this body: what a strain of 1e-15 would make act on a face.
+  double round_off() const;
+
   /// K y: minus what a small motion y about the reference makes act. Inert numbers of y count.
   Eigen::VectorXd stiffness_times(const Eigen::VectorXd &y);
 
   /// Motion of held components alone between two times, over a factor.
   Eigen::VectorXd held_motion(double from, double to, double factor = 1) const;
+
+  /// What they lack to where the loads of `time` have them.
+  Eigen::VectorXd held_gap(double time) const;
 
   /// Moves the body by factor T y; its velocities are lost.
   void displace(const Eigen::VectorXd &y, double factor = 1);
@@ -47,6 +53,15 @@ public:
   Place place() const;
   void put_back(const Place &place);
 
+  /// How it moves, and so again; as the coupler carries it.
+  struct Velocities
+  {
+    Components<dim> zone, far;
+    Components<n_spins<dim>> spin;
+  };
+  Velocities velocities() const;
+  void put_back(const Velocities &velocities);
+
   /// A sparse matrix near to K on all y (theory.md eq. (Q4)); overlap particles hang on the mesh by
   /// `penalty` times the springs that serve best.
   algebra::BlockMatrix near_stiffness(double penalty) const;
@@ -59,11 +74,13 @@ public:
 private:
   int node_block(int node) const { return n_particles_ + node; }
   void find_inert();
-  void take(const Eigen::VectorXd &y, particles::Particles<dim> &zone, Components<dim> &nodal) const;
+  void take(const Eigen::VectorXd &y, particles::Particles<dim> &zone,
+            Components<dim> &nodal) const;
   Eigen::VectorXd give(const particles::Particles<dim> &zone, const Components<dim> &nodal,
-              double factor) const;
+                       double factor) const;
   void expand_into_velocities(const Eigen::VectorXd &y);
   Components<dim> nodal_zero() const;
+  void put_nodal(const Components<dim> &nodal, Eigen::VectorXd &y) const;
 
   CoupledBody<dim> &body_;
   int n_particles_, n_nodes_;

@@ -1,6 +1,7 @@
 // Equilibrium of the body at given loads, and how it answers when they grow.
 #pragma once
 
+#include "algebra/conjugate_gradients.h"
 #include "algebra/preconditioner.h"
 #include "src/simulation/static_system.h"
 
@@ -11,7 +12,7 @@ namespace ligament::program
 /// Newton's method with the stiffness about the reference, each step by preconditioned conjugate
 /// gradients on y (theory.md section 6).
 template <int dim>
-class StaticSolver
+class EquilibriumSolver
 {
 public:
   enum class End
@@ -22,7 +23,7 @@ public:
   };
 
   /// The body must outlive it and have trials.
-  StaticSolver(CoupledBody<dim> &body, algebra::Preconditioning kind);
+  EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind);
 
   /// From the present place to equilibrium at the loads of `time` (s), held components being where
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.

@@ -1,6 +1,5 @@
-#include "src/simulation/static_solver.h"
+#include "src/simulation/equilibrium_solver.h"
 
-#include "algebra/conjugate_gradients.h"
 #include "core/check.h"
 
 #include <Eigen/Eigenvalues>
@@ -16,7 +15,7 @@ constexpr int most_iterations = 2000;
 } // namespace
 
 template <int dim>
-StaticSolver<dim>::StaticSolver(CoupledBody<dim> &body, algebra::Preconditioning kind)
+EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind)
     : body_(body), kind_(kind), system_(body)
 {
   core::require(!body.zone || body.force()->has_trials(),
@@ -24,7 +23,7 @@ StaticSolver<dim>::StaticSolver(CoupledBody<dim> &body, algebra::Preconditioning
 }
 
 template <int dim>
-void StaticSolver<dim>::prepare()
+void EquilibriumSolver<dim>::prepare()
 {
   if (!knows_free_motions_)
     find_free_motions();
@@ -45,7 +44,7 @@ void StaticSolver<dim>::prepare()
 
 // Of the rigid motions, as far as supports let them be, those that cost no energy.
 template <int dim>
-void StaticSolver<dim>::find_free_motions()
+void EquilibriumSolver<dim>::find_free_motions()
 {
   knows_free_motions_ = true;
   Eigen::MatrixXd motions = system_.rigid_motions();
@@ -80,15 +79,15 @@ void StaticSolver<dim>::find_free_motions()
 }
 
 template <int dim>
-void StaticSolver<dim>::project(Eigen::VectorXd &y) const
+void EquilibriumSolver<dim>::project(Eigen::VectorXd &y) const
 {
   if (free_motions_.cols() > 0)
     y -= free_motions_ * (free_motions_.transpose() * y).eval();
 }
 
 template <int dim>
-algebra::CgResult StaticSolver<dim>::solve(const Eigen::VectorXd &right, double absolute,
-                                           Eigen::VectorXd &y)
+algebra::CgResult EquilibriumSolver<dim>::solve(const Eigen::VectorXd &right, double absolute,
+                                                Eigen::VectorXd &y)
 {
   prepare();
   y.resize(0);
@@ -101,11 +100,14 @@ algebra::CgResult StaticSolver<dim>::solve(const Eigen::VectorXd &right, double 
       [&](Eigen::VectorXd &v) { project(v); }, right, y, absolute, most_iterations);
   ++n_solves_;
   n_iterations_ += result.iterations;
+  if (getenv("LIG_DBG"))
+    fprintf(stderr, "solve |r| %g goal %g it %d res %g end %d\n", right.norm(), absolute,
+            result.iterations, result.residual, int(result.end));
   return result;
 }
 
 template <int dim>
-Eigen::VectorXd StaticSolver<dim>::balance(double time, double &norm)
+Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 {
   Eigen::VectorXd r = system_.forces(time);
   project(r);
@@ -115,13 +117,14 @@ Eigen::VectorXd StaticSolver<dim>::balance(double time, double &norm)
 }
 
 template <int dim>
-typename StaticSolver<dim>::End StaticSolver<dim>::find_equilibrium(double time,
-                                                                    Eigen::VectorXd &moved)
+typename EquilibriumSolver<dim>::End
+EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
 {
   if (!knows_free_motions_)
     find_free_motions();
   const auto start = system_.place();
-  moved = Eigen::VectorXd::Zero(system_.size());
+  moved = system_.held_gap(time);
+  system_.displace(moved);
   constexpr int most_steps = 25, patience = 8;
   double least = std::numeric_limits<double>::infinity();
   int since_least = 0;
@@ -129,7 +132,7 @@ typename StaticSolver<dim>::End StaticSolver<dim>::find_equilibrium(double time,
   for (int step = 0; step < most_steps && since_least < patience; ++step) {
     double norm = 0;
     const Eigen::VectorXd r = balance(time, norm);
-    const double goal = tolerance * (largest_load_ > 0 ? largest_load_ : norm);
+    const double goal = std::max(tolerance * largest_load_, system_.round_off());
     if (!(norm > goal))
       return End::converged;
     since_least = norm < 0.5 * least ? 0 : since_least + 1;
@@ -148,8 +151,8 @@ typename StaticSolver<dim>::End StaticSolver<dim>::find_equilibrium(double time,
 }
 
 template <int dim>
-typename StaticSolver<dim>::End StaticSolver<dim>::find_response(double from, double to,
-                                                                 Eigen::VectorXd &y)
+typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(double from, double to,
+                                                                           Eigen::VectorXd &y)
 {
   const Eigen::VectorXd held = system_.held_motion(from, to);
   Eigen::VectorXd right = system_.forces(to);
@@ -175,6 +178,6 @@ typename StaticSolver<dim>::End StaticSolver<dim>::find_response(double from, do
   }
 }
 
-template class StaticSolver<2>;
-template class StaticSolver<3>;
+template class EquilibriumSolver<2>;
+template class EquilibriumSolver<3>;
 } // namespace ligament::program

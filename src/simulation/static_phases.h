@@ -1,0 +1,49 @@
+// Loading without steps: from one breaking bond to the next by equilibria.
+#pragma once
+
+#include "core/log.h"
+#include "src/output/run_record.h"
+#include "src/simulation/clock.h"
+#include "src/simulation/equilibrium_solver.h"
+#include "src/simulation/load_growth.h"
+#include "src/simulation/recorder.h"
+
+namespace ligament::program
+{
+/// A run alternates: dynamic phases, in which the loop takes its steps, until the body is calm; and
+/// static ones, which end at the first step in which a bond bears its strength (theory.md section
+/// 6). Sequential loading has no steps in between.
+template <int dim>
+class StaticPhases
+{
+public:
+  /// Looks at a state of a static phase, in which forces are those of its step: what ends the run,
+  /// or nothing.
+  using Look = std::function<std::optional<Stop>()>;
+
+  /// The body must outlive it. Nothing where the scene's loading is dynamic.
+  StaticPhases(const Scene &scene, CoupledBody<dim> &body, core::Log &log);
+  ~StaticPhases();
+  StaticPhases(StaticPhases &&) noexcept;
+  StaticPhases &operator=(StaticPhases &&) noexcept;
+
+  /// Between forces and kick of a step in which the far field acts: whether the body is calm, or
+  /// the run begins.
+  bool are_due(const CoupledBody<dim> &body, const Clock &clock);
+
+  /// Takes body and clock to the next step in which a bond breaks, or to the end; forces and
+  /// velocities are then those between forces and kick of that step. `damping` in J so far.
+  std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
+                              const Look &look);
+
+  /// Where the run ends: the last phase is complete.
+  std::vector<PhaseEntry> entries(const CoupledBody<dim> &body, const Clock &clock) const;
+
+  void save(core::State &state) const;
+  void load(const core::State &state);
+
+private:
+  struct Work;
+  std::unique_ptr<Work> work_; // null: dynamic loading
+};
+} // namespace ligament::program
