@@ -4,6 +4,7 @@
 #include "core/check.h"
 
 #include <cholmod.h>
+#include <omp.h>
 
 #include <limits>
 #include <string>
@@ -29,6 +30,19 @@ public:
   Workspace &operator=(const Workspace &) = delete;
 
   mutable cholmod_common common;
+};
+
+/// CHOLMOD asks for four threads whatever the machine has to spare; theirs would be idle waits.
+class OneThread
+{
+public:
+  OneThread() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread &) = delete;
+  OneThread &operator=(const OneThread &) = delete;
+
+private:
+  int levels_;
 };
 
 void check(const cholmod_common &common)
@@ -109,6 +123,7 @@ class Cholesky : public Preconditioner
 public:
   Cholesky(const BlockMatrix &matrix, Ordering ordering)
   {
+    const OneThread here;
     cholmod_common &common = workspace_.common;
     std::vector<int> order = order_unknowns(matrix, ordering, common);
     cholmod_sparse *half = lower_half(matrix, matrix.block_size(), common);
@@ -131,6 +146,7 @@ public:
 
   void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const override
   {
+    const OneThread here;
     cholmod_dense right = {};
     right.nrow = right.nzmax = right.d = factor_->n;
     right.ncol = 1;

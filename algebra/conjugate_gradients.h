@@ -48,9 +48,9 @@ private:
 /// Solves A x = right from x on (zero where it is empty). apply(p, ap): ap = A p, A symmetric and
 /// not negative, right in its range. precondition(r, z): z near A^-1 r, symmetric and positive.
 /// project(v): takes out of v the motions that nothing resists, orthogonally (may do nothing).
-/// Stops at |r| <= tolerance (absolute). The residual is carried along; where round-off could have
-/// led it astray by a tenth of the tolerance it is taken anew, and the search ends when that no
-/// longer helps.
+/// Stops at |r| <= tolerance (absolute). The residual is carried along and taken anew in the end,
+/// by one more apply: where x is large beside what it is made of, the two differ. The search then
+/// goes on as long as that helps.
 template <typename Apply, typename Precondition, typename Project>
 CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project &&project,
                              const Eigen::VectorXd &right, Eigen::VectorXd &x, double tolerance,
@@ -79,11 +79,11 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
   int since = 0; // iterations since then
   while (true) {
     const double doubt = round_off.of_residual();
-    if (since > 0 && (result.residual <= tolerance || result.residual <= doubt)) {
-      if (since * doubt > 0.1 * tolerance)
-        renew_residual();
+    const bool is_last = result.iterations == max_iterations;
+    if (since > 0 && (result.residual <= tolerance || result.residual <= doubt || is_last)) {
+      renew_residual();
       if (result.residual > tolerance &&
-          (result.residual > 0.5 * renewed || result.residual <= doubt))
+          (result.residual > 0.5 * renewed || result.residual <= doubt || is_last))
         return result;
       renewed = result.residual;
       since = 0;
@@ -92,7 +92,7 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
       result.end = CgResult::End::converged;
       return result;
     }
-    if (result.iterations == max_iterations)
+    if (is_last)
       return result;
 
     precondition(r, z);

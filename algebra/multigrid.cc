@@ -9,6 +9,7 @@
 #include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
 #include <ml_MultiLevelPreconditioner.h>
+#include <ml_utils.h>
 #include <mpi.h>
 
 #include <cstdlib>
@@ -28,6 +29,8 @@ void need_mpi()
     return;
   MPI_Finalized(&was_there);
   core::require<core::EnvironmentError>(!was_there, "multigrid: MPI has been shut down already");
+  // A process on its own: no daemon beside it (Open MPI; others and mpirun don't ask).
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", false);
   int threads = 0;
   core::require<core::EnvironmentError>(
       MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads) == MPI_SUCCESS,
@@ -119,6 +122,8 @@ public:
         map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
         levels_(rows_, settings(matrix, modes_), false)
   {
+    // Eigenvalues are estimated from a random vector on: the same matrix, the same levels.
+    ML_set_random_seed(1);
     core::require<core::EnvironmentError>(levels_.ComputePreconditioner() == 0,
                                           "multigrid: ML cannot make its levels");
     const Eigen::VectorXd diagonal = matrix.diagonal();

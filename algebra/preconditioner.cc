@@ -8,9 +8,9 @@ namespace ligament::algebra
 std::unique_ptr<Preconditioner> make_preconditioner(Preconditioning kind, const BlockMatrix &matrix,
                                                     const Eigen::MatrixXd &modes, int dimension)
 {
-  const bool factorise =
-      kind == Preconditioning::cholesky || (kind == Preconditioning::automatic && dimension == 2 &&
-                                            matrix.n_unknowns() <= most_unknowns_to_factorise);
+  const bool factorise = kind == Preconditioning::cholesky ||
+                         (kind == Preconditioning::automatic &&
+                          matrix.n_unknowns() <= most_unknowns_to_factorise(dimension));
   return factorise ? make_cholesky(matrix, Ordering::nested_dissection)
                    : make_multigrid(matrix, modes);
 }

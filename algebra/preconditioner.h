@@ -10,13 +10,16 @@ namespace ligament::algebra
 {
 enum class Preconditioning
 {
-  automatic, // Cholesky in 2D up to most_unknowns_to_factorise, multigrid else
+  automatic, // Cholesky up to most_unknowns_to_factorise, multigrid above
   cholesky,  // supernodal, of CHOLMOD
   multigrid  // smoothed aggregation, of Trilinos ML
 };
 
-/// Above, multigrid is the faster one; below, Cholesky.
-inline constexpr std::int64_t most_unknowns_to_factorise = 200000;
+/// Where set-up and some ten solves take equally long (bench/algebra.cc, reference BLAS).
+constexpr std::int64_t most_unknowns_to_factorise(int dimension)
+{
+  return dimension == 2 ? 20000 : 5000;
+}
 
 /// z near A^-1 r, symmetric and positive definite. One thread at a time.
 class Preconditioner

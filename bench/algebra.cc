@@ -4,28 +4,26 @@
 #include "algebra/cholesky.h"
 #include "algebra/conjugate_gradients.h"
 #include "algebra/preconditioner.h"
-#include "core/check.h"
+#include "bench/roofline.h"
 #include "tests/support/lattice_body.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <string>
 
 namespace
 {
 using namespace ligament;
 
-/// Of the processor, so that other programs on the machine count little.
 class Stopwatch
 {
 public:
-  double seconds() const { return double(std::clock() - start_) / CLOCKS_PER_SEC; }
+  double seconds() const { return bench::seconds_now() - start_; }
 
 private:
-  std::clock_t start_ = std::clock();
+  double start_ = bench::seconds_now();
 };
 
 void print(const std::string &name, double value, const std::string &unit)
@@ -89,8 +87,10 @@ int main(int argc, char **argv)
   print("multiply", 1e3 * seconds, "ms");
   print("multiply_bandwidth", 1e-9 * double(matrix.n_blocks()) * block / seconds, "GB/s");
   print("memory_matrix", peak_memory(), "GB");
-  if (kind == "none")
+  if (kind == "none") {
+    print("triad_bandwidth", 1e-9 * bench::measure_roofline().bytes, "GB/s");
     return 0;
+  }
 
   const Stopwatch setup;
   const auto preconditioner =

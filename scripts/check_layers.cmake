@@ -7,21 +7,23 @@
 
 cmake_minimum_required(VERSION 3.22)
 
-set(folders core particles packings dem md fem coupling src)
+set(folders core algebra particles packings dem md fem coupling src)
 
 # Which folders a folder may include besides itself.
 set(may_include_core)
+set(may_include_algebra core)
 set(may_include_particles core)
 set(may_include_packings particles core)
 set(may_include_dem packings particles core)
 set(may_include_md particles core)
 set(may_include_fem core)
 set(may_include_coupling particles fem core)
-set(may_include_src particles packings dem md fem coupling core)
+set(may_include_src particles packings dem md fem coupling algebra core)
 
 # Which third parties; the vocabulary std, Eigen and fmt is everybody's.
 set(vocabulary std Eigen fmt)
 set(may_use_core ${vocabulary} MPI nlohmann-json zlib xxhash POSIX)
+set(may_use_algebra ${vocabulary} MPI Trilinos CHOLMOD)
 set(may_use_particles ${vocabulary} MPI Highway)
 set(may_use_packings ${vocabulary} MPI)
 set(may_use_dem ${vocabulary} Highway)
@@ -38,6 +40,8 @@ function(third_party header result)
     set(party deal.II)
   elseif(header MATCHES "^(trilinos/)?(Amesos|Epetra|Teuchos|AztecOO|Ifpack|ml_|Tpetra|Belos)")
     set(party Trilinos)
+  elseif(header MATCHES "^(cholmod|omp)\\.h$") # its threads are OpenMP's
+    set(party CHOLMOD)
   elseif(header MATCHES "^(trilinos/)?zoltan")
     set(party Zoltan)
   elseif(header MATCHES "^p[48]est")

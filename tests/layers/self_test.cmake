@@ -46,7 +46,10 @@ must_pass(src/simulation/make_force.cc "#include \"dem/law.h\"\ndem::Law law;")
 must_pass(src/simulation/make_force.h "Academy::law(); // not of dem")
 must_pass(src/verification/cases/waves.cc "#include \"dem/law.h\"")
 
+must_pass(algebra/factor.cc "#include <cholmod.h>\n#include <omp.h>\n#include \"core/types.h\"")
+
 must_fail(core/types.h "#include \"particles/particles.h\"")
+must_fail(algebra/factor.h "#include \"particles/particles.h\"")
 must_fail(particles/particles.h "#include \"dem/law.h\"")
 must_fail(dem/law.h "#include \"fem/solver.h\"")
 must_fail(fem/mesh.cc "#include \"particles/particles.h\"")
@@ -55,6 +58,7 @@ must_fail(coupling/overlap.cc "#include \"src/main.cc\"")
 
 must_fail(core/types.h "#include <deal.II/base/point.h>")
 must_fail(particles/particles.h "#include <Epetra_Vector.h>")
+must_fail(dem/law.h "#include <cholmod.h>")
 must_fail(dem/law.h "  #  include <deal.II/base/point.h>")
 must_fail(dem/law.h "#include <CLI/CLI.hpp>")
 must_fail(fem/mesh.cc "#include <nobody_knows/this.h>")

@@ -93,15 +93,17 @@ TEST(BlockAssembly, RefusesWhatNobodyAnnounced)
 {
   algebra::BlockAssembly assembly(4, 1);
   const int members[] = {0, 1}, others[] = {1, 2}, outside[] = {4};
+  const int far[] = {0, 3}, between[] = {0, 2};
   assembly.announce(members, 2);
+  assembly.announce(far, 2);
   const double entries[] = {1, -1, -1, 1};
   EXPECT_THROW(assembly.add(members, 2, entries), core::InputError); // before close
   assembly.close();
   EXPECT_THROW(assembly.announce(members, 2), core::InputError); // after it
   EXPECT_THROW(assembly.add(others, 2, entries), core::InputError);
+  EXPECT_THROW(assembly.add(between, 2, entries), core::InputError);
   EXPECT_THROW(assembly.add_block(1, 2, entries), core::InputError);
-  assembly.add(members, 2, entries);
-  EXPECT_EQ(assembly.take().n_blocks(), 6); // 4 diagonals and one pair
+  EXPECT_EQ(assembly.take().n_blocks(), 8); // 4 diagonals and two pairs
 
   assembly.announce(outside, 1);
   EXPECT_THROW(assembly.close(), core::InputError);

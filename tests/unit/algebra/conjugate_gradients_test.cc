@@ -77,6 +77,24 @@ TEST(ConjugateGradients, StopAtRoundOff)
   EXPECT_LE(result.residual, 100 * 2.3e-16 * 1e8 * x.norm());
 }
 
+// Directions of an exact inverse are smooth, and show nothing of how stiff the operator is: a soft
+// body moves far, and what its forces cancel to is noise.
+TEST(ConjugateGradients, SayTheTrueResidualOfASoftBody)
+{
+  const VectorXd values =
+      VectorXd::LinSpaced(n, -10, 0).array().unaryExpr([](double e) { return std::pow(10, e); });
+  const MatrixXd a = with_eigenvalues(values), inverse = with_eigenvalues(values.cwiseInverse());
+  const VectorXd right = VectorXd::Random(n);
+  VectorXd x;
+  const auto result =
+      algebra::conjugate_gradients([&](const VectorXd &p, VectorXd &ap) { ap = a * p; },
+                                   [&](const VectorXd &r, VectorXd &z) { z = inverse * r; },
+                                   [](VectorXd &) {}, right, x, 1e-13 * right.norm(), 1000);
+  EXPECT_EQ(result.end, End::stalled);
+  EXPECT_LT(result.iterations, 100);
+  EXPECT_DOUBLE_EQ(result.residual, (right - a * x).norm());
+}
+
 TEST(ConjugateGradients, StopAtTheLastIteration)
 {
   const MatrixXd a = with_eigenvalues(VectorXd::LinSpaced(n, 1, 1000));
@@ -85,7 +103,7 @@ TEST(ConjugateGradients, StopAtTheLastIteration)
   const auto result = solve(a, right, x, 1e-12, 5);
   EXPECT_EQ(result.end, End::stalled);
   EXPECT_EQ(result.iterations, 5);
-  EXPECT_NEAR(result.residual, (right - a * x).norm(), 1e-13 * right.norm());
+  EXPECT_DOUBLE_EQ(result.residual, (right - a * x).norm());
 }
 
 TEST(ConjugateGradients, NoticeNegativeCurvature)
@@ -104,6 +122,33 @@ TEST(ConjugateGradients, NoticeALoadThatNothingResists)
   const MatrixXd a = with_eigenvalues(values);
   VectorXd x;
   EXPECT_EQ(solve(a, VectorXd::Random(n), x, 1e-10).end, End::indefinite);
+}
+
+TEST(ConjugateGradients, NoticeWhatRoundOffResists)
+{
+  VectorXd values = VectorXd::Ones(n);
+  values[17] = 1e-17;
+  const MatrixXd a = values.asDiagonal();
+  VectorXd x;
+  EXPECT_EQ(solve(a, VectorXd::Ones(n), x, 1e-10).end, End::indefinite);
+}
+
+TEST(ConjugateGradients, StopWhereTheOperatorIsNotExacter)
+{
+  const MatrixXd a = with_eigenvalues(VectorXd::LinSpaced(n, 1, 100));
+  const VectorXd right = VectorXd::Random(n);
+  VectorXd x;
+  const auto single = [&](const VectorXd &p, VectorXd &ap) {
+    ap = (a * p).cast<float>().cast<double>();
+  };
+  const auto result = algebra::conjugate_gradients(
+      single, [](const VectorXd &r, VectorXd &z) { z = r; }, [](VectorXd &) {}, right, x, 1e-13,
+      100000);
+  EXPECT_EQ(result.end, End::stalled);
+  EXPECT_LT(result.iterations, 100000);
+  VectorXd image;
+  single(x, image);
+  EXPECT_DOUBLE_EQ(result.residual, (right - image).norm());
 }
 
 TEST(ConjugateGradients, ProjectFreeMotionsOut)

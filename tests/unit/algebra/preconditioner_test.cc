@@ -107,6 +107,20 @@ TEST_P(Bodies, FreeMotionsProjectedOut)
   EXPECT_LE((rigid.transpose() * x).norm(), 1e-10 * x.norm());
 }
 
+TEST_P(Bodies, FreeMotionsAreRaised)
+{
+  // With d the diagonal, r.(A + 1e-9 d)^-1 r of a free motion r lies between these two; multigrid
+  // has the motion on its coarsest level, and never answers more than the inverse.
+  const auto matrix = body.matrix([](const Eigen::Vector3d &) { return false; });
+  const auto near = preconditioner(matrix);
+  const VectorXd r = body.modes().col(0), d = matrix.diagonal();
+  VectorXd z;
+  near->apply(r, z);
+  EXPECT_GE(r.dot(z),
+            0.99 * r.squaredNorm() * r.squaredNorm() / (1e-9 * r.dot(d.asDiagonal() * r)));
+  EXPECT_LE(r.dot(z), 1.01 * r.squaredNorm() / (1e-9 * d.minCoeff()));
+}
+
 TEST_P(Bodies, InertRowsKeepWhatTheyAreGiven)
 {
   // One row more than particles, in no term, and a particle whose first component is held.
@@ -180,16 +194,35 @@ TEST(Preconditioner, CholeskyRefusesAnIndefiniteMatrix)
                core::EnvironmentError);
 }
 
-TEST(Preconditioner, AutomaticGoesByDimension)
+TEST(Preconditioner, AutomaticGoesBySize)
 {
   const auto all = [](const Eigen::Vector3d &) { return true; };
-  const test::LatticeBody flat(2, true, {6, 6}), solid(3, true, {3, 3, 3});
-  using algebra::make_preconditioner;
-  EXPECT_STREQ(
-      make_preconditioner(Preconditioning::automatic, flat.matrix(all), flat.modes(), 2)->name(),
-      "Cholesky");
-  EXPECT_STREQ(
-      make_preconditioner(Preconditioning::automatic, solid.matrix(all), solid.modes(), 3)->name(),
-      "multigrid");
+  const auto name = [&](const test::LatticeBody &body, int dim) {
+    return std::string(algebra::make_preconditioner(Preconditioning::automatic, body.matrix(all),
+                                                    body.modes(), dim)
+                           ->name());
+  };
+  EXPECT_EQ(name({2, true, {80, 80}}, 2), "Cholesky");
+  EXPECT_EQ(name({2, true, {84, 84}}, 2), "multigrid");
+  EXPECT_EQ(name({3, true, {5, 5, 5}}, 3), "Cholesky");
+  EXPECT_EQ(name({3, true, {6, 6, 6}}, 3), "multigrid");
+}
+
+// A run that is resumed makes its preconditioner anew.
+TEST(Preconditioner, TheSameMatrixGivesTheSameBits)
+{
+  const auto bottom = [](const Eigen::Vector3d &x) { return x[1] < 0.1; };
+  const test::LatticeBody body(2, true, {30, 30});
+  const auto matrix = body.matrix(bottom);
+  const VectorXd r = VectorXd::Random(matrix.n_unknowns());
+  for (const auto kind : {Preconditioning::cholesky, Preconditioning::multigrid}) {
+    VectorXd first, second;
+    const auto one = algebra::make_preconditioner(kind, matrix, body.modes(), 2);
+    one->apply(r, first);
+    one->apply(r, second);
+    EXPECT_EQ((first - second).norm(), 0) << one->name();
+    algebra::make_preconditioner(kind, matrix, body.modes(), 2)->apply(r, second);
+    EXPECT_EQ((first - second).norm(), 0) << one->name();
+  }
 }
 } // namespace
