@@ -318,8 +318,11 @@ template <int dim>
 void FemSolver<dim>::compute_trial(double time)
 {
   add_up_forces(time);
-  for (LoadedComponent &h : held_components_)
-    h.force = released_node_[h.node] ? 0 : -force[h.component][h.node];
+  for (LoadedComponent &h : held_components_) {
+    double &f = force[h.component][h.node];
+    h.force = released_node_[h.node] ? 0 : -f;
+    f = 0;
+  }
 }
 
 template <int dim>

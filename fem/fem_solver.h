@@ -68,7 +68,7 @@ public:
   void compute_forces(double time);
 
   /// The same of a state at rest that the body may not stay in: nothing is booked. On held
-  /// components acts what the cells exert alone; reaction() is what supports answer that with.
+  /// components nothing acts; reaction() is what supports answer the cells with.
   void compute_trial(double time);
   /// Adds factor times how held components of all nodes move from one time to another (s).
   void add_held_motion(double from, double to, double factor, Components<dim> &u) const;

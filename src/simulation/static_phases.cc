@@ -168,6 +168,7 @@ struct StaticPhases<dim>::Work
 
   std::vector<Phase> phases; // complete ones
   long dynamic_since = -1;   // step; before the first phase: none
+  double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
 
@@ -490,13 +491,19 @@ std::optional<Stop> StaticPhases<dim>::Work::walk(CoupledBody<dim> &body, Clock 
   return {};
 }
 
+// The body stretches at the rate of its loads. That it does so no step has seen: the loads' work is
+// that of bodies without inertia, and the energy of this motion is booked beside it.
 template <int dim>
 void StaticPhases<dim>::Work::commit(CoupledBody<dim> &body, const Clock &clock,
                                      const Eigen::VectorXd &velocities)
 {
+  auto &system = solver.system();
   if (ratio > 1)
-    solver.system().forces(clock.now.time); // of the far field, which its impulses are made of
-  solver.system().set_velocities(velocities, clock.now);
+    system.forces(clock.now.time); // of the far field, which its impulses are made of
+  system.set_velocities(velocities, clock.now);
+  const double stretching = system.motion_energy(clock.now);
+  body.settled -= stretching - stretching_energy;
+  stretching_energy = stretching;
   if (body.force())
     body.force()->resume_at(clock.now.time - clock.now.dt);
   auto bodies = body.bodies();

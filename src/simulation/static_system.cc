@@ -255,6 +255,16 @@ void StaticSystem<dim>::set_velocities(const Eigen::VectorXd &y, const coupling:
 }
 
 template <int dim>
+double StaticSystem<dim>::motion_energy(const coupling::StepTime &step)
+{
+  auto bodies = body_.bodies();
+  Components<dim> nodal = nodal_zero();
+  body_.coupler->compute_trial(bodies, step.time, 1, nodal);
+  const auto e = body_.coupler->energy(bodies, step);
+  return e.kinetic_discrete + e.kinetic_far + e.impulses;
+}
+
+template <int dim>
 typename StaticSystem<dim>::Place StaticSystem<dim>::place() const
 {
   Place place;

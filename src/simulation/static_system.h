@@ -44,6 +44,10 @@ public:
   /// Velocities T y of the body before the kick of a step in which the far field acts.
   void set_velocities(const Eigen::VectorXd &y, const coupling::StepTime &step);
 
+  /// Energy in J of its present motion, that of the far field's impulses included, as if nothing
+  /// broke in the step.
+  double motion_energy(const coupling::StepTime &step);
+
   /// Where the body is, and back there.
   struct Place
   {
