@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <random>
 
 namespace ligament::program
@@ -12,6 +13,41 @@ namespace
 {
 constexpr double tolerance = 1e-9; // of the largest load
 constexpr int most_iterations = 2000;
+
+/// Anderson's acceleration of y <- y + step(y), D. G. Anderson, J. ACM 12 (1965) 547.
+class Acceleration
+{
+public:
+  /// The step that the last ones let expect to end nearest.
+  void improve(const Eigen::VectorXd &y, Eigen::VectorXd &step)
+  {
+    if (last_y_.size() > 0) {
+      y_changes_.push_back(y - last_y_);
+      step_changes_.push_back(step - last_step_);
+      if (int(y_changes_.size()) > most) {
+        y_changes_.erase(y_changes_.begin());
+        step_changes_.erase(step_changes_.begin());
+      }
+    }
+    last_y_ = y;
+    last_step_ = step;
+    if (y_changes_.empty())
+      return;
+    Eigen::MatrixXd changes(y.size(), step_changes_.size());
+    for (std::size_t k = 0; k < step_changes_.size(); ++k)
+      changes.col(k) = step_changes_[k];
+    const Eigen::VectorXd shares = (changes.transpose() * changes)
+                                       .completeOrthogonalDecomposition()
+                                       .solve(changes.transpose() * step);
+    for (std::size_t k = 0; k < step_changes_.size(); ++k)
+      step -= shares[k] * (y_changes_[k] + step_changes_[k]);
+  }
+
+private:
+  static constexpr int most = 5;
+  std::vector<Eigen::VectorXd> y_changes_, step_changes_;
+  Eigen::VectorXd last_y_, last_step_;
+};
 } // namespace
 
 template <int dim>
@@ -27,8 +63,15 @@ void EquilibriumSolver<dim>::prepare()
 {
   if (!knows_free_motions_)
     find_free_motions();
-  if (preconditioner_)
+  Faces faces = system_.touching();
+  Faces changed;
+  std::set_symmetric_difference(faces.begin(), faces.end(), touching_.begin(), touching_.end(),
+                                std::back_inserter(changed));
+  constexpr int tolerable = 6; // each costs an iteration or two
+  if (preconditioner_ && int(changed.size()) <= tolerable)
     return;
+  touching_ = std::move(faces);
+  preconditioner_.reset();
   // Where the coupler took over more than the cells had, only a stiffer penalty leaves the matrix
   // positive.
   for (double penalty = 1;; penalty *= 10)
@@ -100,9 +143,6 @@ algebra::CgResult EquilibriumSolver<dim>::solve(const Eigen::VectorXd &right, do
       [&](Eigen::VectorXd &v) { project(v); }, right, y, absolute, most_iterations);
   ++n_solves_;
   n_iterations_ += result.iterations;
-  if (getenv("LIG_DBG"))
-    fprintf(stderr, "solve |r| %g goal %g it %d res %g end %d\n", right.norm(), absolute,
-            result.iterations, result.residual, int(result.end));
   return result;
 }
 
@@ -125,7 +165,8 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
   const auto start = system_.place();
   moved = system_.held_gap(time);
   system_.displace(moved);
-  constexpr int most_steps = 25, patience = 8;
+  constexpr int most_steps = 40, patience = 10;
+  Acceleration acceleration;
   double least = std::numeric_limits<double>::infinity();
   int since_least = 0;
   End end = End::stalled;
@@ -135,7 +176,7 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
     const double goal = std::max(tolerance * largest_load_, system_.round_off());
     if (!(norm > goal))
       return End::converged;
-    since_least = norm < 0.5 * least ? 0 : since_least + 1;
+    since_least = norm < 0.9 * least ? 0 : since_least + 1;
     least = std::min(least, norm);
     Eigen::VectorXd y;
     const auto result = solve(r, std::max(0.3 * goal, 1e-5 * norm), y);
@@ -143,6 +184,7 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
       end = End::indefinite;
       break;
     }
+    acceleration.improve(moved, y);
     system_.displace(y);
     moved += y;
   }
@@ -154,27 +196,34 @@ template <int dim>
 typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(double from, double to,
                                                                            Eigen::VectorXd &y)
 {
-  const Eigen::VectorXd held = system_.held_motion(from, to);
-  Eigen::VectorXd right = system_.forces(to);
-  right -= system_.forces(from);
-  right -= system_.stiffness_times(held);
   if (!knows_free_motions_)
     find_free_motions();
-  project(right);
-  const double norm = right.norm();
-  if (norm == 0) {
-    y = held;
-    return End::converged;
-  }
-  const auto result = solve(right, 1e-9 * norm, y);
-  y += held;
-  switch (result.end) {
-  case algebra::CgResult::End::indefinite:
-    return End::indefinite;
-  case algebra::CgResult::End::stalled:
-    return result.residual < 1e-6 * norm ? End::converged : End::stalled;
-  default:
-    return End::converged;
+  const Eigen::VectorXd held = system_.held_motion(from, to);
+  Eigen::VectorXd growth = system_.forces(to);
+  growth -= system_.forces(from);
+  // Faces that are about to touch or to part: those that do at the end decide.
+  constexpr int most_changes = 3; // what then is wrong yet, the next equilibrium corrects
+  for (int change = 0;; ++change) {
+    Eigen::VectorXd right = growth - system_.stiffness_times(held);
+    project(right);
+    const double norm = right.norm();
+    if (norm == 0) {
+      y = held;
+      return End::converged;
+    }
+    const auto result = solve(right, 1e-7 * norm, y);
+    y += held;
+    if (result.end == algebra::CgResult::End::indefinite)
+      return End::indefinite;
+    if (result.end == algebra::CgResult::End::stalled && result.residual > 1e-6 * norm)
+      return End::stalled;
+    const Faces known = system_.touching();
+    const auto start = system_.place();
+    system_.displace(y);
+    system_.forces(to);
+    system_.put_back(start);
+    if (change == most_changes || system_.touching() == known)
+      return End::converged;
   }
 }
 

@@ -10,7 +10,8 @@
 namespace ligament::program
 {
 /// Newton's method with the stiffness about the reference, each step by preconditioned conjugate
-/// gradients on y (theory.md section 6).
+/// gradients on y (theory.md section 6). What that stiffness doesn't know, large rotations and
+/// faces that slide, is learnt from the last steps (Anderson's acceleration).
 template <int dim>
 class EquilibriumSolver
 {
@@ -49,6 +50,8 @@ public:
   int n_free_motions() const { return int(free_motions_.cols()); }
 
 private:
+  using Faces = std::vector<std::array<int, 3>>;
+
   void prepare();
   void find_free_motions();
   void project(Eigen::VectorXd &y) const;
@@ -61,6 +64,7 @@ private:
   Eigen::MatrixXd free_motions_; // orthonormal columns
   bool knows_free_motions_ = false;
   std::unique_ptr<algebra::Preconditioner> preconditioner_;
+  Faces touching_; // that it knows
   int n_solves_ = 0, n_iterations_ = 0;
   double largest_load_ = 0;
 };

@@ -166,8 +166,8 @@ struct StaticPhases<dim>::Work
   double transit; // s
   int ratio;
 
-  std::vector<Phase> phases; // complete ones
-  long dynamic_since = -1;   // step; before the first phase: none
+  std::vector<Phase> phases;    // complete ones
+  long dynamic_since = -1;      // step; before the first phase: none
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
@@ -296,10 +296,19 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   bool is_first = true;
   while (true) {
     const long last_step = clock.n_steps;
-    const double corner =
-        LoadGrowth<dim>::next_corner(body.loads, clock.now.time, time_of(clock, last_step));
-    Stretch stretch{{body.loads, clock.now.time, corner}, {}, {}, {}, {}, clock.now.step, 0};
-    stretch.end = step_of(clock, stretch, 1, last_step);
+    Stretch stretch{{body.loads, clock.now.time, time_of(clock, last_step)},
+                    {},
+                    {},
+                    {},
+                    {},
+                    clock.now.step,
+                    last_step};
+    if (!stretch.growth.is_proportional()) { // they are at least where no ramp ends
+      stretch.growth = {
+          body.loads, clock.now.time,
+          LoadGrowth<dim>::next_corner(body.loads, clock.now.time, time_of(clock, last_step))};
+      stretch.end = step_of(clock, stretch, 1, last_step);
+    }
     if (!stretch.growth.is_proportional() && stretch.end - stretch.begin > 4 * ratio)
       stretch.end = stretch.begin + (stretch.end - stretch.begin) / (4 * ratio) * ratio;
     stretch.growth = {body.loads, clock.now.time, time_of(clock, stretch.end)};

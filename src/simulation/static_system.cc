@@ -255,6 +255,22 @@ void StaticSystem<dim>::set_velocities(const Eigen::VectorXd &y, const coupling:
 }
 
 template <int dim>
+std::vector<std::array<int, 3>> StaticSystem<dim>::touching() const
+{
+  std::vector<std::array<int, 3>> faces;
+  if (!body_.zone)
+    return faces;
+  using Term = particles::QuadraticTerm<dim>;
+  body_.force()->add_other_tangent(body_.zone->state, [&](const Term &term) {
+    if (term.kind == Term::Kind::contact)
+      faces.push_back({term.members[0], term.members[1],
+                       term.rows.template block<dim, dim>(0, block).isIdentity()});
+  });
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+template <int dim>
 double StaticSystem<dim>::motion_energy(const coupling::StepTime &step)
 {
   auto bodies = body_.bodies();

@@ -72,6 +72,9 @@ public:
 
   void drop_inert(Eigen::VectorXd &y) const;
 
+  /// Faces that touched in the state of the last forces(): both particles, and 1 where they stick.
+  std::vector<std::array<int, 3>> touching() const;
+
   /// Translations and rotations about the middle of the specimen, one column each, as motions y.
   Eigen::MatrixXd rigid_motions() const;
 
