@@ -192,7 +192,7 @@ double Contacts<dim>::follow_slip(Contact<dim> &c, const State &s, const Particl
 {
   if (c.friction <= 0)
     return 0;
-  if (s.overlap > 0 || c.slip.squaredNorm() > 0)
+  if (s.overlap > 0 || (grips_at_touch_ && s.overlap == 0) || c.slip.squaredNorm() > 0)
     return update_slip(c, s, p);
   c.known = false; // apart: the next touch starts anew
   return 0;
@@ -259,12 +259,14 @@ std::vector<ClosedContact<dim>> Contacts<dim>::add_trial_forces(Particles &p) co
   std::vector<ClosedContact<dim>> closed;
   for (Contact<dim> c : contacts_) {
     const State s = state(c, p);
+    const bool was_known = c.known;
     follow_slip(c, s, p);
     if (s.overlap <= 0)
       continue;
     add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
     constexpr double round_off = 1e-12;
-    const bool sticks = c.friction > 0 && c.slip.norm() < c.friction * s.overlap * (1 - round_off);
+    const bool sticks =
+        was_known && c.friction > 0 && c.slip.norm() < c.friction * s.overlap * (1 - round_off);
     ClosedContact<dim> now{
         c.face.i,    c.face.j, Vector<dim>::Zero(), Vector<dim>::Zero(), s.normal,
         s.stiffness, sticks};
@@ -284,6 +286,7 @@ void Contacts<dim>::forget_steps()
     c.last_overlap.reset();
     c.correction = 0;
   }
+  grips_at_touch_ = true;
 }
 
 template <int dim>

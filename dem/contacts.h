@@ -92,7 +92,8 @@ public:
   /// add_forces(); nothing is remembered. Returns those that are closed.
   std::vector<ClosedContact<dim>> add_trial_forces(Particles &particles) const;
 
-  /// Openings and closings since the last step happened in equilibrium: they cost nothing.
+  /// Openings and closings since the last step happened in equilibrium: they cost nothing. From
+  /// now on faces grip as soon as they touch without pressure, lest the slip of a long way be lost.
   void forget_steps();
 
   /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
@@ -153,6 +154,7 @@ private:
   Materials materials_;
   particles::GlobalIds ids_;
   std::vector<Contact<dim>> contacts_;
+  bool grips_at_touch_ = false;
   core::ExactSum frictional_work_, step_error_;
 };
 

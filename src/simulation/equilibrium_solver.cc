@@ -165,7 +165,7 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
   const auto start = system_.place();
   moved = system_.held_gap(time);
   system_.displace(moved);
-  constexpr int most_steps = 40, patience = 10;
+  constexpr int most_steps = 30, patience = 8;
   Acceleration acceleration;
   double least = std::numeric_limits<double>::infinity();
   int since_least = 0;

@@ -141,6 +141,9 @@ struct StaticPhases<dim>::Work
     double share = 0;    // of the growth, at its end
     bool breaks = false; // a bond, there
   };
+  /// At most to the step `reach`.
+  Stretch stretch_from(const CoupledBody<dim> &body, const Clock &clock, long reach) const;
+  /// Sets its end also where it fails: the step in which no equilibrium was found.
   End find_end(CoupledBody<dim> &body, const Clock &clock, Stretch &stretch);
   std::optional<double> share_that_breaks(CoupledBody<dim> &body, const Clock &clock,
                                           Stretch &stretch, double &slope);
@@ -148,6 +151,10 @@ struct StaticPhases<dim>::Work
                            const Look &look);
   void commit(CoupledBody<dim> &body, const Clock &clock, const Eigen::VectorXd &velocities);
 
+  double load_of(const CoupledBody<dim> &body, const Clock &clock) const
+  {
+    return machine.has_load() ? machine.read(body, clock.now.time).load : 0;
+  }
   double time_of(const Clock &clock, long step) const { return double(step) * clock.now.dt; }
   /// The first step of the far field after `begin` by which the loads have grown that far.
   long step_of(const Clock &clock, const Stretch &stretch, double share, long last) const;
@@ -224,7 +231,7 @@ void StaticPhases<dim>::Work::end_dynamic_phase(const CoupledBody<dim> &body, co
   if (dynamic_since < 0 || dynamic_since == clock.now.step)
     return;
   Phase phase{false, dynamic_since, clock.now.step};
-  phase.load = machine.read(body, clock.now.time).load;
+  phase.load = load_of(body, clock);
   phase.broken = n_broken(body) - broken_then;
   phase.reason = PhaseEnd::calm;
   phases.push_back(phase);
@@ -264,7 +271,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     phase.end = clock.now.step;
     phase.solves = solver.n_solves() - solves;
     phase.iterations = solver.n_iterations() - iterations;
-    phase.load = machine.read(body, clock.now.time).load;
+    phase.load = load_of(body, clock);
     phase.broken = n_broken(body) - broken_before;
     phase.reason = reason;
     phase.seconds = Seconds(std::chrono::steady_clock::now() - started).count();
@@ -293,36 +300,23 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     failed(balanced);
     return stop;
   }
-  bool is_first = true;
-  while (true) {
-    const long last_step = clock.n_steps;
-    Stretch stretch{{body.loads, clock.now.time, time_of(clock, last_step)},
-                    {},
-                    {},
-                    {},
-                    {},
-                    clock.now.step,
-                    last_step};
-    if (!stretch.growth.is_proportional()) { // they are at least where no ramp ends
-      stretch.growth = {
-          body.loads, clock.now.time,
-          LoadGrowth<dim>::next_corner(body.loads, clock.now.time, time_of(clock, last_step))};
-      stretch.end = step_of(clock, stretch, 1, last_step);
-    }
-    if (!stretch.growth.is_proportional() && stretch.end - stretch.begin > 4 * ratio)
-      stretch.end = stretch.begin + (stretch.end - stretch.begin) / (4 * ratio) * ratio;
-    stretch.growth = {body.loads, clock.now.time, time_of(clock, stretch.end)};
+  // How far at once: less where no equilibrium was found so far away.
+  long reach = clock.n_steps;
+  int n_halvings = 0;
+  constexpr int most_halvings = 5;
+  for (bool is_first = true;; is_first = false) {
+    Stretch stretch = stretch_from(body, clock, reach);
     End end = solver.find_response(clock.now.time, time_of(clock, stretch.end), stretch.response);
-    if (end == End::converged)
-      stretch.start = solver.system().place();
+    stretch.start = solver.system().place();
+    const auto stay = [&] {
+      commit(body, clock,
+             end == End::indefinite
+                 ? Eigen::VectorXd::Zero(solver.system().size())
+                 : Eigen::VectorXd(stretch.growth.rate(clock.now.time) * stretch.response));
+    };
     if (is_first) {
-      const Eigen::VectorXd rate =
-          end == End::converged
-              ? Eigen::VectorXd(stretch.growth.rate(clock.now.time) * stretch.response)
-              : Eigen::VectorXd::Zero(solver.system().size()).eval();
-      commit(body, clock, rate);
+      stay();
       body.settled += before - read_ledger(body, clock.now, damping).residual();
-      is_first = false;
       if (n_broken(body) > broken_before) {
         finish(PhaseEnd::above_strength);
         return stop;
@@ -334,10 +328,16 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     }
     if (end == End::converged)
       end = find_end(body, clock, stretch);
+    if (end == End::stalled && n_halvings < most_halvings &&
+        stretch.end - stretch.begin >= 4 * ratio) {
+      ++n_halvings;
+      solver.system().put_back(stretch.start);
+      reach = stretch.begin + (stretch.end - stretch.begin) / (2 * ratio) * ratio;
+      continue;
+    }
     if (end != End::converged) {
       solver.system().put_back(stretch.start);
-      auto bodies = body.bodies();
-      body.coupler->compute_forces(bodies, clock.now);
+      stay();
       failed(end);
       return stop;
     }
@@ -353,7 +353,39 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       finish(PhaseEnd::end_of_run);
       return stop;
     }
+    if ((stop = look())) {
+      finish(PhaseEnd::stopped);
+      return stop;
+    }
+    n_halvings = 0;
+    reach = std::min(clock.n_steps, stretch.end + 4 * (stretch.end - stretch.begin));
   }
+}
+
+// Loads that don't grow in proportion almost do so over short stretches within their ramps.
+template <int dim>
+typename StaticPhases<dim>::Work::Stretch
+StaticPhases<dim>::Work::stretch_from(const CoupledBody<dim> &body, const Clock &clock,
+                                      long reach) const
+{
+  const double now = clock.now.time;
+  const auto growth_to = [&](long step) {
+    return LoadGrowth<dim>(body.loads, now, time_of(clock, step));
+  };
+  Stretch stretch{growth_to(reach), {}, {}, {}, {}, clock.now.step, reach};
+  if (stretch.growth.is_proportional())
+    return stretch;
+  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(clock, reach));
+  stretch.end =
+      std::clamp(clock.now.step +
+                     ratio * long(std::ceil((corner - now) / (ratio * clock.now.dt) * (1 - 1e-12))),
+                 clock.now.step + ratio, reach);
+  constexpr int parts = 4;
+  const long far_steps = (stretch.end - stretch.begin) / ratio;
+  if (!growth_to(stretch.end).is_proportional() && far_steps >= parts)
+    stretch.end = stretch.begin + far_steps / parts * ratio;
+  stretch.growth = growth_to(stretch.end);
+  return stretch;
 }
 
 template <int dim>
@@ -437,8 +469,10 @@ StaticPhases<dim>::Work::find_end(CoupledBody<dim> &body, const Clock &clock, St
     at = share;
     Eigen::VectorXd moved;
     const End end = solver.find_equilibrium(time_of(clock, step), moved);
-    if (end != End::converged)
+    if (end != End::converged) {
+      stretch.end = step;
       return end;
+    }
     stretch.bend += moved;
     const double bears =
         body.force() && body.force()->can_break() ? bond_share(time_of(clock, step), 0.5) : 0;
@@ -529,7 +563,7 @@ std::vector<PhaseEntry> StaticPhases<dim>::entries(const CoupledBody<dim> &body,
   std::vector<Phase> phases = work_->phases;
   if (work_->dynamic_since >= 0 && clock.now.step > work_->dynamic_since) {
     Phase phase{false, work_->dynamic_since, clock.now.step};
-    phase.load = work_->machine.read(body, clock.now.time).load;
+    phase.load = work_->load_of(body, clock);
     phase.broken = n_broken(body) - work_->broken_then;
     phases.push_back(phase);
   }
