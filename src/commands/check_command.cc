@@ -51,14 +51,15 @@ int check(const CommandLine &line, const ReadResult &input)
     }
   }
   const StepCost cost = measure_step_cost(scene, body, timers, 0.5);
+  // Predictions are of steps alone; a run with phases skips most of them, and how many nobody
+  // knows.
+  std::optional<StaticCost> equilibrium;
+  if (scene.time.has_phases())
+    equilibrium = static_cost(scene, body);
   const double memory = peak_memory();
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
   const double output = output_seconds(scene, body, steps);
   const double seconds = setup_seconds + steps * cost.seconds_per_step + output;
-  // By steps alone; a run with phases skips most of them, and how many nobody knows.
-  std::optional<StaticCost> equilibrium;
-  if (scene.time.has_phases())
-    equilibrium = static_cost(body);
   const int particles = body.zone ? body.zone->state.size() : 0;
   const int cells = body.far ? body.far->mesh().n_cells() : 0;
   const auto *joined = body.coupler->overlap();
@@ -76,7 +77,7 @@ int check(const CommandLine &line, const ReadResult &input)
     fmt::print("  far field            {:>12} steps of the zone per step; {:.4g} s is stable\n",
                body.coupler->step_ratio(), body.dt_far);
   if (equilibrium)
-    fmt::print("{}", to_text(*equilibrium, scene));
+    fmt::print("{}", to_text(*equilibrium, scene, cost.seconds_per_step));
   fmt::print("  steps                {:>12}{}\n", steps,
              equilibrium ? " without phases, which skip most of them" : "");
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);

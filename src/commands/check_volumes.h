@@ -13,7 +13,6 @@ inline constexpr double largest_built = 2e6;
 /// Memory of this machine that programs can still get, in bytes; 0 when it does not say.
 double available_memory();
 
-
 /// Prints the card with the sizes; --json leaves what was not computed null and names it.
 void print_volumes(const CommandLine &line, const ReadResult &input, const SizeEstimate &size);
 } // namespace ligament::program

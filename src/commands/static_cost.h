@@ -15,15 +15,15 @@ namespace ligament::program
 struct StaticCost
 {
   long unknowns = 0;             // of one equilibrium
-  std::optional<double> seconds; // of one equilibrium, set-up included; empty: not measured
-  std::optional<double> memory;  // bytes that its solver needs beside the body; likewise
+  std::optional<double> seconds; // of one solve, set-up included; empty: not measured
 };
 
+/// Solves once. Leaves the body where it is.
 template <int dim>
-StaticCost static_cost(const CoupledBody<dim> &body);
+StaticCost static_cost(const Scene &scene, CoupledBody<dim> &body);
 
 /// Lines for the card of `check`.
-std::string to_text(const StaticCost &cost, const Scene &scene);
+std::string to_text(const StaticCost &cost, const Scene &scene, double seconds_per_step);
 /// What is not known is null.
 nlohmann::ordered_json to_json(const StaticCost &cost);
 } // namespace ligament::program

@@ -50,6 +50,18 @@ private:
 };
 } // namespace
 
+algebra::Preconditioning preconditioning(StaticSolver solver)
+{
+  switch (solver) {
+  case StaticSolver::cholesky:
+    return algebra::Preconditioning::cholesky;
+  case StaticSolver::multigrid:
+    return algebra::Preconditioning::multigrid;
+  default:
+    return algebra::Preconditioning::automatic;
+  }
+}
+
 template <int dim>
 EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind)
     : body_(body), kind_(kind), system_(body)

@@ -9,6 +9,9 @@
 
 namespace ligament::program
 {
+/// What a scene's word says.
+algebra::Preconditioning preconditioning(StaticSolver solver);
+
 /// Newton's method with the stiffness about the reference, each step by preconditioned conjugate
 /// gradients on y (theory.md section 6). What that stiffness doesn't know, large rotations and
 /// faces that slide, is learnt from the last steps (Anderson's acceleration).

@@ -1,4 +1,4 @@
-// The matrix that a static solver is preconditioned with, theory.md eq. (Q4).
+// The matrix that a static solver is preconditioned with, theory.md eq. (Q3).
 #include "coupling/operators/blended_operators.h"
 #include "fem/condensed_cell.h"
 #include "src/simulation/static_system.h"

@@ -96,18 +96,6 @@ long n_broken(const CoupledBody<dim> &body)
 {
   return body.force() ? long(body.force()->broken_bonds().size()) : 0;
 }
-
-algebra::Preconditioning preconditioning(StaticSolver solver)
-{
-  switch (solver) {
-  case StaticSolver::cholesky:
-    return algebra::Preconditioning::cholesky;
-  case StaticSolver::multigrid:
-    return algebra::Preconditioning::multigrid;
-  default:
-    return algebra::Preconditioning::automatic;
-  }
-}
 } // namespace
 
 template <int dim>

@@ -7,9 +7,9 @@
 namespace ligament::program
 {
 /// Vectors have a block of dim displacements (m) and the spins' rotations (rad) for each particle,
-/// then for each node, whose rotations are none. Motions z of the body are T y (theory.md eqs.
-/// (Q1), (Q2)); forces on y are T^T f. Pads, hanging nodes, held components and rotations that
-/// nothing has are inert: no unknown, and no force on them.
+/// then for each node, whose rotations are none. Motions z of the body are T y (theory.md eq.
+/// (Q1)); forces on y are T^T f. Pads, hanging nodes, held components and rotations that nothing
+/// has are inert: no unknown, and no force on them.
 template <int dim>
 class StaticSystem
 {
@@ -66,7 +66,7 @@ public:
   Velocities velocities() const;
   void put_back(const Velocities &velocities);
 
-  /// A sparse matrix near to K on all y (theory.md eq. (Q4)); overlap particles hang on the mesh by
+  /// A sparse matrix near to K on all y (theory.md eq. (Q3)); overlap particles hang on the mesh by
   /// `penalty` times the springs that serve best.
   algebra::BlockMatrix near_stiffness(double penalty) const;
 
