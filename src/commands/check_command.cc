@@ -81,8 +81,8 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  steps                {:>12}{}\n", steps,
              equilibrium ? " without phases, which skip most of them" : "");
   fmt::print("  memory               {:>12.0f} MiB\n", memory / 1048576);
-  fmt::print("  predicted time       {:>12}{}{}\n", duration_text(seconds),
-             equilibrium ? " of a purely dynamic run" : "",
+  fmt::print("  {:<20} {:>12}{}{}\n", equilibrium ? "time without phases" : "predicted time",
+             duration_text(seconds), equilibrium ? " of a purely dynamic run" : "",
              scene.time.stop_when == StopWhen::end ? "" : ", less if it breaks earlier");
   double saving = 0;
   std::optional<CostAdvice> advice;

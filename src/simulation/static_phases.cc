@@ -161,8 +161,9 @@ struct StaticPhases<dim>::Work
   double transit; // s
   int ratio;
 
-  std::vector<Phase> phases;    // complete ones
-  long dynamic_since = -1;      // step; before the first phase: none
+  std::vector<Phase> phases; // complete ones
+  long dynamic_since = -1;   // step; before the first phase: none
+  std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
@@ -222,6 +223,7 @@ void StaticPhases<dim>::Work::end_dynamic_phase(const CoupledBody<dim> &body, co
   phase.load = load_of(body, clock);
   phase.broken = n_broken(body) - broken_then;
   phase.reason = PhaseEnd::calm;
+  phase.seconds = Seconds(std::chrono::steady_clock::now() - dynamic_began).count();
   phases.push_back(phase);
 }
 
@@ -265,6 +267,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     phase.seconds = Seconds(std::chrono::steady_clock::now() - started).count();
     phases.push_back(phase);
     dynamic_since = clock.now.step;
+    dynamic_began = std::chrono::steady_clock::now();
     broken_then = n_broken(body);
     log.info("static phase to {:.6g} s: {} ({} solves, {} iterations, {} faces broken)",
              clock.now.time, text_of(reason), phase.solves, phase.iterations, phase.broken);
@@ -565,6 +568,7 @@ std::vector<PhaseEntry> StaticPhases<dim>::entries(const CoupledBody<dim> &body,
     Phase phase{false, work_->dynamic_since, clock.now.step};
     phase.load = work_->load_of(body, clock);
     phase.broken = n_broken(body) - work_->broken_then;
+    phase.seconds = Seconds(std::chrono::steady_clock::now() - work_->dynamic_began).count();
     phases.push_back(phase);
   }
   for (const Phase &p : phases) {
