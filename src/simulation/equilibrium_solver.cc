@@ -204,6 +204,25 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
   return end;
 }
 
+// Each round starts from the true residual.
+template <int dim>
+void EquilibriumSolver<dim>::settle_linear(double time)
+{
+  if (!knows_free_motions_)
+    find_free_motions();
+  system_.displace(system_.held_gap(time));
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds; ++round) {
+    double norm = 0;
+    const Eigen::VectorXd r = balance(time, norm);
+    if (norm == 0)
+      return;
+    Eigen::VectorXd y;
+    solve(r, 1e-9 * norm, y);
+    system_.displace(y);
+  }
+}
+
 template <int dim>
 typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(double from, double to,
                                                                            Eigen::VectorXd &y)

@@ -33,6 +33,9 @@ public:
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
   End find_equilibrium(double time, Eigen::VectorXd &moved);
 
+  /// To equilibrium as near as round-off lets it come: motions so small that their squares are none.
+  void settle_linear(double time);
+
   /// How far the body moves from its place, where it is in equilibrium at the loads of `from`, when
   /// they become those of `to`, to first order: y with held components.
   End find_response(double from, double to, Eigen::VectorXd &y);
