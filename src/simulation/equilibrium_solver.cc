@@ -119,15 +119,18 @@ void EquilibriumSolver<dim>::find_free_motions()
   Eigen::VectorXd noise =
       Eigen::VectorXd::NullaryExpr(motions.rows(), [&] { return uniform(random); });
   const double stiff = noise.dot(system_.stiffness_times(noise)) / noise.squaredNorm();
-  Eigen::MatrixXd stiffness(kept.cols(), kept.cols());
+  Eigen::MatrixXd forces(kept.rows(), kept.cols());
   for (int k = 0; k < kept.cols(); ++k)
-    stiffness.col(k) = kept.transpose() * system_.stiffness_times(kept.col(k));
+    forces.col(k) = system_.stiffness_times(kept.col(k));
+  const Eigen::MatrixXd stiffness = kept.transpose() * forces;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
       Eigen::MatrixXd((stiffness + stiffness.transpose()) / 2));
+  // By forces, not by energies: a support much narrower than the body resists a rotation with an
+  // energy of the order of (width/extent)^2/particles, which is near round-off.
   constexpr double nothing = 1e-10;
   free_motions_.resize(motions.rows(), 0);
   for (int k = 0; k < kept.cols(); ++k)
-    if (eigen.eigenvalues()[k] < nothing * stiff) {
+    if ((forces * eigen.eigenvectors().col(k)).norm() < nothing * stiff) {
       free_motions_.conservativeResize(Eigen::NoChange, free_motions_.cols() + 1);
       free_motions_.col(free_motions_.cols() - 1) = kept * eigen.eigenvectors().col(k);
     }

@@ -449,12 +449,18 @@ StaticPhases<dim>::Work::find_end(CoupledBody<dim> &body, const Clock &clock, St
   const auto predicted = share_that_breaks(body, clock, stretch, slope);
   long step = predicted ? step_of(clock, stretch, *predicted, stretch.end) : stretch.end;
   stretch.bend = Eigen::VectorXd::Zero(system.size());
-  double at = 0;
+  double at = 0, bore = 0; // share of the growth, of the strength
   constexpr int most_corrections = 8;
+  // Where loads grow by less in a step, its number is below what the strength says.
+  constexpr double over = 1e-6; // of the strength
   for (int k = 0;; ++k) {
     const double share = stretch.growth.share(time_of(clock, step));
     system.displace(stretch.response, share - at);
-    at = share;
+    if (at > 0) { // along the parabola of walk()
+      const double longer = share * share / (at * at);
+      system.displace(stretch.bend, longer - 1);
+      stretch.bend *= longer;
+    }
     Eigen::VectorXd moved;
     const End end = solver.find_equilibrium(time_of(clock, step), moved);
     if (end != End::converged) {
@@ -464,11 +470,16 @@ StaticPhases<dim>::Work::find_end(CoupledBody<dim> &body, const Clock &clock, St
     stretch.bend += moved;
     const double bears =
         body.force() && body.force()->can_break() ? bond_share(time_of(clock, step), 0.5) : 0;
+    if (k > 0 && share != at && (bears - bore) * (share - at) > 0)
+      slope = (bears - bore) / (share - at);
     if (slope == 0 && share > 0)
       slope = bears / share;
+    at = share;
+    bore = bears;
     const double one_step =
         share - stretch.growth.share(time_of(clock, std::max(stretch.begin, step - ratio)));
-    const bool is_first = bears - slope * one_step < 1 || step - ratio <= stretch.begin;
+    const bool is_first =
+        bears - std::max(slope * one_step, over) < 1 || step - ratio <= stretch.begin;
     const bool done = bears >= 1 ? is_first : step == stretch.end;
     if (done || k == most_corrections) {
       stretch.end = step;
@@ -477,7 +488,8 @@ StaticPhases<dim>::Work::find_end(CoupledBody<dim> &body, const Clock &clock, St
       stretch.finish = system.place();
       return end;
     }
-    const long wanted = step_of(clock, stretch, share + (1 - bears) / slope, stretch.end);
+    const double aim = slope * one_step < over ? 1 + over / 2 : 1;
+    const long wanted = step_of(clock, stretch, share + (aim - bears) / slope, stretch.end);
     const long other = bears >= 1 ? std::min(wanted, step - ratio) : std::max(wanted, step + ratio);
     step = std::clamp(other, stretch.begin + ratio, stretch.end);
   }
