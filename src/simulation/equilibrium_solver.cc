@@ -14,6 +14,23 @@ namespace
 constexpr double tolerance = 1e-9; // of the largest load
 constexpr int most_iterations = 2000;
 
+/// Columns of the same span, in their order; those that depend on others are left out.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd &columns)
+{
+  Eigen::MatrixXd kept(columns.rows(), 0);
+  for (int k = 0; k < columns.cols(); ++k) {
+    Eigen::VectorXd x = columns.col(k);
+    const double before = x.norm();
+    for (int twice = 0; twice < 2; ++twice)
+      x -= kept * (kept.transpose() * x).eval();
+    if (x.norm() <= 1e-9 * before)
+      continue;
+    kept.conservativeResize(Eigen::NoChange, kept.cols() + 1);
+    kept.col(kept.cols() - 1) = x.normalized();
+  }
+  return kept;
+}
+
 /// Anderson's acceleration of y <- y + step(y), D. G. Anderson, J. ACM 12 (1965) 547.
 class Acceleration
 {
@@ -97,23 +114,26 @@ void EquilibriumSolver<dim>::prepare()
     }
 }
 
+// The y nearest to zero of the same motion T y. Forces T^T f have no part in the y that T takes for
+// no motion, and keep to that when such a y is projected out of them.
+template <int dim>
+Eigen::VectorXd EquilibriumSolver<dim>::without_nothing(const Eigen::VectorXd &y)
+{
+  const Eigen::VectorXd right = system_.folded(y);
+  Eigen::VectorXd nearest;
+  algebra::conjugate_gradients(
+      [&](const Eigen::VectorXd &p, Eigen::VectorXd &bp) { bp = system_.folded(p); },
+      [](const Eigen::VectorXd &r, Eigen::VectorXd &z) { z = r; }, [](Eigen::VectorXd &) {}, right,
+      nearest, 1e-15 * right.norm(), most_iterations);
+  return nearest;
+}
+
 // Of the rigid motions, as far as supports let them be, those that cost no energy.
 template <int dim>
 void EquilibriumSolver<dim>::find_free_motions()
 {
   knows_free_motions_ = true;
-  Eigen::MatrixXd motions = system_.rigid_motions();
-  Eigen::MatrixXd kept(motions.rows(), 0);
-  for (int k = 0; k < motions.cols(); ++k) {
-    Eigen::VectorXd x = motions.col(k);
-    const double before = x.norm();
-    for (int twice = 0; twice < 2; ++twice)
-      x -= kept * (kept.transpose() * x).eval();
-    if (x.norm() <= 1e-9 * before)
-      continue;
-    kept.conservativeResize(Eigen::NoChange, kept.cols() + 1);
-    kept.col(kept.cols() - 1) = x.normalized();
-  }
+  const Eigen::MatrixXd motions = system_.rigid_motions(), kept = orthonormal(motions);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   Eigen::VectorXd noise =
@@ -128,12 +148,46 @@ void EquilibriumSolver<dim>::find_free_motions()
   // By forces, not by energies: a support much narrower than the body resists a rotation with an
   // energy of the order of (width/extent)^2/particles, which is near round-off.
   constexpr double nothing = 1e-10;
-  free_motions_.resize(motions.rows(), 0);
+  Eigen::MatrixXd shares(kept.cols(), 0);
   for (int k = 0; k < kept.cols(); ++k)
     if ((forces * eigen.eigenvectors().col(k)).norm() < nothing * stiff) {
-      free_motions_.conservativeResize(Eigen::NoChange, free_motions_.cols() + 1);
-      free_motions_.col(free_motions_.cols() - 1) = kept * eigen.eigenvectors().col(k);
+      shares.conservativeResize(Eigen::NoChange, shares.cols() + 1);
+      shares.col(shares.cols() - 1) = eigen.eigenvectors().col(k);
     }
+  make_free_motions(kept, shares);
+}
+
+template <int dim>
+void EquilibriumSolver<dim>::make_free_motions(const Eigen::MatrixXd &rigid,
+                                               const Eigen::MatrixXd &shares)
+{
+  free_shares_ = shares;
+  free_motions_.resize(rigid.rows(), shares.cols());
+  for (int k = 0; k < shares.cols(); ++k)
+    free_motions_.col(k) = without_nothing(rigid * shares.col(k));
+  free_motions_ = orthonormal(free_motions_);
+}
+
+template <int dim>
+typename EquilibriumSolver<dim>::FreeShares EquilibriumSolver<dim>::free_shares() const
+{
+  if (!knows_free_motions_)
+    return {};
+  return {int(free_shares_.cols()),
+          {free_shares_.data(), free_shares_.data() + free_shares_.size()}};
+}
+
+template <int dim>
+void EquilibriumSolver<dim>::set_free_shares(const FreeShares &free)
+{
+  knows_free_motions_ = free.n >= 0;
+  if (!knows_free_motions_)
+    return;
+  const Eigen::MatrixXd rigid = orthonormal(system_.rigid_motions());
+  core::require(free.shares.size() == std::size_t(rigid.cols() * free.n),
+                "the state's free motions are those of another body");
+  make_free_motions(rigid,
+                    Eigen::Map<const Eigen::MatrixXd>(free.shares.data(), rigid.cols(), free.n));
 }
 
 template <int dim>
@@ -205,6 +259,25 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
   }
   system_.put_back(start);
   return end;
+}
+
+// Each round starts from the true residual.
+template <int dim>
+void EquilibriumSolver<dim>::settle_linear(double time)
+{
+  if (!knows_free_motions_)
+    find_free_motions();
+  system_.displace(system_.held_gap(time));
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds; ++round) {
+    double norm = 0;
+    const Eigen::VectorXd r = balance(time, norm);
+    if (norm == 0)
+      return;
+    Eigen::VectorXd y;
+    solve(r, 1e-9 * norm, y);
+    system_.displace(y);
+  }
 }
 
 template <int dim>

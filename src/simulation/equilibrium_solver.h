@@ -33,6 +33,9 @@ public:
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
   End find_equilibrium(double time, Eigen::VectorXd &moved);
 
+  /// To equilibrium as near as round-off lets it come: motions so small that their squares are none.
+  void settle_linear(double time);
+
   /// How far the body moves from its place, where it is in equilibrium at the loads of `from`, when
   /// they become those of `to`, to first order: y with held components.
   End find_response(double from, double to, Eigen::VectorXd &y);
@@ -52,11 +55,23 @@ public:
   /// Motions that no support resists.
   int n_free_motions() const { return int(free_motions_.cols()); }
 
+  /// What they are made of, for a solver of the same body that is to go on with the same ones;
+  /// empty as long as they are not known.
+  struct FreeShares
+  {
+    int n = -1;                 // of motions; below 0: not known
+    std::vector<double> shares; // of the rigid motions, one column behind another
+  };
+  FreeShares free_shares() const;
+  void set_free_shares(const FreeShares &free);
+
 private:
   using Faces = std::vector<std::array<int, 3>>;
 
   void prepare();
   void find_free_motions();
+  void make_free_motions(const Eigen::MatrixXd &rigid, const Eigen::MatrixXd &shares);
+  Eigen::VectorXd without_nothing(const Eigen::VectorXd &y);
   void project(Eigen::VectorXd &y) const;
   algebra::CgResult solve(const Eigen::VectorXd &right, double tolerance, Eigen::VectorXd &y);
   Eigen::VectorXd balance(double time, double &norm);
@@ -65,6 +80,7 @@ private:
   algebra::Preconditioning kind_;
   StaticSystem<dim> system_;
   Eigen::MatrixXd free_motions_; // orthonormal columns
+  Eigen::MatrixXd free_shares_;  // of the rigid motions, before
   bool knows_free_motions_ = false;
   std::unique_ptr<algebra::Preconditioner> preconditioner_;
   Faces touching_; // that it knows

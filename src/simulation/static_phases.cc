@@ -596,6 +596,13 @@ void StaticPhases<dim>::save(core::State &state) const
   core::save_value(state, "static_phases", "dynamic_since", std::int64_t(work_->dynamic_since));
   core::save_value(state, "static_phases", "broken_then", std::int64_t(work_->broken_then));
   core::save_value(state, "static_phases", "largest_load", work_->solver.largest_load());
+  core::save_value(state, "static_phases", "stretching_energy", work_->stretching_energy);
+  // Found again, in a body in which bonds have broken, they would differ by round-off.
+  const auto free = work_->solver.free_shares();
+  core::save_value(state, "static_phases", "free_motions", std::int64_t(free.n));
+  core::Table shares = numbered_rows(free.shares.size());
+  shares.add("share", free.shares);
+  state["free_motions"] = std::move(shares);
   core::Table rows = numbered_rows(work_->phases.size());
   const auto add = [&](const char *name, auto &&value) {
     std::vector<std::decay_t<decltype(value(work_->phases[0]))>> column;
@@ -624,6 +631,9 @@ void StaticPhases<dim>::load(const core::State &state)
   work_->dynamic_since = long(core::load_integer(state, "static_phases", "dynamic_since"));
   work_->broken_then = long(core::load_integer(state, "static_phases", "broken_then"));
   work_->solver.set_largest_load(core::load_real(state, "static_phases", "largest_load"));
+  work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
+  work_->solver.set_free_shares({int(core::load_integer(state, "static_phases", "free_motions")),
+                                 core::table(state, "free_motions").reals("share")});
   const core::Table &rows = core::table(state, "phases");
   const auto numbers = [&](const char *name) { return rows.integers(name); };
   const auto is_static = numbers("is_static"), begin = numbers("begin"), end = numbers("end"),

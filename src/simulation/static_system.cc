@@ -193,6 +193,17 @@ Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
 }
 
 template <int dim>
+Eigen::VectorXd StaticSystem<dim>::folded(const Eigen::VectorXd &y)
+{
+  Components<dim> nodal = nodal_zero();
+  take(y, motion_, nodal);
+  motion_.force = motion_.velocity;
+  motion_.torque = motion_.spin;
+  body_.coupler->restrict_forces(motion_, nodal);
+  return give(motion_, nodal, 1);
+}
+
+template <int dim>
 Eigen::VectorXd StaticSystem<dim>::held_motion(double from, double to, double factor) const
 {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(size());

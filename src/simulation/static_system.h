@@ -33,6 +33,9 @@ public:
   /// K y: minus what a small motion y about the reference makes act. Inert numbers of y count.
   Eigen::VectorXd stiffness_times(const Eigen::VectorXd &y);
 
+  /// T^T T y: nothing of it is in the y that T takes for no motion at all.
+  Eigen::VectorXd folded(const Eigen::VectorXd &y);
+
   /// Motion of held components alone between two times, over a factor.
   Eigen::VectorXd held_motion(double from, double to, double factor = 1) const;
 

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "coupling/fine_scale_split.h"
+#include "src/simulation/equilibrium_solver.h"
 #include "src/verification/bodies/body_state.h"
 
 #include <Eigen/Dense>
@@ -15,9 +16,6 @@ namespace
 {
 /// Amplitude of motions, in d: rotations enter forces squared, and this squared is round-off.
 constexpr double amplitude = 1e-14;
-
-/// About the largest frequency squared, in E/(rho d^2).
-constexpr double stiffest = 30;
 
 /// Rows: rigid translations and linearised rotations about the origin, as displacements of X.
 template <int dim>
@@ -45,31 +43,6 @@ LinearMotion<dim>::LinearMotion(CoupledBody<dim> &body)
   near_mass_ = body.coupler->near_mass();
   rest_ = Eigen::VectorXd::Zero(size());
   rest_ = accelerations(rest_, false);
-  find_free_motions();
-}
-
-template <int dim>
-void LinearMotion<dim>::find_free_motions()
-{
-  using Matrix = Eigen::Matrix<double, dim, dim>;
-  std::vector<Eigen::VectorXd> motions;
-  for (int c = 0; c < dim; ++c)
-    motions.push_back(affine(Matrix::Zero(), Vector<dim>::Unit(c)));
-  for (int a = 0; a < dim; ++a)
-    for (int b = a + 1; b < dim; ++b) {
-      Matrix turn = Matrix::Zero();
-      turn(b, a) = 1;
-      turn(a, b) = -1;
-      motions.push_back(affine(turn));
-    }
-  for (auto &x : motions) {
-    for (const auto &other : free_motions_)
-      x -= inner(other, x) * other;
-    x /= std::sqrt(inner(x, x));
-    const Eigen::VectorXd a = accelerations(amplitude * x, false) / amplitude;
-    if (std::sqrt(inner(a, a)) < 1e-9 * stiffest) // frequencies squared
-      free_motions_.push_back(x);
-  }
 }
 
 // Values stand component by component: displacements, rotations, then nodes.
@@ -162,42 +135,12 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
 }
 
 template <int dim>
-Eigen::VectorXd LinearMotion<dim>::conjugate_gradients(const Eigen::VectorXd &right,
-                                                       double tolerance)
-{
-  const auto balance = [&](Eigen::VectorXd &r) { // round-off that nothing can balance
-    r = admissible<dim>(body_, r);
-    for (const auto &motion : free_motions_)
-      r -= inner(motion, r) * motion;
-  };
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), r = right;
-  balance(r);
-  Eigen::VectorXd p = r;
-  double square = inner(r, r);
-  const double stop = tolerance * tolerance * square;
-  for (int k = 0; k < 20000 && square > stop; ++k) {
-    // Of one amplitude: accelerations by dead loads would drown those of smaller ones in round-off.
-    const double scale = amplitude / std::sqrt(inner(p, p));
-    const Eigen::VectorXd ap = -accelerations(scale * p, false) / scale;
-    const double step = square / inner(p, ap);
-    x += step * p;
-    r -= step * ap;
-    balance(r);
-    const double next = inner(r, r);
-    p = r + next / square * p;
-    square = next;
-  }
-  return x;
-}
-
-template <int dim>
 Eigen::VectorXd LinearMotion<dim>::solve()
 {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-  // Each round starts from the true residual, without the round-off that left the admissible
-  // motions.
-  for (const double tolerance : {1e-8, 1e-5, 1e-2})
-    x = admissible<dim>(body_, x + conjugate_gradients(accelerations(x, true), tolerance));
+  rest();
+  EquilibriumSolver<dim> solver(body_, algebra::Preconditioning::automatic);
+  solver.settle_linear(1);
+  const Eigen::VectorXd x = displacement(body_);
   accelerations(x, true);
   return x;
 }

@@ -29,8 +29,8 @@ public:
   /// (B2)).
   double inner(const Eigen::VectorXd &x, const Eigen::VectorXd &y) const;
 
-  /// Equilibrium under the loads: conjugate gradients from rest until forces are round-off.
-  /// Leaves the body in that state.
+  /// Equilibrium under the loads of t = 1, until forces are round-off. Leaves the body in that
+  /// state.
   Eigen::VectorXd solve();
 
   /// Largest eigenfrequency in rad/s by Lanczos iteration without loads.
@@ -64,13 +64,10 @@ private:
   void set_state(const Eigen::VectorXd &x);
   Vector<dim> particle(const Eigen::VectorXd &x, int i) const;
   Vector<dim> node(const Eigen::VectorXd &x, int i) const;
-  void find_free_motions();
-  Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd &right, double tolerance);
 
   CoupledBody<dim> &body_;
   int n_particles_, n_particle_values_, n_nodes_ = 0;
   Eigen::SparseMatrix<double> near_mass_;
   Eigen::VectorXd rest_;                      // accelerations by dead loads of the coupler
-  std::vector<Eigen::VectorXd> free_motions_; // rigid ones that no support resists, orthonormal
 };
 } // namespace ligament::program

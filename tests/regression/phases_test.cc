@@ -1,0 +1,188 @@
+// Runs of several static phases: interrupted, killed and built anew they write byte for byte what a
+// run without a break writes; where a body carries no more, they go on by steps and say so.
+#include "tests/support/run_results.h"
+
+#include <random>
+
+using namespace ligament::tests;
+namespace fs = std::filesystem;
+
+namespace
+{
+const std::string program = LIGAMENT_PROGRAM;
+
+// A notched plate whose crack meets two tough inclusions: three static phases, and a dynamic one
+// behind each of them, in units of d = 1, E = 1, rho = 1. Checkpoints as often as the disk takes
+// them.
+const std::string phases = R"({
+  "title": "phases",
+  "dimension": 2,
+  "specimen": {"size": [24, 120], "cracks": [{"points": [[-12, 0], [-6, 0]]}]},
+  "material": {
+    "youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1,
+    "fracture": {"criterion": "maximum_tension", "strength": 1e-3}
+  },
+  "inclusions": [{
+    "boxes": [
+      {"lower": [-1, -2.6], "upper": [1.5, 2.6]}, {"lower": [5, -2.6], "upper": [7.5, 2.6]}
+    ],
+    "youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1,
+    "fracture": {"criterion": "maximum_tension", "strength": 4e-3}
+  }],
+  "discrete_zone": {
+    "region": {"lower": [null, -20], "upper": [null, 20]}, "packing": "hexagonal", "spacing": 1
+  },
+  "far_field": {"cell_size": 4.1},
+  "coupling": {"overlap_cells": 2, "transition_cells": 3, "step_ratio": 2},
+  "damping": {"local": 0.3},
+  "loads": [
+    {"boundary": "top", "velocity": [null, 1e-6], "ramp": 1e4},
+    {"boundary": "bottom", "velocity": [null, -1e-6], "ramp": 1e4}
+  ],
+  "time": {"duration": 2.8e4, "loading": "static"},
+  "output": {
+    "history_interval": 100, "field_interval": "never", "progress_interval": 1000,
+    "checkpoint_interval": 0.02
+  }
+})";
+
+bool has(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+/// /phases of a run's record, without what a clock on the wall says.
+nlohmann::json phases_of(const std::string &run)
+{
+  auto list = file_json(run + "/run.json")["phases"];
+  for (auto &phase : list)
+    phase.erase("seconds");
+  return list;
+}
+
+std::string set(const std::string &key, const std::string &value)
+{
+  return " --set '" + key + "=" + value + "'";
+}
+
+class Phases : public testing::Test
+{
+protected:
+  static void SetUpTestSuite()
+  {
+    fs::remove_all("phases");
+    fs::create_directory("phases");
+    fs::current_path("phases");
+    std::ofstream("scene.json") << phases;
+    ASSERT_EQ(run_ligament("run scene.json -o whole").code, 0);
+    const auto list = phases_of("whole");
+    ASSERT_GE(list.size(), 5u) << list.dump(1);
+    long steps = 0;
+    for (const auto &phase : list)
+      steps += long(phase["steps"]);
+    ASSERT_GT(steps, 1000);
+    ASSERT_GE(file_json("whole/run.json")["broken_bonds"], 20);
+  }
+  static void TearDownTestSuite() { fs::current_path(".."); }
+
+  /// A run with these overrides, to its end.
+  static nlohmann::json record_of(const std::string &name, const std::string &overrides)
+  {
+    const Outcome outcome = run_ligament("run scene.json -o " + name + overrides);
+    EXPECT_EQ(outcome.code, 0) << outcome.output << outcome.errors;
+    return file_json(name + "/run.json");
+  }
+};
+
+// Signals end a run in the next step that is computed: in the middle of a dynamic phase, or right
+// behind a static one.
+TEST_F(Phases, InterruptedInEitherPhaseNothingDiffers)
+{
+  std::mt19937 random(std::random_device{}());
+  const double whole = file_json("whole/run.json")["wall_seconds"];
+  std::uniform_real_distribution<double> seconds(0, 1.2 * whole);
+  int behind_static = 0, in_dynamic = 0;
+  for (int attempt = 0; attempt < 100 && (behind_static < 3 || in_dynamic < 3); ++attempt) {
+    fs::remove_all("cut");
+    Process process("exec " + program + " run scene.json -o cut");
+    ASSERT_TRUE(eventually([] { return fs::exists("cut/history.csv"); }));
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds(random)));
+    process.send(SIGTERM);
+    if (process.wait().code != 128 + SIGTERM || newest_checkpoint("cut").empty())
+      continue;
+    const long step = file_json("cut/run.json")["steps"];
+    const auto last = phases_of("cut").back();
+    if (last["kind"] != "dynamic" || step == 0)
+      continue;
+    (long(last["steps"]) <= 4 ? behind_static : in_dynamic) += 1;
+    const Outcome more = run_ligament("resume cut");
+    ASSERT_EQ(more.code, 0) << more.errors;
+    expect_same("cut", "whole");
+    EXPECT_EQ(phases_of("cut"), phases_of("whole")) << "interrupted in step " << step;
+    if (HasFailure())
+      return;
+  }
+  EXPECT_GE(behind_static, 3);
+  EXPECT_GE(in_dynamic, 3);
+}
+
+TEST_F(Phases, BuiltAnewUnderWayNothingDiffers)
+{
+  for (const char *interval : {"7", "100"}) {
+    SCOPED_TRACE(interval);
+    const std::string run = std::string("rebuilt_") + interval;
+    ASSERT_EQ(
+        run_ligament("run scene.json --rebuild-interval " + std::string(interval) + " -o " + run)
+            .code,
+        0);
+    EXPECT_TRUE(has(file_text(run + "/run.log"), "built anew "));
+    expect_same(run, "whole");
+    EXPECT_EQ(phases_of(run), phases_of("whole"));
+  }
+}
+
+// Under pressure beyond its buckling load.
+TEST_F(Phases, AStripThatBucklesGoesOnBySteps)
+{
+  const auto record = record_of(
+      "strip",
+      set("/specimen", R"({"size": [4, 60]})") + set("/inclusions", "[]") +
+          set("/far_field", "none") + set("/damping", R"({"local": 0, "mass": 0.05})") +
+          set("/discrete_zone", R"({"extent": "all", "packing": "hexagonal", "spacing": 1})") +
+          set("/material/fracture/strength", "1") +
+          set("/loads", R"([{"boundary": "top", "displacement": [0, -2], "ramp": 2000},
+                            {"boundary": "bottom", "displacement": [0, 0]}])") +
+          set("/time/duration", "2200"));
+  EXPECT_EQ(record["status"], "done");
+  ASSERT_EQ(record["phases"][0]["kind"], "static");
+  const std::string reason = record["phases"][0]["reason"];
+  EXPECT_TRUE(reason == "no equilibrium was found" || reason == "the body no longer carries")
+      << reason;
+  EXPECT_EQ(record["phases"][1]["kind"], "dynamic");
+  EXPECT_GT(record["phases"][1]["steps"], 0);
+  EXPECT_TRUE(has(file_text("strip/run.log"), "the run goes on by steps"));
+}
+
+// One bond holds the halves together; behind it they are two free bodies, and nothing loads them.
+TEST_F(Phases, ABodyThatItsFirstBreakCutsInTwo)
+{
+  for (const std::string far : {"", " --set /far_field=none"}) {
+    const auto record =
+        record_of(far.empty() ? "halves" : "pure_halves",
+                  far +
+                      set("/specimen",
+                          R"({"size": [24, 120], "cracks": [{"points": [[-12, 0], [11, 0]]}]})") +
+                      set("/inclusions", "[]") + set("/time/stop_when", "end") +
+                      set("/time/duration", "2e4"));
+    EXPECT_EQ(record["status"], "done");
+    EXPECT_EQ(record["broken_bonds"], 1);
+    const auto &list = record["phases"];
+    ASSERT_GE(list.size(), 3u) << list.dump(1);
+    EXPECT_EQ(list[0]["reason"], "a bond bears its strength");
+    EXPECT_EQ(list[0]["broken"], 1);
+    EXPECT_EQ(list[1]["reason"], "the body is calm");
+    EXPECT_EQ(list[2]["reason"], "end of the run");
+    EXPECT_LT(std::abs(double(list[2]["load"])), 1e-6 * double(list[0]["load"]));
+  }
+}
+} // namespace

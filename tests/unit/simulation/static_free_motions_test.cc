@@ -1,0 +1,94 @@
+// Motions of the whole body that no support resists: as many as one counts by hand.
+#include "tests/support/static_body.h"
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+const std::string no = "null";
+const std::vector<std::vector<std::string>> kinds = {
+    {}, {"/far_field=none"}, {"/discrete_zone=none"}};
+
+/// After an equilibrium at full load, or the attempt.
+template <int dim>
+int n_free(const std::vector<Load> &list, const std::vector<std::string> &overrides)
+{
+  // A small one: three dimensions of particles alone take a while to factorise.
+  const std::vector<std::string> size = dim == 3 && !overrides.empty()
+                                            ? std::vector<std::string>{"/specimen/size=[5, 20, 4]"}
+                                            : std::vector<std::string>{};
+  StaticBody<dim> body(overrides + size + std::vector{loads(list)});
+  Eigen::VectorXd moved;
+  EXPECT_EQ(body.solver.find_equilibrium(1, moved), EquilibriumSolver<dim>::End::converged);
+  return body.solver.n_free_motions();
+}
+
+struct Counted
+{
+  const char *what;
+  std::vector<Load> loads;
+  int n;
+};
+
+TEST(FreeMotions, OfAPlate)
+{
+  const std::vector<Counted> sets = {
+      {"pulled by tractions: two translations, one rotation",
+       {{"top", "traction", {no, "1e-4"}}, {"bottom", "traction", {no, "-1e-4"}}},
+       3},
+      {"ends held along the pull: sideways",
+       {{"top", "displacement", {no, "0.01"}}, {"bottom", "displacement", {no, "0"}}},
+       1},
+      {"one end held along the pull, the other drawn: sideways",
+       {{"top", "traction", {no, "1e-4"}}, {"bottom", "displacement", {no, "0"}}},
+       1},
+      {"one end held: none",
+       {{"top", "traction", {no, "1e-4"}}, {"bottom", "displacement", {"0", "0"}}},
+       0},
+      {"one end held sideways only: along it and no turn",
+       {{"top", "traction", {no, "1e-4"}},
+        {"bottom", "traction", {no, "-1e-4"}},
+        {"left", "displacement", {"0", no}}},
+       1},
+      {"corner sides held across: none",
+       {{"left", "displacement", {"0", no}},
+        {"bottom", "displacement", {no, "0"}},
+        {"top", "traction", {no, "1e-4"}}},
+       0},
+  };
+  for (const Counted &set : sets)
+    for (const auto &kind : kinds) {
+      // Beside a zone that reaches the sides, only the mesh or only particles can be held there.
+      if (kind.empty() && (std::string(set.loads.back().side) == "left" ||
+                           std::string(set.loads[0].side) == "left"))
+        continue;
+      SCOPED_TRACE(std::string(set.what) + (kind.empty() ? "" : kind[0]));
+      EXPECT_EQ(n_free<2>(set.loads, kind), set.n);
+    }
+}
+
+TEST(FreeMotions, OfABar)
+{
+  const std::vector<Counted> sets = {
+      {"pulled by tractions: all six",
+       {{"top", "traction", {no, "1e-4", no}}, {"bottom", "traction", {no, "-1e-4", no}}},
+       6},
+      {"ends held along the pull: two sideways, and a turn about the axis",
+       {{"top", "displacement", {no, "0.01", no}}, {"bottom", "displacement", {no, "0", no}}},
+       3},
+      {"one end held along it and across: the other way across",
+       {{"top", "traction", {no, "1e-4", no}}, {"bottom", "displacement", {"0", "0", no}}},
+       1},
+      {"one end held: none",
+       {{"top", "traction", {no, "1e-4", no}}, {"bottom", "displacement", {"0", "0", "0"}}},
+       0},
+  };
+  for (const Counted &set : sets)
+    for (const auto &kind : kinds) {
+      SCOPED_TRACE(std::string(set.what) + (kind.empty() ? "" : kind[0]));
+      EXPECT_EQ(n_free<3>(set.loads, kind), set.n);
+    }
+}
+} // namespace
