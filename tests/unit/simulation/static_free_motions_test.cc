@@ -91,4 +91,20 @@ TEST(FreeMotions, OfABar)
       EXPECT_EQ(n_free<3>(set.loads, kind), set.n);
     }
 }
+
+// A beam 200 long and 12 high with two arms, held by necks of two particles: turning about them
+// costs 3e-11 of what stretching bonds does, but not nothing.
+TEST(FreeMotions, NarrowSupportsHold)
+{
+  StaticBody<2> body(std::vector<std::string>{
+      "/far_field=none",
+      R"(/discrete_zone={"extent": "all", "packing": "hexagonal", "spacing": 1})",
+      R"(/specimen={"size": [200, 24], "cracks": [{"points": [[-100, 0], [-40, 0]]}],
+         "notches": [{"lower": [-98, 6], "upper": [100, 12]}, {"lower": [-98, -12], "upper": [100, -6]}]})",
+      loads(
+          {{"top", "displacement", {"null", "0.01"}}, {"bottom", "displacement", {"null", "0"}}})});
+  Eigen::VectorXd moved;
+  ASSERT_EQ(body.solver.find_equilibrium(1, moved), EquilibriumSolver<2>::End::converged);
+  EXPECT_EQ(body.solver.n_free_motions(), 1); // sideways
+}
 } // namespace

@@ -163,19 +163,4 @@ TEST(StaticSystem, TheLumpedConstraintHasNoEquilibriumIn3d)
   EXPECT_NE(body.solver.find_equilibrium(1, moved), EquilibriumSolver<3>::End::converged);
   EXPECT_EQ(body.system().place().zone, start.zone);
 }
-
-// A beam 200 long and 12 high with two arms, held by necks of two particles: turning about them
-// costs 3e-11 of what stretching bonds does, but not nothing.
-TEST(StaticSystem, NarrowSupportsHold)
-{
-  Solved body({"/far_field=none",
-               "/discrete_zone={\"extent\": \"all\", \"packing\": \"hexagonal\", \"spacing\": 1}",
-               "/specimen={\"size\": [200, 24], \"cracks\": [{\"points\": [[-100, 0], [-40, 0]]}], "
-               "\"notches\": [{\"lower\": [-98, 6], \"upper\": [100, 12]}, "
-               "{\"lower\": [-98, -12], \"upper\": [100, -6]}]}",
-               pulled});
-  Eigen::VectorXd moved;
-  ASSERT_EQ(body.solver.find_equilibrium(1, moved), EquilibriumSolver<2>::End::converged);
-  EXPECT_EQ(body.solver.n_free_motions(), 1); // sideways
-}
 } // namespace
