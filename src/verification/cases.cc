@@ -4,6 +4,7 @@
 #include "src/verification/bodies/waves_twin.h"
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
+#include "src/verification/cases/static.h"
 
 namespace ligament::program
 {
@@ -37,6 +38,8 @@ std::vector<Case> all_cases()
   add(toughness_cases());
   add(toughness_3d_cases());
   add(toughness_mixed_cases());
+  add(static_cases());
+  add(static_run_cases());
   add(random_scene_cases());
   return cases;
 }

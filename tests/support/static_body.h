@@ -42,7 +42,9 @@ struct StaticBody
   program::EquilibriumSolver<dim> solver;
 
   explicit StaticBody(const program::Scene &scene,
-                      algebra::Preconditioning kind = algebra::Preconditioning::cholesky)
+                      algebra::Preconditioning kind = dim == 2
+                                                          ? algebra::Preconditioning::cholesky
+                                                          : algebra::Preconditioning::multigrid)
       : body(program::make_body<dim>(scene, log, timers)), solver(body, kind)
   {
   }

@@ -153,7 +153,7 @@ TEST_P(StaticSystems, PreconditionerOfAParticleBodyIsItsStiffness)
 
 // A constant load lets halves that the lumped constraint joins creep apart
 // (docs/verification_schemes .md), and in 3D nothing else holds them.
-TEST(StaticSystem, TheLumpedConstraintHasNoEquilibriumIn3d)
+TEST(StaticSystem, SlowTheLumpedConstraintHasNoEquilibriumIn3d)
 {
   StaticBody<3> body(std::vector{scheme("xiao_belytschko_lumped"),
                                  loads({{"top", "displacement", {"null", "0.01", "null"}},
