@@ -50,6 +50,16 @@ void check_what_loads(const Scene &scene, const std::string &how, Findings &f)
               "give the loads a \"ramp\"");
 }
 
+// Its lumped multipliers are no projection: what it takes for equilibrium depends on the way there.
+void check_scheme(const Scene &scene, const std::string &how, Findings &f)
+{
+  if (scene.coupling.scheme == coupling::Scheme::xiao_belytschko_lumped)
+    f.error("/coupling/scheme",
+            fmt::format("\"xiao_belytschko_lumped\" has no equilibrium, but {}", how),
+            "its lumped multipliers leave a gap that grows under a standing load",
+            "choose another scheme, or \"dynamic\"");
+}
+
 // Dashpots resist velocities alone.
 void check_supports(const Scene &scene, const std::string &how, Findings &f)
 {
@@ -116,6 +126,8 @@ void check_phases(const Scene &scene, Findings &f)
   const std::string how =
       fmt::format("\"loading\" in /time is \"{}\"", word_of(scene.time.loading));
   check_rest(scene, how, f);
+  if (f.sound({"/coupling/scheme"}))
+    check_scheme(scene, how, f);
   if (f.sound({"/loads"})) {
     check_what_loads(scene, how, f);
     check_supports(scene, how, f);

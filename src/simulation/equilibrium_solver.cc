@@ -299,7 +299,7 @@ typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(doubl
       y = held;
       return End::converged;
     }
-    const auto result = solve(right, 1e-7 * norm, y);
+    const auto result = solve(right, 1e-6 * norm, y); // rotations matter more
     y += held;
     if (result.end == algebra::CgResult::End::indefinite)
       return End::indefinite;

