@@ -105,7 +105,7 @@ Teuchos::ParameterList settings(const BlockMatrix &matrix, Eigen::MatrixXd &mode
   list.set("PDE equations", matrix.block_size());
   list.set("aggregation: type", "Uncoupled");
   list.set("smoother: type", "Chebyshev");
-  list.set("smoother: sweeps", 3);
+  list.set("smoother: sweeps", 4);
   list.set("coarse: type", "Amesos-KLU");
   list.set("null space: type", "pre-computed");
   list.set("null space: dimension", int(modes.cols()));
