@@ -3,7 +3,7 @@
 #include "core/check.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/kept_tables.h"
-#include "src/simulation/load_growth.h"
+#include "src/simulation/static_stretch.h"
 #include "src/simulation/test_machine.h"
 
 #include <fmt/format.h>
@@ -102,7 +102,6 @@ template <int dim>
 struct StaticPhases<dim>::Work
 {
   using End = typename EquilibriumSolver<dim>::End;
-  using Place = typename StaticSystem<dim>::Place;
 
   Work(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
       : loading(scene.time.loading), calm(scene.time.calm), log(log), machine(body),
@@ -116,25 +115,6 @@ struct StaticPhases<dim>::Work
   std::optional<Stop> advance_once(CoupledBody<dim> &body, Clock &clock, double damping,
                                    const Look &look);
 
-  /// The part of a static phase between two corners of the loads' ramps: from `start`, where the
-  /// body is in equilibrium, along the response of the body to the step `end` and a little off it.
-  struct Stretch
-  {
-    LoadGrowth<dim> growth;
-    Place start, finish;
-    Eigen::VectorXd response, bend;
-    long begin, end;     // steps
-    double share = 0;    // of the growth, at its end
-    bool breaks = false; // a bond, there
-  };
-  /// At most to the step `reach`.
-  Stretch stretch_from(const CoupledBody<dim> &body, const Clock &clock, long reach) const;
-  /// Sets its end also where it fails: the step in which no equilibrium was found.
-  End find_end(CoupledBody<dim> &body, const Clock &clock, Stretch &stretch);
-  std::optional<double> share_that_breaks(CoupledBody<dim> &body, const Clock &clock,
-                                          Stretch &stretch, double &slope);
-  std::optional<Stop> walk(CoupledBody<dim> &body, Clock &clock, const Stretch &stretch,
-                           const Look &look);
   void commit(CoupledBody<dim> &body, const Clock &clock, const Eigen::VectorXd &velocities);
 
   double load_of(const CoupledBody<dim> &body, const Clock &clock) const
@@ -142,14 +122,6 @@ struct StaticPhases<dim>::Work
     return machine.has_load() ? machine.read(body, clock.now.time).load : 0;
   }
   double time_of(const Clock &clock, long step) const { return double(step) * clock.now.dt; }
-  /// The first step of the far field after `begin` by which the loads have grown that far.
-  long step_of(const Clock &clock, const Stretch &stretch, double share, long last) const;
-  double bond_share(double time, double noted)
-  {
-    solver.system().forces(time, noted);
-    return body_share();
-  }
-  std::function<double()> body_share;
 
   Loading loading;
   double calm; // transits
@@ -255,7 +227,6 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   Phase phase{true, clock.now.step, clock.now.step};
   const int solves = solver.n_solves(), iterations = solver.n_iterations();
   const long broken_before = n_broken(body);
-  body_share = [&body] { return body.force() ? body.force()->trial_share(body.zone->state) : 0.; };
   std::optional<Stop> stop;
   const auto finish = [&](PhaseEnd reason) {
     phase.end = clock.now.step;
@@ -298,15 +269,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   int n_halvings = 0;
   constexpr int most_halvings = 5;
   for (bool is_first = true;; is_first = false) {
-    Stretch stretch = stretch_from(body, clock, reach);
-    End end = solver.find_response(clock.now.time, time_of(clock, stretch.end), stretch.response);
-    stretch.start = solver.system().place();
-    const auto stay = [&] {
-      commit(body, clock,
-             end == End::indefinite
-                 ? Eigen::VectorXd::Zero(solver.system().size())
-                 : Eigen::VectorXd(stretch.growth.rate(clock.now.time) * stretch.response));
-    };
+    StaticStretch<dim> stretch(body, solver, clock, reach);
+    End end = stretch.find_response();
+    const auto stay = [&] { commit(body, clock, stretch.velocities(clock.now.time)); };
     if (is_first) {
       stay();
       body.settled += before - read_ledger(body, clock.now, damping).residual();
@@ -320,21 +285,21 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       }
     }
     if (end == End::converged)
-      end = find_end(body, clock, stretch);
-    if (end == End::stalled && n_halvings < most_halvings &&
-        stretch.end - stretch.begin >= 4 * ratio) {
+      end = stretch.find_end();
+    if (end == End::stalled && n_halvings < most_halvings && stretch.n_steps() >= 4 * ratio) {
       ++n_halvings;
-      solver.system().put_back(stretch.start);
-      reach = stretch.begin + (stretch.end - stretch.begin) / (2 * ratio) * ratio;
+      stretch.go_back();
+      reach = clock.now.step + stretch.n_steps() / (2 * ratio) * ratio;
       continue;
     }
     if (end != End::converged) {
-      solver.system().put_back(stretch.start);
+      stretch.go_back();
       stay();
       failed(end);
       return stop;
     }
-    if ((stop = walk(body, clock, stretch, look))) {
+    const auto commit_here = [&](const Eigen::VectorXd &v) { commit(body, clock, v); };
+    if ((stop = stretch.walk(clock, commit_here, look))) {
       finish(PhaseEnd::stopped);
       return stop;
     }
@@ -351,192 +316,8 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       return stop;
     }
     n_halvings = 0;
-    reach = std::min(clock.n_steps, stretch.end + 4 * (stretch.end - stretch.begin));
+    reach = std::min(clock.n_steps, clock.now.step + 4 * stretch.n_steps());
   }
-}
-
-// Loads that don't grow in proportion almost do so over short stretches within their ramps.
-template <int dim>
-typename StaticPhases<dim>::Work::Stretch
-StaticPhases<dim>::Work::stretch_from(const CoupledBody<dim> &body, const Clock &clock,
-                                      long reach) const
-{
-  const double now = clock.now.time;
-  const auto growth_to = [&](long step) {
-    return LoadGrowth<dim>(body.loads, now, time_of(clock, step));
-  };
-  Stretch stretch{growth_to(reach), {}, {}, {}, {}, clock.now.step, reach};
-  if (stretch.growth.is_proportional())
-    return stretch;
-  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(clock, reach));
-  stretch.end =
-      std::clamp(clock.now.step +
-                     ratio * long(std::ceil((corner - now) / (ratio * clock.now.dt) * (1 - 1e-12))),
-                 clock.now.step + ratio, reach);
-  constexpr int parts = 4;
-  const long far_steps = (stretch.end - stretch.begin) / ratio;
-  if (!growth_to(stretch.end).is_proportional() && far_steps >= parts)
-    stretch.end = stretch.begin + far_steps / parts * ratio;
-  stretch.growth = growth_to(stretch.end);
-  return stretch;
-}
-
-template <int dim>
-long StaticPhases<dim>::Work::step_of(const Clock &clock, const Stretch &stretch, double share,
-                                      long last) const
-{
-  long low = 0, high = (last - stretch.begin) / ratio;
-  while (high - low > 1) {
-    const long middle = low + (high - low) / 2;
-    (stretch.growth.share(time_of(clock, stretch.begin + middle * ratio)) >= share * (1 - 1e-14)
-         ? high
-         : low) = middle;
-  }
-  return stretch.begin + high * ratio;
-}
-
-// Where the first bond bears its strength along the response: the largest share of the strength is
-// convex in the share of the growth. Empty where none does.
-template <int dim>
-std::optional<double> StaticPhases<dim>::Work::share_that_breaks(CoupledBody<dim> &body,
-                                                                 const Clock &clock,
-                                                                 Stretch &stretch, double &slope)
-{
-  if (!body.force() || !body.force()->can_break())
-    return {};
-  double at = 0; // the body is there
-  auto &system = solver.system();
-  const auto bears = [&](double share, double noted) {
-    system.displace(stretch.response, share - at);
-    at = share;
-    return bond_share(time_of(clock, step_of(clock, stretch, share, stretch.end)), noted);
-  };
-  constexpr double least = 0.5, near = 0.9, exact = 2e-6;
-  const double full = stretch.growth.share(time_of(clock, stretch.end));
-  double low = 0, at_low = 0, high = full, at_high = bears(full, least);
-  std::optional<double> found;
-  if (at_high >= 1) {
-    // From rest the share is proportional to the load.
-    double next = full / at_high;
-    for (int look = 0; look < 40; ++look) {
-      const double share = bears(next, at_low < near ? least : near);
-      slope = at_high > share && high > next ? (at_high - share) / (high - next) : slope;
-      if (share >= 1) {
-        high = next;
-        at_high = share;
-      } else {
-        low = next;
-        at_low = std::max(share, least);
-      }
-      if (std::abs(share - 1) < exact || high - low < 1e-12 * full) {
-        found = next;
-        break;
-      }
-      next = low + (1 - at_low) / (at_high - at_low) * (high - low);
-      if (look % 4 == 3) // one end may stay for long
-        next = (low + high) / 2;
-    }
-    if (!found)
-      found = high;
-  }
-  system.put_back(stretch.start);
-  return found;
-}
-
-// Equilibrium at the end of the stretch, moved to the first step in which a bond bears its strength
-// or more.
-template <int dim>
-typename EquilibriumSolver<dim>::End
-StaticPhases<dim>::Work::find_end(CoupledBody<dim> &body, const Clock &clock, Stretch &stretch)
-{
-  auto &system = solver.system();
-  double slope = 0;
-  const auto predicted = share_that_breaks(body, clock, stretch, slope);
-  long step = predicted ? step_of(clock, stretch, *predicted, stretch.end) : stretch.end;
-  stretch.bend = Eigen::VectorXd::Zero(system.size());
-  double at = 0, bore = 0; // share of the growth, of the strength
-  constexpr int most_corrections = 8;
-  // Where loads grow by less in a step, its number is below what the strength says.
-  constexpr double over = 1e-6; // of the strength
-  for (int k = 0;; ++k) {
-    const double share = stretch.growth.share(time_of(clock, step));
-    system.displace(stretch.response, share - at);
-    if (at > 0) { // along the parabola of walk()
-      const double longer = share * share / (at * at);
-      system.displace(stretch.bend, longer - 1);
-      stretch.bend *= longer;
-    }
-    Eigen::VectorXd moved;
-    const End end = solver.find_equilibrium(time_of(clock, step), moved);
-    if (end != End::converged) {
-      stretch.end = step;
-      return end;
-    }
-    stretch.bend += moved;
-    const double bears =
-        body.force() && body.force()->can_break() ? bond_share(time_of(clock, step), 0.5) : 0;
-    if (k > 0 && share != at && (bears - bore) * (share - at) > 0)
-      slope = (bears - bore) / (share - at);
-    if (slope == 0 && share > 0)
-      slope = bears / share;
-    at = share;
-    bore = bears;
-    const double one_step =
-        share - stretch.growth.share(time_of(clock, std::max(stretch.begin, step - ratio)));
-    const bool is_first =
-        bears - std::max(slope * one_step, over) < 1 || step - ratio <= stretch.begin;
-    const bool done = bears >= 1 ? is_first : step == stretch.end;
-    if (done || k == most_corrections) {
-      stretch.end = step;
-      stretch.share = share;
-      stretch.breaks = bears >= 1;
-      stretch.finish = system.place();
-      return end;
-    }
-    const double aim = slope * one_step < over ? 1 + over / 2 : 1;
-    const long wanted = step_of(clock, stretch, share + (aim - bears) / slope, stretch.end);
-    const long other = bears >= 1 ? std::min(wanted, step - ratio) : std::max(wanted, step + ratio);
-    step = std::clamp(other, stretch.begin + ratio, stretch.end);
-  }
-}
-
-// Along a parabola, on which forces stay in balance to the third order in the loads: they do the
-// work that the ledger books.
-template <int dim>
-std::optional<Stop> StaticPhases<dim>::Work::walk(CoupledBody<dim> &body, Clock &clock,
-                                                  const Stretch &stretch, const Look &look)
-{
-  auto &system = solver.system();
-  system.put_back(stretch.start);
-  const long broken_before = n_broken(body);
-  constexpr double rows_of_whole = 50;
-  const int n_rows = std::max(
-      2, int(std::ceil(rows_of_whole * double(stretch.end - stretch.begin) / double(stretch.end))));
-  double at = 0; // share of the growth
-  const auto bent = [&](double share) {
-    return stretch.share > 0 ? share * share / (stretch.share * stretch.share) : 0;
-  };
-  for (int row = 1; row <= n_rows; ++row) {
-    const long step = row == n_rows
-                          ? stretch.end
-                          : step_of(clock, stretch, stretch.share * row / n_rows, stretch.end);
-    if (step <= clock.now.step)
-      continue;
-    clock.advance(step - clock.now.step);
-    const double share = stretch.growth.share(clock.now.time);
-    if (step == stretch.end)
-      system.put_back(stretch.finish);
-    else
-      system.displace(Eigen::VectorXd((share - at) * stretch.response +
-                                      (bent(share) - bent(at)) * stretch.bend));
-    at = share;
-    commit(body, clock, stretch.growth.rate(clock.now.time) * stretch.response);
-    if (n_broken(body) > broken_before || step == stretch.end)
-      return {};
-    if (const auto stop = look())
-      return stop;
-  }
-  return {};
 }
 
 // The body stretches at the rate of its loads. That it does so no step has seen: the loads' work is

@@ -1,0 +1,208 @@
+#include "src/simulation/static_stretch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+// Loads that don't grow in proportion almost do so over short stretches within their ramps.
+template <int dim>
+StaticStretch<dim>::StaticStretch(CoupledBody<dim> &body, EquilibriumSolver<dim> &solver,
+                                  const Clock &clock, long reach)
+    : body_(body), solver_(solver), dt_(clock.now.dt), ratio_(body.coupler->step_ratio()),
+      begin_(clock.now.step), end_(reach), growth_(growth_to(reach)),
+      start_(solver.system().place())
+{
+  if (growth_.is_proportional())
+    return;
+  const double now = time_of(begin_);
+  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(reach));
+  end_ =
+      std::clamp(begin_ + ratio_ * long(std::ceil((corner - now) / (ratio_ * dt_) * (1 - 1e-12))),
+                 begin_ + ratio_, reach);
+  constexpr int parts = 4;
+  const long far_steps = (end_ - begin_) / ratio_;
+  if (!growth_to(end_).is_proportional() && far_steps >= parts)
+    end_ = begin_ + far_steps / parts * ratio_;
+  growth_ = growth_to(end_);
+}
+
+template <int dim>
+typename StaticStretch<dim>::End StaticStretch<dim>::find_response()
+{
+  const End end = solver_.find_response(time_of(begin_), time_of(end_), response_);
+  if (end == End::indefinite)
+    response_.resize(0);
+  return end;
+}
+
+template <int dim>
+Eigen::VectorXd StaticStretch<dim>::velocities(double time) const
+{
+  if (response_.size() == 0)
+    return Eigen::VectorXd::Zero(solver_.system().size());
+  return growth_.rate(time) * response_;
+}
+
+template <int dim>
+double StaticStretch<dim>::bond_share(double time, double noted)
+{
+  solver_.system().forces(time, noted);
+  return body_.force()->trial_share(body_.zone->state);
+}
+
+template <int dim>
+long StaticStretch<dim>::n_broken() const
+{
+  return body_.force() ? long(body_.force()->broken_bonds().size()) : 0;
+}
+
+template <int dim>
+long StaticStretch<dim>::step_of(double share) const
+{
+  long low = 0, high = (end_ - begin_) / ratio_;
+  while (high - low > 1) {
+    const long middle = low + (high - low) / 2;
+    (growth_.share(time_of(begin_ + middle * ratio_)) >= share * (1 - 1e-14) ? high : low) = middle;
+  }
+  return begin_ + high * ratio_;
+}
+
+// Where the first bond bears its strength along the response: the largest share of the strength is
+// convex in the share of the growth. Empty where none does.
+template <int dim>
+std::optional<double> StaticStretch<dim>::share_that_breaks(double &slope)
+{
+  if (!body_.force() || !body_.force()->can_break())
+    return {};
+  double at = 0; // the body is there
+  auto &system = solver_.system();
+  const auto bears = [&](double share, double noted) {
+    system.displace(response_, share - at);
+    at = share;
+    return bond_share(time_of(step_of(share)), noted);
+  };
+  constexpr double least = 0.5, near = 0.9, exact = 2e-6;
+  const double full = growth_.share(time_of(end_));
+  double low = 0, at_low = 0, high = full, at_high = bears(full, least);
+  std::optional<double> found;
+  if (at_high >= 1) {
+    // From rest the share is proportional to the load.
+    double next = full / at_high;
+    for (int look = 0; look < 40; ++look) {
+      const double share = bears(next, at_low < near ? least : near);
+      slope = at_high > share && high > next ? (at_high - share) / (high - next) : slope;
+      if (share >= 1) {
+        high = next;
+        at_high = share;
+      } else {
+        low = next;
+        at_low = std::max(share, least);
+      }
+      if (std::abs(share - 1) < exact || high - low < 1e-12 * full) {
+        found = next;
+        break;
+      }
+      next = low + (1 - at_low) / (at_high - at_low) * (high - low);
+      if (look % 4 == 3) // one end may stay for long
+        next = (low + high) / 2;
+    }
+    if (!found)
+      found = high;
+  }
+  system.put_back(start_);
+  return found;
+}
+
+// Equilibrium at the end of the stretch, moved to the first step in which a bond bears its strength
+// or more.
+template <int dim>
+typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
+{
+  auto &system = solver_.system();
+  double slope = 0;
+  const auto predicted = share_that_breaks(slope);
+  long step = predicted ? step_of(*predicted) : end_;
+  bend_ = Eigen::VectorXd::Zero(system.size());
+  double at = 0, bore = 0; // share of the growth, of the strength
+  constexpr int most_corrections = 8;
+  // Where loads grow by less in a step, its number is below what the strength says.
+  constexpr double over = 1e-6; // of the strength
+  for (int k = 0;; ++k) {
+    const double share = growth_.share(time_of(step));
+    system.displace(response_, share - at);
+    if (at > 0) { // along the parabola of walk()
+      const double longer = share * share / (at * at);
+      system.displace(bend_, longer - 1);
+      bend_ *= longer;
+    }
+    Eigen::VectorXd moved;
+    const End end = solver_.find_equilibrium(time_of(step), moved);
+    if (end != End::converged) {
+      end_ = step;
+      return end;
+    }
+    bend_ += moved;
+    const double bears =
+        body_.force() && body_.force()->can_break() ? bond_share(time_of(step), 0.5) : 0;
+    if (k > 0 && share != at && (bears - bore) * (share - at) > 0)
+      slope = (bears - bore) / (share - at);
+    if (slope == 0 && share > 0)
+      slope = bears / share;
+    at = share;
+    bore = bears;
+    const double one_step = share - growth_.share(time_of(std::max(begin_, step - ratio_)));
+    const bool is_first = bears - std::max(slope * one_step, over) < 1 || step - ratio_ <= begin_;
+    const bool done = bears >= 1 ? is_first : step == end_;
+    if (done || k == most_corrections) {
+      end_ = step;
+      share_ = share;
+      finish_ = system.place();
+      return end;
+    }
+    const double aim = slope * one_step < over ? 1 + over / 2 : 1;
+    const long wanted = step_of(share + (aim - bears) / slope);
+    const long other =
+        bears >= 1 ? std::min(wanted, step - ratio_) : std::max(wanted, step + ratio_);
+    step = std::clamp(other, begin_ + ratio_, end_);
+  }
+}
+
+// Along a parabola, on which forces stay in balance to the third order in the loads: they do the
+// work that the ledger books.
+template <int dim>
+std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit, const Look &look)
+{
+  auto &system = solver_.system();
+  system.put_back(start_);
+  const long broken_before = n_broken();
+  constexpr double rows_of_whole = 50;
+  const int n_rows =
+      std::max(2, int(std::ceil(rows_of_whole * double(end_ - begin_) / double(end_))));
+  double at = 0; // share of the growth
+  const auto bent = [&](double share) {
+    return share_ > 0 ? share * share / (share_ * share_) : 0;
+  };
+  for (int row = 1; row <= n_rows; ++row) {
+    const long step = row == n_rows ? end_ : step_of(share_ * row / n_rows);
+    if (step <= clock.now.step)
+      continue;
+    clock.advance(step - clock.now.step);
+    const double share = growth_.share(clock.now.time);
+    if (step == end_)
+      system.put_back(finish_);
+    else
+      system.displace(Eigen::VectorXd((share - at) * response_ + (bent(share) - bent(at)) * bend_));
+    at = share;
+    commit(velocities(clock.now.time));
+    if (n_broken() > broken_before || step == end_)
+      return {};
+    if (const auto stop = look())
+      return stop;
+  }
+  return {};
+}
+
+template class StaticStretch<2>;
+template class StaticStretch<3>;
+} // namespace ligament::program
