@@ -88,7 +88,6 @@ private:
             Components<dim> &nodal) const;
   Eigen::VectorXd give(const particles::Particles<dim> &zone, const Components<dim> &nodal,
                        double factor) const;
-  void expand_into_velocities(const Eigen::VectorXd &y);
   Components<dim> nodal_zero() const;
   void put_nodal(const Components<dim> &nodal, Eigen::VectorXd &y) const;
 
