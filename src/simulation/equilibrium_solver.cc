@@ -3,6 +3,7 @@
 #include "core/check.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <random>
@@ -114,20 +115,6 @@ void EquilibriumSolver<dim>::prepare()
     }
 }
 
-// The y nearest to zero of the same motion T y. Forces T^T f have no part in the y that T takes for
-// no motion, and keep to that when such a y is projected out of them.
-template <int dim>
-Eigen::VectorXd EquilibriumSolver<dim>::without_nothing(const Eigen::VectorXd &y)
-{
-  const Eigen::VectorXd right = system_.folded(y);
-  Eigen::VectorXd nearest;
-  algebra::conjugate_gradients(
-      [&](const Eigen::VectorXd &p, Eigen::VectorXd &bp) { bp = system_.folded(p); },
-      [](const Eigen::VectorXd &r, Eigen::VectorXd &z) { z = r; }, [](Eigen::VectorXd &) {}, right,
-      nearest, 1e-15 * right.norm(), most_iterations);
-  return nearest;
-}
-
 // Of the rigid motions, as far as supports let them be, those that cost no energy.
 template <int dim>
 void EquilibriumSolver<dim>::find_free_motions()
@@ -162,10 +149,12 @@ void EquilibriumSolver<dim>::make_free_motions(const Eigen::MatrixXd &rigid,
                                                const Eigen::MatrixXd &shares)
 {
   free_shares_ = shares;
-  free_motions_.resize(rigid.rows(), shares.cols());
+  free_motions_ = rigid * shares;
+  free_forces_.resize(rigid.rows(), shares.cols());
   for (int k = 0; k < shares.cols(); ++k)
-    free_motions_.col(k) = without_nothing(rigid * shares.col(k));
-  free_motions_ = orthonormal(free_motions_);
+    free_forces_.col(k) = system_.folded(free_motions_.col(k));
+  const Eigen::MatrixXd works = free_motions_.transpose() * free_forces_;
+  free_forces_ *= works.inverse();
 }
 
 template <int dim>
@@ -190,11 +179,20 @@ void EquilibriumSolver<dim>::set_free_shares(const FreeShares &free)
                     Eigen::Map<const Eigen::MatrixXd>(free.shares.data(), rigid.cols(), free.n));
 }
 
+// Where y is redundant, a force has no part in what T takes for no motion at all. It keeps to that
+// when what the free motions feel is taken out by forces T^T f.
 template <int dim>
-void EquilibriumSolver<dim>::project(Eigen::VectorXd &y) const
+void EquilibriumSolver<dim>::project_force(Eigen::VectorXd &r) const
 {
   if (free_motions_.cols() > 0)
-    y -= free_motions_ * (free_motions_.transpose() * y).eval();
+    r -= free_forces_ * (free_motions_.transpose() * r).eval();
+}
+
+template <int dim>
+void EquilibriumSolver<dim>::project_motion(Eigen::VectorXd &y) const
+{
+  if (free_motions_.cols() > 0)
+    y -= free_motions_ * (free_forces_.transpose() * y).eval();
 }
 
 template <int dim>
@@ -209,7 +207,8 @@ algebra::CgResult EquilibriumSolver<dim>::solve(const Eigen::VectorXd &right, do
         preconditioner_->apply(r, z);
         system_.drop_inert(z);
       },
-      [&](Eigen::VectorXd &v) { project(v); }, right, y, absolute, most_iterations);
+      [&](Eigen::VectorXd &r) { project_force(r); }, [&](Eigen::VectorXd &z) { project_motion(z); },
+      right, y, absolute, most_iterations);
   ++n_solves_;
   n_iterations_ += result.iterations;
   return result;
@@ -219,7 +218,7 @@ template <int dim>
 Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 {
   Eigen::VectorXd r = system_.forces(time);
-  project(r);
+  project_force(r);
   norm = r.norm();
   largest_load_ = std::max(largest_load_, system_.load_force());
   return r;
@@ -293,7 +292,7 @@ typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(doubl
   constexpr int most_changes = 3; // what then is wrong yet, the next equilibrium corrects
   for (int change = 0;; ++change) {
     Eigen::VectorXd right = growth - system_.stiffness_times(held);
-    project(right);
+    project_force(right);
     const double norm = right.norm();
     if (norm == 0) {
       y = held;

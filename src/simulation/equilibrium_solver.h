@@ -33,7 +33,8 @@ public:
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
   End find_equilibrium(double time, Eigen::VectorXd &moved);
 
-  /// To equilibrium as near as round-off lets it come: motions so small that their squares are none.
+  /// To equilibrium as near as round-off lets it come: motions so small that their squares are
+  /// none.
   void settle_linear(double time);
 
   /// How far the body moves from its place, where it is in equilibrium at the loads of `from`, when
@@ -71,16 +72,16 @@ private:
   void prepare();
   void find_free_motions();
   void make_free_motions(const Eigen::MatrixXd &rigid, const Eigen::MatrixXd &shares);
-  Eigen::VectorXd without_nothing(const Eigen::VectorXd &y);
-  void project(Eigen::VectorXd &y) const;
+  void project_force(Eigen::VectorXd &r) const;
+  void project_motion(Eigen::VectorXd &y) const;
   algebra::CgResult solve(const Eigen::VectorXd &right, double tolerance, Eigen::VectorXd &y);
   Eigen::VectorXd balance(double time, double &norm);
 
   CoupledBody<dim> &body_;
   algebra::Preconditioning kind_;
   StaticSystem<dim> system_;
-  Eigen::MatrixXd free_motions_; // orthonormal columns
-  Eigen::MatrixXd free_shares_;  // of the rigid motions, before
+  Eigen::MatrixXd free_motions_, free_forces_; // columns; each force works on its own motion alone
+  Eigen::MatrixXd free_shares_;                // of the rigid motions that the first are made of
   bool knows_free_motions_ = false;
   std::unique_ptr<algebra::Preconditioner> preconditioner_;
   Faces touching_; // that it knows
