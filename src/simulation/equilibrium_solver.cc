@@ -12,7 +12,6 @@ namespace ligament::program
 {
 namespace
 {
-constexpr double tolerance = 1e-9; // of the largest load
 constexpr int most_iterations = 2000;
 
 /// Columns of the same span, in their order; those that depend on others are left out.
@@ -86,6 +85,14 @@ EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preco
 {
   core::require(!body.zone || body.force()->has_trials(),
                 "/time/loading: this force has no equilibrium to be sought; choose \"dynamic\"");
+}
+
+template <int dim>
+void EquilibriumSolver<dim>::renew()
+{
+  preconditioner_.reset();
+  if (knows_free_motions_)
+    make_free_motions(orthonormal(system_.rigid_motions()), free_shares_);
 }
 
 template <int dim>
@@ -226,7 +233,7 @@ Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 
 template <int dim>
 typename EquilibriumSolver<dim>::End
-EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
+EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved, double tolerance)
 {
   if (!knows_free_motions_)
     find_free_motions();
@@ -246,8 +253,9 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
       return End::converged;
     since_least = norm < 0.9 * least ? 0 : since_least + 1;
     least = std::min(least, norm);
+    system_.linearise_here();
     Eigen::VectorXd y;
-    const auto result = solve(r, std::max(0.3 * goal, 1e-5 * norm), y);
+    const auto result = solve(r, std::max(0.3 * goal, 1e-6 * norm), y);
     if (result.end == algebra::CgResult::End::indefinite) {
       end = End::indefinite;
       break;
@@ -266,6 +274,7 @@ void EquilibriumSolver<dim>::settle_linear(double time)
 {
   if (!knows_free_motions_)
     find_free_motions();
+  system_.linearise_at_reference();
   system_.displace(system_.held_gap(time));
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
@@ -286,6 +295,7 @@ typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(doubl
   if (!knows_free_motions_)
     find_free_motions();
   const Eigen::VectorXd held = system_.held_motion(from, to);
+  system_.linearise_here();
   Eigen::VectorXd growth = system_.forces(to);
   growth -= system_.forces(from);
   // Faces that are about to touch or to part: those that do at the end decide.
