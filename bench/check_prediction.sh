@@ -1,5 +1,5 @@
 #!/bin/sh
-# What `ligament check` predicts against the run itself, for the examples: time of the whole run
+# What `ligament check` predicts against the run itself, for examples that go by steps: time of the whole run
 # (per step, output and set-up, scaled to the steps that the run took before it broke) and memory. One
 # JSON line per figure: value = predicted, reference = measured.
 # usage: bench/check_prediction.sh [directory of the programs] [keys of all runs, such as --set ...]
@@ -16,8 +16,8 @@ line() {
   awk "BEGIN {printf \"{\\\"name\\\": \\\"$1\\\", \\\"value\\\": %.4g, \\\"unit\\\": \\\"$2\\\", \\\"reference\\\": %.4g, \\\"ratio\\\": %.3f}\n\", $3, $4, ($3) / ($4)}"
 }
 
-for example in cracked_plate inclined_crack plate_with_hole notched_bar_3d; do
-  scene=examples/$example/scene.json
+for example in cracked_plate/fast plate_with_hole/scene closed_crack/scene; do
+  scene=examples/$example.json
   "$programs/ligament" check $scene --json "$@" 2>/dev/null | tail -n 1 >"$work/check"
   "$programs/ligament" run $scene --output "$work/run" --json "$@" 2>/dev/null | tail -n 1 >"$work/json"
   rm -rf "$work/run"

@@ -12,7 +12,7 @@ echo "== 1/4 packages (a few minutes the first time, then a second)"
 scripts/install_packages.sh
 echo "== 2/4 build (some minutes the first time, then seconds)"
 scripts/build.sh ligament
-echo "== 3/4 run examples/cracked_plate (about a minute)"
+echo "== 3/4 run examples/cracked_plate (some seconds)"
 build/release/bin/ligament run examples/cracked_plate/scene.json --output $output "$@"
 echo "== 4/4 report"
 build/release/bin/ligament report $output

@@ -88,17 +88,6 @@ void check_rest(const Scene &scene, const std::string &how, Findings &f)
             "remove \"rest_threshold\", or choose \"dynamic\"");
 }
 
-void check_damping(const Scene &scene, Findings &f)
-{
-  const Damping &d = scene.damping;
-  const bool leave = any_load(scene, [](const LoadParameters &load) { return load.absorbing; });
-  if (f.sound({"/damping"}) && d.local == 0 && d.mass == 0 && !d.kinetic && !leave)
-    f.warning(loading_key, "\"loading\" in /time is \"static\", and nothing damps waves",
-              "waves do not leave an undamped body: it counts as calm only after 50 transits of a "
-              "shear wave, and what still moves then is taken out of it",
-              "give \"local\" or \"mass\" in /damping, or let sides absorb");
-}
-
 /// Keys of the solver without it; their defaults, which a resolved scene has, do no harm.
 void check_unused(const Scene &scene, Findings &f)
 {
@@ -131,8 +120,6 @@ void check_phases(const Scene &scene, Findings &f)
   if (f.sound({"/loads"})) {
     check_what_loads(scene, how, f);
     check_supports(scene, how, f);
-    if (scene.time.loading == Loading::quasi_static)
-      check_damping(scene, f);
   }
 }
 } // namespace ligament::program

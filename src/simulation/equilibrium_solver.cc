@@ -159,7 +159,7 @@ void EquilibriumSolver<dim>::make_free_motions(const Eigen::MatrixXd &rigid,
   free_motions_ = rigid * shares;
   free_forces_.resize(rigid.rows(), shares.cols());
   for (int k = 0; k < shares.cols(); ++k)
-    free_forces_.col(k) = system_.folded(free_motions_.col(k));
+    free_forces_.col(k) = system_.momentum_of(free_motions_.col(k));
   const Eigen::MatrixXd works = free_motions_.transpose() * free_forces_;
   free_forces_ *= works.inverse();
 }
@@ -186,8 +186,8 @@ void EquilibriumSolver<dim>::set_free_shares(const FreeShares &free)
                     Eigen::Map<const Eigen::MatrixXd>(free.shares.data(), rigid.cols(), free.n));
 }
 
-// Where y is redundant, a force has no part in what T takes for no motion at all. It keeps to that
-// when what the free motions feel is taken out by forces T^T f.
+// What would move the body as a whole is taken out as the inertia of such a motion, T^T M T n: what
+// is left still is a T^T f. The transpose leaves the body without momentum, as steps would.
 template <int dim>
 void EquilibriumSolver<dim>::project_force(Eigen::VectorXd &r) const
 {

@@ -112,6 +112,11 @@ struct StaticPhases<dim>::Work
 
   bool is_calm(const CoupledBody<dim> &body, const Clock &clock);
   int n_failures() const;
+  bool has_been_restless() const
+  {
+    return std::any_of(phases.begin(), phases.end(),
+                       [](const Phase &p) { return p.reason == PhaseEnd::restless; });
+  }
   void end_dynamic_phase(const CoupledBody<dim> &body, const Clock &clock);
   std::optional<Stop> advance_once(CoupledBody<dim> &body, Clock &clock, double damping,
                                    const Look &look);
@@ -211,6 +216,12 @@ void StaticPhases<dim>::Work::end_dynamic_phase(const CoupledBody<dim> &body, co
   phase.load = load_of(body, clock);
   phase.broken = n_broken(body) - broken_then;
   phase.reason = is_restless ? PhaseEnd::restless : PhaseEnd::calm;
+  if (is_restless && !has_been_restless())
+    log.warning(
+        "at {:.4g} s waves have not left the body in {:g} transits of a shear wave: what "
+        "still moves is taken out of it and booked as settled; give \"local\" or \"mass\" in "
+        "/damping, or let sides absorb",
+        clock.now.time, most_transits);
   phase.seconds = Seconds(std::chrono::steady_clock::now() - dynamic_began).count();
   phases.push_back(phase);
 }

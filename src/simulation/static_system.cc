@@ -255,13 +255,21 @@ Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
   return give(motion_, force, -1);
 }
 
+// In the cells that the coupler took over the particles are the mass, pads included.
 template <int dim>
-Eigen::VectorXd StaticSystem<dim>::folded(const Eigen::VectorXd &y)
+Eigen::VectorXd StaticSystem<dim>::momentum_of(const Eigen::VectorXd &y)
 {
   Components<dim> nodal = nodal_zero();
   take(y, motion_, nodal);
-  motion_.force = motion_.velocity;
-  motion_.torque = motion_.spin;
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < n_particles_; ++i)
+      motion_.force[c][i] = motion_.mass[i] * motion_.velocity[c][i];
+  for (int c = 0; c < n_spins<dim> && motion_.turns; ++c)
+    for (int i = 0; i < n_particles_; ++i)
+      motion_.torque[c][i] = motion_.inertia(i) * motion_.spin[c][i];
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < n_nodes_; ++i)
+      nodal[c][i] *= body_.far->lumped_mass()[i];
   body_.coupler->restrict_forces(motion_, nodal);
   return give(motion_, nodal, 1);
 }

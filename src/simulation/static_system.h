@@ -36,8 +36,8 @@ public:
   void linearise_here();
   void linearise_at_reference();
 
-  /// T^T T y: nothing of it is in the y that T takes for no motion at all.
-  Eigen::VectorXd folded(const Eigen::VectorXd &y);
+  /// T^T M T y: the momentum of a motion; there is none in the y that T takes for no motion at all.
+  Eigen::VectorXd momentum_of(const Eigen::VectorXd &y);
 
   /// Motion of held components alone between two times, over a factor.
   Eigen::VectorXd held_motion(double from, double to, double factor = 1) const;

@@ -36,7 +36,8 @@ void expect_the_same_run(const Example &e)
   SCOPED_TRACE(e.name);
   const std::string command =
       "run " + e.scene + e.overrides +
-      " --set /output/checkpoint_interval=0.02 --set /time/stop_when=end"
+      " --set /output/checkpoint_interval=0.02 --set /time/stop_when=end --set "
+      "/time/loading=dynamic"
       " --set /output/field_interval=never --set /output/history_interval=" +
       std::to_string(1e9 * e.late / 200) + "e-9 -o " + e.name;
   const auto done = [](const Outcome &outcome) {
