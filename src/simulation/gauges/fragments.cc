@@ -34,6 +34,11 @@ struct VectorSum
   }
   Vector<3> value() const { return {sums[0].value(), sums[1].value(), sums[2].value()}; }
 };
+template <int dim, typename Carrier>
+Vector<3> velocity_of(const CoupledBody<dim> &body, const Carrier &c)
+{
+  return in_space<dim>(get(c.is_node ? body.far->velocity : body.zone->state.velocity, c.item));
+}
 } // namespace
 
 template <int dim>
@@ -130,14 +135,11 @@ Fragment FragmentGauge<dim>::motion(const CoupledBody<dim> &body, int piece) con
                : in_space<dim>(get(body.zone->state.reference, c.item) +
                                get(body.zone->state.displacement, c.item));
   };
-  const auto velocity = [&](const Carrier &c) -> Vector<3> {
-    return in_space<dim>(get(c.is_node ? body.far->velocity : body.zone->state.velocity, c.item));
-  };
   VectorSum centre, momentum, angular;
   for (auto k = begin; k < end; ++k) {
     const Carrier &c = carriers_[k];
     centre.add(c.mass * place(c));
-    momentum.add(c.mass * velocity(c));
+    momentum.add(c.mass * velocity_of(body, c));
     f.has_mesh = f.has_mesh || c.is_node;
     f.particles += !c.is_node;
   }
@@ -147,7 +149,7 @@ Fragment FragmentGauge<dim>::motion(const CoupledBody<dim> &body, int piece) con
   for (auto k = begin; k < end; ++k) {
     const Carrier &c = carriers_[k];
     const Vector<3> r = place(c) - f.centre;
-    angular.add(c.mass * r.cross(velocity(c) - f.velocity));
+    angular.add(c.mass * r.cross(velocity_of(body, c) - f.velocity));
     Eigen::Matrix3d own =
         c.mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
     if (!c.is_node && body.zone->state.turns) {
@@ -200,10 +202,13 @@ void FragmentGauge<dim>::read(GaugeLook<dim> &look, double *values)
     find_pieces(look.body);
   values[0] = double(std::count_if(mass_.begin(), mass_.end(),
                                    [&](double m) { return m > 0 && m >= least_mass_; }));
-  const Fragment largest = motion(look.body, 0);
-  values[1] = largest.mass;
+  values[1] = mass_[0];
+  VectorSum momentum;
+  for (auto k = first_[0]; k < first_[1]; ++k)
+    momentum.add(carriers_[k].mass * velocity_of(look.body, carriers_[k]));
+  const Vector<3> velocity = momentum.value() / mass_[0];
   for (int c = 0; c < dim; ++c)
-    values[2 + c] = largest.velocity[c];
+    values[2 + c] = velocity[c];
 }
 
 template <int dim>

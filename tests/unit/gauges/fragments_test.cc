@@ -96,6 +96,10 @@ TEST(Fragments, MotionIsThatOfRigidPieces)
     EXPECT_NEAR(upper.velocity[0], 1 - 0.2 * upper.centre[1], 1e-12);
     EXPECT_NEAR(upper.velocity[1], 2 + 0.2 * upper.centre[0], 1e-12);
     EXPECT_NEAR(upper.centre[0], 7, 0.5);
+    const auto row = GaugeSet<2>(pieces.scene, body).read(body, 0);
+    EXPECT_EQ(row[1], lower.mass);
+    EXPECT_NEAR(row[2], -3, 1e-12);
+    EXPECT_NEAR(row[3], 0.5, 1e-12);
   }
 }
 
