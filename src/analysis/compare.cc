@@ -259,9 +259,15 @@ private:
     r_.displacement_history = error({"displacement"}, "m");
     r_.elastic_history = error({"potential_discrete", "potential_far", "blended"}, "J");
     r_.kinetic_history = error({"kinetic_discrete", "kinetic_far"}, "J");
+    if (reference_.record)
+      for (const GaugeEntry &gauge : run_.record->gauges)
+        for (const std::string &name : gauge.columns)
+          for (const Column &column : reference_.curve.columns())
+            if (column.name == name)
+              r_.gauges[name] = error({name.c_str()}, column.unit.c_str());
     if (!r_.compared_until)
       return;
-    const auto add = [this](const char *name, const HistoryError &e) {
+    const auto add = [this](const std::string &name, const HistoryError &e) {
       if (e.mean)
         line(name, "", "", both(e.mean, e.largest));
     };
@@ -270,6 +276,8 @@ private:
     add("  elongation, L2 / largest", r_.displacement_history);
     add("  elastic energy, L2 / largest", r_.elastic_history);
     add("  kinetic energy, L2 / largest", r_.kinetic_history);
+    for (const auto &[name, e] : r_.gauges)
+      add("  gauge " + name + ", L2 / largest", e);
   }
 
   void crack()

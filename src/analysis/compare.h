@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,8 @@ struct CompareResult
   /// Over time up to the same limit, in the same norms: load, elongation, elastic energy; kinetic
   /// energy stands apart for the same reason.
   HistoryError load_history, displacement_history, elastic_history, kinetic_history;
+  /// By column: those of gauges that both runs have.
+  std::map<std::string, HistoryError> gauges;
   std::optional<double> compared_until; // s
   std::int64_t matched_particles = 0;
 

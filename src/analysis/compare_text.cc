@@ -62,6 +62,10 @@ nlohmann::json to_json(const CompareResult &r)
   put_history("displacement", r.displacement_history);
   put_history("elastic", r.elastic_history);
   put_history("kinetic", r.kinetic_history);
+  for (const auto &[name, error] : r.gauges)
+    for (const auto &[norm, value] :
+         {std::pair("error", error.mean), std::pair("error_max", error.largest)})
+      json["gauges"][name][norm] = value ? nlohmann::json(*value) : nlohmann::json();
   put("compared_until", r.compared_until);
   json["matched_particles"] = r.matched_particles;
   json["notes"] = r.notes;

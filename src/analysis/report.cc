@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace ligament::program
 {
@@ -112,6 +113,31 @@ std::string energies(const Table &history, const RunRecord &record)
     text += fmt::format("<p>Largest residual of the whole run: {:.2g} of the external work.</p>\n",
                         *record.energy_residual);
   return text;
+}
+
+/// Of every gauge the columns of one unit in one plot.
+std::string gauges(const Table &history, const RunRecord &record)
+{
+  std::string text;
+  for (const GaugeEntry &gauge : record.gauges) {
+    text += "<h3>" + escape_xml(gauge.name) + "</h3>\n" +
+            paragraph("note", gauge.kind + ": " + gauge.text);
+    std::map<std::string, Plot> plots;
+    for (const Column &column : history.columns()) {
+      const auto &own = gauge.columns;
+      if (std::find(own.begin(), own.end(), column.name) == own.end())
+        continue;
+      Plot &plot = plots[column.unit];
+      plot.x = {"time", "s", false};
+      plot.y = {gauge.name, column.unit, false};
+      plot.series.push_back({column.name, history.raw("time"), history.raw(column.name)});
+    }
+    for (auto &[unit, plot] : plots) {
+      plot.height = 280;
+      text += draw_plot(plot);
+    }
+  }
+  return text.empty() ? "" : "<h2>Gauges</h2>\n" + text;
 }
 
 std::string timing(const RunRecord &record)
@@ -237,6 +263,7 @@ std::string sources(const RunFolder &folder, const RunRecord &record)
       {folder.history(), "the time series with units"},
       {folder.broken_bonds(), "every broken face with its time"},
       {folder.cut_faces(), "every face that an initial crack cuts"},
+      {folder.fragments(), "the pieces at the end, the heaviest first"},
       {folder.log(), "the log"},
       {folder.record(), "the figures of this page for scripts"}};
   for (const auto &[file, meaning] : files)
@@ -273,8 +300,8 @@ std::string write_report(const std::string &run_folder, const std::vector<std::s
       warnings(record) + phases_section(record) + pictures(fields.empty() ? folder : place, record);
   if (std::filesystem::exists(folder.history())) {
     const Table history = read_history(folder, record);
-    body +=
-        load_curve(history) + crack_growth(history, record.dimension) + energies(history, record);
+    body += load_curve(history) + gauges(history, record) +
+            crack_growth(history, record.dimension) + energies(history, record);
   }
   body += comparisons(folder) + model(record) + timing(record) + skipped(record) +
           sources(folder, record);

@@ -30,6 +30,14 @@ std::string duration_text(double seconds)
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+nlohmann::ordered_json gauges_json(const std::vector<GaugeEntry> &gauges)
+{
+  auto list = nlohmann::ordered_json::array();
+  for (const GaugeEntry &g : gauges)
+    list.push_back({{"name", g.name}, {"kind", g.kind}, {"columns", g.columns}, {"text", g.text}});
+  return list;
+}
+
 template <int dim>
 int check(const CommandLine &line, const ReadResult &input)
 {
@@ -97,6 +105,9 @@ int check(const CommandLine &line, const ReadResult &input)
   }
   if (const auto patch = body.figures.find("patch_residual"); patch != body.figures.end())
     fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n", patch->second.value);
+  const GaugeSet<dim> gauges(scene, body);
+  for (const GaugeEntry &gauge : gauges.entries())
+    fmt::print("  gauge {} ({}): {}\n", gauge.name, gauge.kind, gauge.text);
   for (const auto &part : body.skipped)
     fmt::print("  not needed: {} ({})\n", part.what, part.why);
   if (line.json) {
@@ -125,6 +136,8 @@ int check(const CommandLine &line, const ReadResult &input)
       json["phases"] = nullptr;
       json["equilibrium"] = to_json(*equilibrium);
     }
+    if (!gauges.entries().empty())
+      json["gauges"] = gauges_json(gauges.entries());
     if (advice)
       json["advice"] = to_json(*advice);
     fmt::print("{}\n", json_text(json));

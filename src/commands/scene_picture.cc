@@ -1,5 +1,6 @@
 #include "src/commands/scene_picture.h"
 
+#include "src/commands/gauge_marks.h"
 #include "src/drawing/field_view.h"
 #include "src/output/format.h"
 #include "src/scene/geometry.h"
@@ -281,6 +282,7 @@ Picture scene_picture(const CoupledBody<dim> &body, const Scene &scene)
   add_cracks(scene, picture);
   for (const auto &load : scene.loads)
     add_load(load, body, picture);
+  add_gauges(scene, picture);
   std::string size;
   if (state.particles.size() > 0)
     size = grouped(std::int64_t(state.particles.size())) + " particles";

@@ -22,6 +22,8 @@ struct RunFolder
   std::string broken_bonds() const { return path + "/broken_bonds.csv"; }
   /// Faces that initial cracks cut, in the same columns; only of runs with a crack.
   std::string cut_faces() const { return path + "/cut_faces.csv"; }
+  /// Pieces of the body at the end; only of runs with a gauge that counts them.
+  std::string fragments() const { return path + "/fragments.csv"; }
   /// Motion of the particles at the last common times (see common_time_index) before fracture took
   /// over, the latest first.
   std::array<std::string, 3> snapshots() const

@@ -68,6 +68,15 @@ void for_each_field(PhaseEntry &r, Visit &&visit)
 }
 
 template <typename Visit>
+void for_each_field(GaugeEntry &r, Visit &&visit)
+{
+  visit("name", r.name);
+  visit("kind", r.kind);
+  visit("columns", r.columns);
+  visit("text", r.text);
+}
+
+template <typename Visit>
 void for_each_field(StateEntry &r, Visit &&visit)
 {
   visit("name", r.name);
@@ -226,6 +235,8 @@ void write_run_record(const std::string &path, const RunRecord &record)
   for_each_field(copy, Writer{json});
   if (!copy.phases.empty())
     Writer{json}("phases", copy.phases);
+  if (!copy.gauges.empty())
+    Writer{json}("gauges", copy.gauges);
   json["complete"] = record.is_complete();
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   try {
@@ -254,6 +265,8 @@ RunRecord read_run_record(const std::string &path)
     for_each_field(record, Reader{json});
     if (json.contains("phases"))
       Reader{json}("phases", record.phases);
+    if (json.contains("gauges"))
+      Reader{json}("gauges", record.gauges);
   } catch (const core::EnvironmentError &error) {
     throw core::InputError(std::string(error.what()) + " (not the output folder of a run?)");
   } catch (const Json::exception &error) {

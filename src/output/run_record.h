@@ -44,6 +44,14 @@ struct StateEntry
   std::string particles, cells; // files, relative to the output folder; empty: none of these
 };
 
+/// A gauge of the scene, whose readings are columns of the history.
+struct GaugeEntry
+{
+  std::string name, kind; // as the scene has them
+  std::vector<std::string> columns;
+  std::string text; // from what it reads
+};
+
 /// A part of a run in scenes whose loading is not dynamic: an equilibrium that was carried on to a
 /// higher load, or the time steps behind a break.
 struct PhaseEntry
@@ -122,6 +130,8 @@ struct RunRecord
   std::vector<RunWarning> warnings;
   /// In the order of time; empty, and not in the file, where loading is dynamic.
   std::vector<PhaseEntry> phases;
+  /// Empty, and not in the file, where the scene has none.
+  std::vector<GaugeEntry> gauges;
 
   /// It came to the end that its scene asks for.
   bool is_complete() const { return status == "done"; }

@@ -60,6 +60,12 @@ void check_fracture(const FractureParameters &fracture, const std::string &secti
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);
 
+/// Gauges: their keys, and whether there is something to measure where they lie.
+void check_gauges(const Scene &scene, const Box &specimen, Findings &findings);
+/// The rectangles of a J-integral: around one tip, inside the specimen, nothing else between them.
+void check_j_integral(const Scene &scene, const GaugeParameters &gauge, const Box &specimen,
+                      const std::string &key, Findings &findings);
+
 /// Loads against each other, and against the overlap. `layout` as above.
 void check_loads(const Scene &scene, const Layout *layout, Findings &findings);
 } // namespace ligament::program

@@ -79,6 +79,45 @@ std::vector<Point> clip(const std::vector<Point> &corners, const Box &box, int d
   return kept;
 }
 
+bool crosses(const Crack &crack, const Point &a, const Point &b, int dim)
+{
+  const std::vector<Point> &p = crack.points;
+  // In 2D the segment reaches across the plane: its normal lies in it.
+  const Point along = difference(p[1], p[0]);
+  const Point n = dim == 2 ? Point{-along[1], along[0], 0} : area_vector(p);
+  const double at_a = dot(n, difference(a, p[0])), at_b = dot(n, difference(b, p[0]));
+  if (at_a * at_b > 0 || (at_a == at_b && at_a != 0))
+    return false;
+  Point at = a;
+  for (int c = 0; c < 3 && at_a != at_b; ++c)
+    at[c] += (b[c] - a[c]) * at_a / (at_a - at_b);
+  if (dim == 2) {
+    const double share = dot(along, difference(at, p[0])) / dot(along, along);
+    return share >= 0 && share <= 1;
+  }
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const Point edge = difference(p[(k + 1) % p.size()], p[k]);
+    if (dot(n, cross(edge, difference(at, p[k]))) < 0)
+      return false;
+  }
+  return true;
+}
+
+bool is_cut_out(const Specimen &specimen, const Point &p, int dim)
+{
+  for (const Hole &hole : specimen.holes)
+    if (dim == 2 && std::hypot(p[0] - hole.centre[0], p[1] - hole.centre[1]) < hole.radius)
+      return true;
+  for (const Notch &notch : specimen.notches) {
+    bool inside = true;
+    for (int c = 0; c < dim; ++c)
+      inside = inside && p[c] > notch.lower[c] && p[c] < notch.upper[c];
+    if (inside)
+      return true;
+  }
+  return false;
+}
+
 Box bounding_box(const std::vector<Point> &points)
 {
   Box box{points.front(), points.front()};

@@ -39,6 +39,12 @@ int fine_cells(const Scene &scene);
 /// directions; empty when there is none.
 std::vector<Point> clip(const std::vector<Point> &corners, const Box &box, int dim);
 
+/// Whether the way from a to b crosses the crack or touches it.
+bool crosses(const Crack &crack, const Point &a, const Point &b, int dim);
+
+/// Whether a point of the specimen is in one of its holes or notches.
+bool is_cut_out(const Specimen &specimen, const Point &p, int dim);
+
 /// Smallest box around the points; at least one is needed.
 Box bounding_box(const std::vector<Point> &points);
 

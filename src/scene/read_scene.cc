@@ -74,6 +74,27 @@ void leave_out_unused(const DiscreteZone &zone, nlohmann::ordered_json &json)
     json.erase("packing_file");
 }
 
+/// Likewise of a gauge, whose other keys belong to other kinds.
+void leave_out_unused(const GaugeParameters &gauge, nlohmann::ordered_json &json)
+{
+  const std::vector<std::string> own = keys_of(gauge.kind);
+  for (const auto &name :
+       std::vector<std::string>{"points", "direction", "normal", "lower", "upper", "inner_lower",
+                                "inner_upper", "angle", "side", "load", "smoothing", "mass"})
+    if (std::find(own.begin(), own.end(), name) == own.end())
+      json.erase(name);
+  // What was left open by saying something else would be doubted like a contradiction.
+  for (const auto &[name, is_open] :
+       {std::pair("points", gauge.points.empty()), std::pair("load", gauge.load < 0),
+        std::pair("side", !gauge.side.has_value())})
+    if (is_open)
+      json.erase(name);
+  const bool has_point = !gauge.points.empty();
+  if (has_point && (gauge.kind == GaugeKind::strain || gauge.kind == GaugeKind::stress))
+    for (const char *name : {"lower", "upper"})
+      json.erase(name);
+}
+
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
@@ -131,6 +152,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     return result;
   result.resolved = core::echo(table, dimension);
   leave_out_unused(scene.zone, result.resolved["discrete_zone"]);
+  for (std::size_t k = 0; k < scene.gauges.size(); ++k)
+    leave_out_unused(scene.gauges[k], result.resolved["gauges"][k]);
   complete(scene);
   result.scene = std::move(scene);
   return result;

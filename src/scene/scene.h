@@ -4,21 +4,13 @@
 #include "core/types.h"
 #include "coupling/coupler_parameters.h"
 #include "src/scene/choices.h"
+#include "src/scene/gauge_parameters.h"
 
-#include <array>
-#include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace ligament::program
 {
-/// Scenes are read before the dimension is known to the compiler; z is 0 in 2D.
-using Point = std::array<double, 3>;
-using PartialPoint = std::array<std::optional<double>, 3>;
-
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A cut without width: 2D a segment (two points), 3D a convex plane polygon (three or more).
 struct Crack
 {
@@ -205,6 +197,7 @@ struct Scene
   CouplingParameters coupling;
   Damping damping;
   std::vector<LoadParameters> loads;
+  std::vector<GaugeParameters> gauges;
   TimeParameters time;
   OutputParameters output;
 };

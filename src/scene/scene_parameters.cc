@@ -176,6 +176,7 @@ void declare_scene(Section &s, Scene &scene)
   declare_coupling(s.section("coupling", "the overlap of the two models"), scene.coupling);
   declare_damping(s.section("damping", "losses without physical meaning, for quasi-static scenes"), scene.damping);
   s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);
+  s.list("gauges", scene.gauges, "what is measured besides load and elongation: columns of history.csv, curves of the report", declare_gauge);
   declare_time(s.section("time", "how long"), scene.time);
   declare_output(s.section("output", "what is written, and how often"), scene.output);
 }

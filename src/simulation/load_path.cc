@@ -1,6 +1,7 @@
 #include "src/simulation/load_path.h"
 
 #include "core/sums.h"
+#include "src/simulation/disjoint_sets.h"
 
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
@@ -15,22 +16,6 @@ namespace ligament::program
 {
 namespace
 {
-class Sets
-{
-public:
-  explicit Sets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i)
-  {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) { parent_[find(i)] = find(j); }
-
-private:
-  std::vector<int> parent_;
-};
-
 /// Between two items, both ways.
 struct Link
 {
@@ -78,7 +63,7 @@ private:
   }
 
   int n_particles_, n_nodes_, low_;
-  Sets sets_;
+  DisjointSets sets_;
 };
 
 /// Of the network of links between items with these capacities.

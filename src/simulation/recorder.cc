@@ -21,8 +21,6 @@ namespace
 // Fields are copied when the load has grown by this factor.
 constexpr double copied_growth = 1.02;
 
-constexpr int rows_per_flush = 50; // of the history
-
 // The load path is looked at this often, in steps of the far field.
 constexpr long break_interval = 50;
 
@@ -86,10 +84,13 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
   coupling::StepTime step;
   step.dt = body.dt;
   const TestMachine<dim> machine(body);
+  GaugeSet<dim> gauges(scene, body);
   double reading = 0; // keeps the compiler from leaving them out
   const double read = seconds_of([&] {
     reading += machine.read(body, 0).load + read_ledger(body, step, 0).residual() +
                crack_length(body, machine.axis());
+    for (const double value : gauges.read(body, 0))
+      reading += value;
   });
   const double copy = seconds_of([&] {
     const auto particles = particle_fields(body);
@@ -107,9 +108,7 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
                         core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
                         bool draws_pictures, bool goes_on)
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
-      section_(timers.section("output")), machine_(body),
-      history_(folder.history(), history_columns(dim, scene.time.has_phases()), rows_per_flush,
-               goes_on),
+      section_(timers.section("output")), machine_(body), history_(scene, folder, body, goes_on),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
       n_steps_(n_steps), draws_pictures_(draws_pictures),
       history_interval_(row_interval(scene, body)), guard_(body), path_(machine_.axis())
@@ -161,20 +160,8 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
   const EnergyLedger ledger = read_ledger(body, step, damping);
-  history_.set("time", step.time);
-  history_.set("step", double(step.step));
-  history_.set("load", r.load);
-  history_.set("stress", r.stress);
-  history_.set("displacement", r.displacement);
-  history_.set("strain", r.strain);
-  for (const auto &[name, value] : ledger.channels())
-    if (name != "settled" || scene_.time.has_phases())
-      history_.set(name, value);
-  if (scene_.time.has_phases())
-    history_.set("static", in_static_phase_);
-  history_.set("broken_bonds", double(n_broken(body)));
-  history_.set("crack_length", crack_length(body, machine_.axis()));
-  history_.end_row();
+  history_.add(body, step,
+               {r, ledger, n_broken(body), crack_length(body, machine_.axis()), in_static_phase_});
 
   curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
@@ -383,6 +370,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   if (!body.cut_faces.empty())
     attempt([&] { write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim); });
   attempt([&] { snapshots_.write(body, folder_); });
+  attempt([&] { history_.gauges().write(body, folder_); });
+  record.gauges = history_.gauges().entries();
 
   curve_.put_into(record);
   std::vector<BodyState> states;

@@ -3,17 +3,15 @@
 
 #include "core/background_writer.h"
 #include "core/state.h"
-#include "src/output/history.h"
 #include "src/output/progress.h"
 #include "src/output/run_folder.h"
 #include "src/output/vtk.h"
 #include "src/simulation/body_fields.h"
-#include "src/simulation/energy_ledger.h"
+#include "src/simulation/history_rows.h"
 #include "src/simulation/load_curve.h"
 #include "src/simulation/load_path.h"
 #include "src/simulation/overlap_guard.h"
 #include "src/simulation/snapshot_keeper.h"
-#include "src/simulation/test_machine.h"
 
 #include <optional>
 
@@ -104,7 +102,7 @@ private:
   core::Timers &timers_;
   const int section_;
   TestMachine<dim> machine_;
-  HistoryWriter history_;
+  HistoryRows<dim> history_;
   Progress progress_;
   FieldSeries fields_;
   long n_steps_, first_step_ = 0;

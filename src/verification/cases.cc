@@ -40,6 +40,7 @@ std::vector<Case> all_cases()
   add(toughness_mixed_cases());
   add(static_cases());
   add(static_run_cases());
+  add(lab_gauges_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -67,6 +67,7 @@ std::vector<Case> toughness_cases();
 std::vector<Case> toughness_3d_cases();
 std::vector<Case> toughness_mixed_cases();
 std::vector<Case> random_scene_cases();
+std::vector<Case> lab_gauges_cases();
 
 /// All cases in the order in which they are printed.
 std::vector<Case> all_cases();

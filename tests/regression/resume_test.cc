@@ -31,6 +31,17 @@ const std::string torn = R"({
     {"boundary": "top", "velocity": [null, 2e-4], "ramp": 100},
     {"boundary": "bottom", "velocity": [null, -2e-4], "ramp": 100}
   ],
+  "gauges": [
+    {"name": "length", "kind": "distance", "points": [[0, -50], [3, 9]]},
+    {"name": "mouth", "kind": "opening", "points": [[0, -0.5], [0, 0.5]]},
+    {"name": "e", "kind": "strain", "lower": [-6, -6], "upper": [6, 25]},
+    {"name": "s", "kind": "stress", "lower": [-6, -6], "upper": [6, 25]},
+    {"name": "top", "kind": "force", "side": "top"},
+    {"name": "tip_j", "kind": "j_integral", "direction": [1, 0], "lower": [-3, -8], "upper": [11.5, 8],
+     "inner_lower": [1, -3], "inner_upper": [7, 3]},
+    {"name": "tip", "kind": "crack_tip", "points": [[0, 0]], "direction": [1, 0], "smoothing": 20},
+    {"name": "pieces", "kind": "fragments"}
+  ],
   "time": {"duration": 400},
   "output": {
     "history_interval": 1.7, "field_interval": 50, "progress_interval": 1000,

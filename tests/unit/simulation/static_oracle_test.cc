@@ -54,7 +54,7 @@ void expect_that_steps_end_there(const std::vector<std::string> &overrides, doub
   const std::vector<std::string> scene =
       overrides + std::vector{dim == 2 ? loads({{"top", "displacement", {"0.3", "0.1"}},
                                                 {"bottom", "displacement", {"0", "0"}}})
-                                       : loads({{"top", "displacement", {"0.2", "0.05", "0.1"}},
+                                       : loads({{"top", "displacement", {"0.2", "0.05", "0"}},
                                                 {"bottom", "displacement", {"0", "0", "0"}}})};
   StaticBody<dim> sought(scene), stepped(scene);
   Eigen::VectorXd moved;
@@ -86,11 +86,15 @@ TEST(StaticOracle, DampedStepsOfAMesh)
 {
   expect_that_steps_end_there<2>({"/discrete_zone=none"}, 0.03, 20000);
 }
-// Critically damped in bending, of frequency 0.0126.
+// Critically damped in bending, of frequency 0.0126. It bends about one axis: turns about several
+// do not commute, so that the orientation of pads, which the mesh turns, depends on the way there,
+// by the square of the angle.
 TEST(StaticOracle, SlowDampedStepsOfABar)
 {
-  expect_that_steps_end_there<3>({}, 0.025, 40000);
-  expect_that_steps_end_there<3>({"/discrete_zone=none"}, 0.025, 40000);
-  expect_that_steps_end_there<3>({"/far_field=none","/specimen/size=[5, 20, 4]"}, 0.1, 40000);
+  expect_that_steps_end_there<3>({}, 0.025, 10000);
+}
+TEST(StaticOracle, SlowDampedStepsOfABarOfParticles)
+{
+  expect_that_steps_end_there<3>({"/far_field=none", "/specimen/size=[5, 20, 4]"}, 0.1, 10000);
 }
 } // namespace

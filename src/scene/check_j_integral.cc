@@ -1,0 +1,132 @@
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+/// The axis along which a direction lies; -1: none.
+int axis_of(const Point &direction, int dim)
+{
+  int axis = -1;
+  for (int c = 0; c < dim; ++c)
+    if (direction[c] != 0) {
+      if (axis >= 0)
+        return -1;
+      axis = c;
+    }
+  return axis;
+}
+
+/// A cut as the rectangles see it: the box around it.
+struct Cut
+{
+  std::string key;
+  Box box;
+  bool is_flat; // a crack
+};
+
+std::vector<Cut> cuts_of(const Scene &scene, const Findings &f)
+{
+  std::vector<Cut> cuts;
+  const Specimen &s = scene.specimen;
+  for (std::size_t k = 0; k < s.cracks.size(); ++k)
+    if (const auto key = fmt::format("/specimen/cracks/{}", k);
+        f.sound({key}) && !s.cracks[k].points.empty())
+      cuts.push_back({key, bounding_box(s.cracks[k].points), true});
+  for (std::size_t k = 0; k < s.notches.size(); ++k)
+    cuts.push_back(
+        {fmt::format("/specimen/notches/{}", k), {s.notches[k].lower, s.notches[k].upper}, false});
+  return cuts;
+}
+} // namespace
+
+void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &specimen,
+                      const std::string &key, Findings &f)
+{
+  const int dim = scene.dimension;
+  const int along = axis_of(g.direction, dim);
+  if (along < 0)
+    return f.error(key + "/direction", fmt::format("\"direction\" in {} lies along no axis", key),
+                   "the crack's faces must be parallel to an axis, so that they add nothing",
+                   "give the direction in which the crack grows: [1, 0] or [-1, 0], for example");
+  int across = dim == 2 ? 1 - along : axis_of(g.normal, dim);
+  if (across < 0 || across == along)
+    return f.error(key + "/normal", fmt::format("\"normal\" in {} is no other axis", key),
+                   "it says across which axis the crack's faces lie",
+                   "give it: [0, 1, 0], for example");
+  const double sign = g.direction[along] > 0 ? 1 : -1;
+  const auto axis_name = [](int c) { return "xyz"[c]; };
+  // What lies between the rectangles takes part: some particles, some cells.
+  const bool particles = scene.zone.extent != DiscreteZone::Extent::none;
+  const double width =
+      particles ? 4 * scene.zone.spacing : 2 * scene.far_field.value_or(FarField{0}).cell_size;
+  for (const int c : {along, across}) {
+    if (!(g.lower[c] > specimen.lower[c]) || !(g.upper[c] < specimen.upper[c]))
+      return f.error(
+          key,
+          fmt::format("the outer rectangle of {} reaches the specimen's side in {}", key,
+                      axis_name(c)),
+          fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m; a side "
+                      "between the rectangles would have to be added",
+                      g.lower[c], g.upper[c], specimen.lower[c], specimen.upper[c]),
+          "make it smaller, or move it");
+    if (!(g.inner_lower[c] < g.inner_upper[c]) ||
+        g.inner_lower[c] - g.lower[c] < width * (1 - 1e-9) ||
+        g.upper[c] - g.inner_upper[c] < width * (1 - 1e-9))
+      return f.error(
+          key,
+          fmt::format("the inner rectangle of {} is empty or too near the outer one in {}", key,
+                      axis_name(c)),
+          fmt::format("it goes from {} m to {} m, the outer one from {} m to {} m; between "
+                      "them must lie {}: {:.4g} m",
+                      g.inner_lower[c], g.inner_upper[c], g.lower[c], g.upper[c],
+                      particles ? "four spacings" : "two cells", width),
+          "move \"inner_lower\" and \"inner_upper\" inward, or \"lower\" and \"upper\" outward");
+  }
+  for (std::size_t k = 0; k < scene.specimen.holes.size() && particles; ++k) {
+    const Hole &hole = scene.specimen.holes[k];
+    double squared = 0;
+    for (const int c : {along, across}) {
+      const double nearest = std::clamp(hole.centre[c], g.lower[c], g.upper[c]) - hole.centre[c];
+      squared += nearest * nearest;
+    }
+    if (squared < hole.radius * hole.radius)
+      return f.error(
+          key, fmt::format("the outer rectangle of {} meets the hole /specimen/holes/{}", key, k),
+          "its rim would have to be added", "make the rectangle smaller, or move it");
+  }
+  bool has_tip = false;
+  for (const Cut &cut : particles ? cuts_of(scene, f) : std::vector<Cut>()) {
+    const double low = cut.box.lower[across], high = cut.box.upper[across];
+    const double front = sign > 0 ? cut.box.upper[along] : cut.box.lower[along],
+                 back = sign > 0 ? cut.box.lower[along] : cut.box.upper[along];
+    if (high < g.lower[across] || low > g.upper[across] || cut.box.upper[along] < g.lower[along] ||
+        cut.box.lower[along] > g.upper[along])
+      continue;
+    const bool parallel = !cut.is_flat || high - low <= 1e-6 * (g.upper[across] - g.lower[across]);
+    const bool in_inner = front > g.inner_lower[along] && front < g.inner_upper[along] &&
+                          low > g.inner_lower[across] && high < g.inner_upper[across];
+    const bool leaves = sign > 0 ? back <= g.lower[along] : back >= g.upper[along];
+    if (!parallel || !in_inner || !leaves)
+      return f.error(
+          key,
+          fmt::format("{} does not cross the rectangles of {} as a crack with its tip in them",
+                      cut.key, key),
+          fmt::format("J is that of one tip: the cut comes from {} {}, along the direction, "
+                      "and ends inside the inner rectangle",
+                      sign > 0 ? "below" : "above", axis_name(along)),
+          "move the rectangles around one tip, or turn \"direction\" round");
+    has_tip = true;
+  }
+  if (!has_tip)
+    f.error(key, fmt::format("the inner rectangle of {} contains no tip", key),
+            particles ? "no crack and no notch ends in it"
+                      : "pure finite elements have no cracks or notches",
+            "move it around the tip of a crack");
+}
+} // namespace ligament::program

@@ -1,0 +1,201 @@
+#include "src/simulation/gauges/field_gauges.h"
+
+#include "core/check.h"
+#include "core/exact_sum.h"
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include <map>
+
+namespace ligament::program
+{
+namespace
+{
+template <int dim>
+using Tensor = Eigen::Matrix<double, dim, dim>;
+
+template <int dim>
+std::vector<Column> tensor_columns(const std::string &name, const char *unit)
+{
+  std::vector<Column> columns;
+  const std::vector<const char *> components =
+      dim == 2 ? std::vector<const char *>{"xx", "yy", "xy"}
+               : std::vector<const char *>{"xx", "yy", "zz", "yz", "xz", "xy"};
+  for (const char *c : components)
+    columns.push_back({name + "_" + c, unit});
+  return columns;
+}
+
+/// In axes that are turned by the angle about z.
+template <int dim>
+void put_turned(const Tensor<dim> &t, double angle, double *values)
+{
+  Tensor<dim> axes = Tensor<dim>::Identity(); // columns
+  axes.template topLeftCorner<2, 2>() = Eigen::Rotation2Dd(angle).toRotationMatrix();
+  const Tensor<dim> turned = axes.transpose() * t * axes;
+  for (int c = 0; c < dim; ++c)
+    values[c] = turned(c, c);
+  if constexpr (dim == 2)
+    values[2] = turned(0, 1);
+  else {
+    values[3] = turned(1, 2);
+    values[4] = turned(0, 2);
+    values[5] = turned(0, 1);
+  }
+}
+
+template <int dim>
+Tensor<dim> tensor_of(const Strain<dim> &s) // Voigt, of stresses
+{
+  Tensor<dim> t;
+  if constexpr (dim == 2)
+    t << s[0], s[2], s[2], s[1];
+  else
+    t << s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2];
+  return t;
+}
+
+template <int dim>
+Strain<dim> small_strain(const Tensor<dim> &h)
+{
+  Strain<dim> e;
+  for (int c = 0; c < dim; ++c)
+    e[c] = h(c, c);
+  if constexpr (dim == 2)
+    e[2] = h(0, 1) + h(1, 0);
+  else {
+    e[3] = h(1, 2) + h(2, 1);
+    e[4] = h(0, 2) + h(2, 0);
+    e[5] = h(0, 1) + h(1, 0);
+  }
+  return e;
+}
+
+/// U - 1 from H = F - 1 without losing digits of small strains: C - 1 = H + H^T + H^T H has the
+/// eigenvalues c = (1 + e)^2 - 1.
+template <int dim>
+Tensor<dim> stretch(const Tensor<dim> &h)
+{
+  const Tensor<dim> c = h + h.transpose() + h.transpose() * h;
+  const Eigen::SelfAdjointEigenSolver<Tensor<dim>> axes(c);
+  Vector<dim> e;
+  for (int k = 0; k < dim; ++k)
+    e[k] = axes.eigenvalues()[k] / (std::sqrt(std::max(1 + axes.eigenvalues()[k], 0.)) + 1);
+  return axes.eigenvectors() * e.asDiagonal() * axes.eigenvectors().transpose();
+}
+} // namespace
+
+template <int dim>
+StrainGauge<dim>::StrainGauge(const GaugeParameters &gauge, const GaugePlaces<dim> &places)
+    : name_(gauge.name), angle_(gauge.angle)
+{
+  if (!gauge.points.empty()) {
+    point_.emplace(places, to_vector<dim>(gauge.points[0]));
+    description_ = "at a point, from " + point_->source(places.body);
+    return;
+  }
+  box_ = fit_box(places, to_vector<dim>(gauge.lower), to_vector<dim>(gauge.upper));
+  description_ = fmt::format("over a box, from {} particles and {} nodes; what breaks in it counts "
+                             "as strain",
+                             box_.particles.size(), box_.nodes.size());
+}
+
+template <int dim>
+std::vector<Column> StrainGauge<dim>::columns() const
+{
+  return tensor_columns<dim>(name_, "1");
+}
+
+template <int dim>
+void StrainGauge<dim>::read(GaugeLook<dim> &look, double *values)
+{
+  const MotionReading<dim> &reading = point_ ? point_->reading(look.body) : box_;
+  put_turned<dim>(stretch<dim>(reading.gradient(look.body)), angle_, values);
+}
+
+template <int dim>
+StressGauge<dim>::StressGauge(const GaugeParameters &gauge, const GaugePlaces<dim> &places)
+    : name_(gauge.name), angle_(gauge.angle)
+{
+  const CoupledBody<dim> &body = places.body;
+  if (!gauge.points.empty()) {
+    PointMotion<dim> point(places, to_vector<dim>(gauge.points[0]));
+    if (point.cell() >= 0) {
+      mesh_share_ = 1;
+      mesh_ = point.reading(body);
+      description_ = "of the mesh at a point";
+    } else {
+      particles_.push_back({point.particle(), 1});
+      description_ = "of the particle nearest to a point";
+    }
+    return;
+  }
+  const Vector<dim> lower = to_vector<dim>(gauge.lower), upper = to_vector<dim>(gauge.upper);
+  double mesh_volume = 0, volume = 0;
+  std::map<int, Vector<dim>> gradients;
+  if (body.far)
+    for_each_cell_part<dim>(
+        body.far->mesh(), lower, upper, [&](int cell, const auto &from, const auto &to) {
+          for_each_gauss_point<dim>(from, to, [&](const Vector<dim> &place, double part) {
+            mesh_volume += part * body.thickness;
+            for (const auto &term : interpolate(body.far->mesh(), cell, place).nodes)
+              gradients.try_emplace(term.item, Vector<dim>::Zero()).first->second +=
+                  part * body.thickness * term.gradient;
+          });
+        });
+  volume = mesh_volume;
+  if (body.zone) {
+    const auto &state = body.zone->state;
+    const auto *overlap = body.coupler->overlap();
+    for (int i = 0; i < state.size(); ++i) {
+      const Vector<dim> x = get(state.reference, i);
+      const bool inside = (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+      if (!inside || (overlap && overlap->member_of_particle[i] >= 0))
+        continue;
+      particles_.push_back({i, state.volume[i]});
+      volume += state.volume[i];
+    }
+  }
+  core::require(volume > 0, "its box holds no material; move it");
+  for (Share &s : particles_)
+    s.share /= volume;
+  mesh_share_ = mesh_volume / volume;
+  for (const auto &[node, gradient] : gradients)
+    mesh_.nodes.push_back({node, 0, gradient / mesh_volume});
+  description_ =
+      fmt::format("over a box, from {} particles and {} nodes; costs a look at all bonds "
+                  "for each row",
+                  particles_.size(), mesh_.nodes.size());
+}
+
+template <int dim>
+std::vector<Column> StressGauge<dim>::columns() const
+{
+  return tensor_columns<dim>(name_, "Pa");
+}
+
+template <int dim>
+void StressGauge<dim>::read(GaugeLook<dim> &look, double *values)
+{
+  Strain<dim> stress = Strain<dim>::Zero();
+  if (!particles_.empty()) {
+    const auto &of = look.stresses();
+    for (int c = 0; c < n_strains<dim>; ++c) {
+      core::ExactSum sum;
+      for (const Share &s : particles_)
+        sum.add(s.share * of[c][s.item]);
+      stress[c] = sum.value();
+    }
+  }
+  if (mesh_share_ > 0)
+    stress += mesh_share_ *
+              (look.body.far->body().stiffness * small_strain<dim>(mesh_.gradient(look.body)));
+  put_turned<dim>(tensor_of<dim>(stress), angle_, values);
+}
+
+template class StrainGauge<2>;
+template class StrainGauge<3>;
+template class StressGauge<2>;
+template class StressGauge<3>;
+} // namespace ligament::program

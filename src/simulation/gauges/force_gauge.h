@@ -1,0 +1,23 @@
+// The force of loads on the body, with all components.
+#pragma once
+
+#include "src/simulation/gauges/gauge.h"
+
+namespace ligament::program
+{
+/// In N, as it acts on the body: of a load, or of all loads on a side.
+template <int dim>
+class ForceGauge : public Gauge<dim>
+{
+public:
+  ForceGauge(const GaugeParameters &gauge, const CoupledBody<dim> &body);
+
+  std::vector<Column> columns() const override;
+  void read(GaugeLook<dim> &look, double *values) override;
+  std::string description() const override;
+
+private:
+  std::string name_;
+  std::vector<int> loads_;
+};
+} // namespace ligament::program

@@ -1,0 +1,231 @@
+#include "src/simulation/gauges/j_integral.h"
+
+#include "core/check.h"
+#include "core/exact_sum.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+/// Falls from 1 to 0 on the way from `one` to `zero`, with two derivatives that vanish at both
+/// ends, so that a sum over particles misses its integral by little.
+double plateau(double x, double zero, double one)
+{
+  const double s = std::clamp((x - zero) / (one - zero), 0., 1.);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+double plateau_slope(double x, double zero, double one)
+{
+  const double s = std::clamp((x - zero) / (one - zero), 0., 1.);
+  return 30 * s * s * (1 - s) * (1 - s) / (one - zero);
+}
+
+template <int dim>
+int axis_of(const Point &direction)
+{
+  int axis = 0;
+  for (int c = 1; c < dim; ++c)
+    if (direction[c] != 0)
+      axis = c;
+  return axis;
+}
+
+template <int dim>
+Strain<dim> small_strain(const Eigen::Matrix<double, dim, dim> &h)
+{
+  Strain<dim> e;
+  for (int c = 0; c < dim; ++c)
+    e[c] = h(c, c);
+  if constexpr (dim == 2)
+    e[2] = h(0, 1) + h(1, 0);
+  else {
+    e[3] = h(1, 2) + h(2, 1);
+    e[4] = h(0, 2) + h(2, 0);
+    e[5] = h(0, 1) + h(1, 0);
+  }
+  return e;
+}
+
+/// sigma n of a stress in Voigt order.
+template <int dim>
+Vector<dim> traction(const Strain<dim> &s, const Vector<dim> &n)
+{
+  if constexpr (dim == 2)
+    return {s[0] * n[0] + s[2] * n[1], s[2] * n[0] + s[1] * n[1]};
+  else
+    return {s[0] * n[0] + s[5] * n[1] + s[4] * n[2], s[5] * n[0] + s[1] * n[1] + s[3] * n[2],
+            s[4] * n[0] + s[3] * n[1] + s[2] * n[2]};
+}
+} // namespace
+
+template <int dim>
+JIntegral<dim>::JIntegral(const GaugeParameters &gauge, const GaugePlaces<dim> &places)
+    : name_(gauge.name), along_(axis_of<dim>(gauge.direction)),
+      across_(dim == 2 ? 1 - along_ : axis_of<dim>(gauge.normal)),
+      sign_(gauge.direction[along_] > 0 ? 1 : -1), lower_(to_vector<dim>(gauge.lower)),
+      upper_(to_vector<dim>(gauge.upper)), inner_lower_(to_vector<dim>(gauge.inner_lower)),
+      inner_upper_(to_vector<dim>(gauge.inner_upper))
+{
+  const CoupledBody<dim> &body = places.body;
+  const auto constants = elastic_constants_of<dim>(places.scene);
+  stiffness_ = constants.stiffness;
+  const double e = places.scene.material.youngs_modulus, nu = places.scene.material.poissons_ratio;
+  modulus_ = dim == 2 && body.plane == PlaneMode::stress ? e : e / (1 - nu * nu);
+  depth_ = body.thickness;
+  for (int c = 0; c < dim; ++c)
+    if (c != along_ && c != across_) {
+      depth_ = body.upper[c] - body.lower[c];
+      lower_[c] = body.lower[c];
+      upper_[c] = body.upper[c];
+    }
+  const auto *overlap = body.coupler->overlap();
+  if (body.zone) {
+    const auto &state = body.zone->state;
+    for (int i = 0; i < state.size(); ++i) {
+      const Vector<dim> x = get(state.reference, i);
+      const double share = overlap ? overlap->weight(x) : 1;
+      if (share == 0 || slope(x).isZero(0))
+        continue;
+      core::require(body.force()->material(i) == 0,
+                    "an inclusion lies between its rectangles: J is no longer that of the tip "
+                    "alone; move the rectangles");
+      add_sample(x, share * state.volume[i], around(body, i), i);
+    }
+  }
+  n_particles_ = samples_.size();
+  if (body.far)
+    add_cells(body);
+  core::require(!samples_.empty(), "nothing lies between its rectangles; move them apart");
+}
+
+// The share of the mesh falls within a cell or two: cells of the overlap are looked at in parts.
+template <int dim>
+void JIntegral<dim>::add_cells(const CoupledBody<dim> &body)
+{
+  constexpr int parts_per_axis = dim == 2 ? 4 : 2;
+  const auto &mesh = body.far->mesh();
+  const auto *overlap = body.coupler->overlap();
+  std::vector<char> is_shared(mesh.n_cells(), 0);
+  if (overlap)
+    for (const auto &cell : overlap->cells)
+      is_shared[cell.cell] = cell.layer == 0;
+  for_each_cell_part<dim>(mesh, lower_, upper_, [&](int cell, const auto &, const auto &) {
+    const int n = is_shared[cell] ? parts_per_axis : 1;
+    const Vector<dim> size = mesh.cell_size[cell] / n;
+    for (int part = 0; part < std::lround(std::pow(n, dim)); ++part) {
+      Vector<dim> from = mesh.cell_lower[cell];
+      for (int c = 0, rest = part; c < dim; ++c, rest /= n)
+        from[c] += rest % n * size[c];
+      for_each_gauss_point<dim>(from, from + size, [&](const Vector<dim> &x, double volume) {
+        const double share = overlap ? 1 - overlap->weight(x) : 1;
+        if (share > 0 && !slope(x).isZero(0))
+          add_sample(x, share * volume * body.thickness, interpolate(mesh, cell, x), -1);
+      });
+    }
+  });
+}
+
+template <int dim>
+Vector<dim> JIntegral<dim>::slope(const Vector<dim> &x) const
+{
+  const auto factor = [&](int c) {
+    return plateau(x[c], lower_[c], inner_lower_[c]) * plateau(x[c], upper_[c], inner_upper_[c]);
+  };
+  const auto rise = [&](int c) {
+    return x[c] < inner_lower_[c] ? plateau_slope(x[c], lower_[c], inner_lower_[c])
+                                  : plateau_slope(x[c], upper_[c], inner_upper_[c]);
+  };
+  Vector<dim> dq = Vector<dim>::Zero();
+  dq[along_] = rise(along_) * factor(across_);
+  dq[across_] = rise(across_) * factor(along_);
+  return dq;
+}
+
+template <int dim>
+void JIntegral<dim>::add_sample(const Vector<dim> &x, double volume,
+                                const MotionReading<dim> &reading, int particle)
+{
+  const auto &terms = particle >= 0 ? reading.particles : reading.nodes;
+  samples_.push_back({particle, volume, slope(x), int(terms_.size()), int(terms.size())});
+  for (const auto &t : terms)
+    terms_.push_back({t.item, t.gradient});
+}
+
+// One step from bond to bond; beside a surface, or in a splinter, where these don't tell all, two.
+template <int dim>
+MotionReading<dim> JIntegral<dim>::around(const CoupledBody<dim> &body, int particle) const
+{
+  int rank = 0;
+  const Vector<dim> x = get(body.zone->state.reference, particle);
+  const auto reading = fit_particles<dim>(body, bonded_around(body, particle, 1), x, &rank);
+  return rank == dim ? reading : fit_particles<dim>(body, bonded_around(body, particle, 2), x);
+}
+
+template <int dim>
+void JIntegral<dim>::follow(const CoupledBody<dim> &body)
+{
+  std::vector<int> changed;
+  for_each_new_break(body, n_broken_, [&](const auto &bond) {
+    for (const int centre : {bond.i, bond.j})
+      for (const int i : bonded_around(body, centre, 1)) // those with a fit of two steps
+        changed.push_back(i);
+  });
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  for (const int i : changed) {
+    const auto end = samples_.begin() + n_particles_;
+    const auto found = std::lower_bound(samples_.begin(), end, i,
+                                        [](const Sample &s, int k) { return s.particle < k; });
+    if (found == end || found->particle != i)
+      continue;
+    const auto reading = around(body, i);
+    found->first = int(terms_.size());
+    found->size = int(reading.particles.size());
+    for (const auto &t : reading.particles)
+      terms_.push_back({t.item, t.gradient});
+  }
+}
+
+template <int dim>
+std::vector<Column> JIntegral<dim>::columns() const
+{
+  return {{name_ + "_j", "J/m^2"}, {name_ + "_k", "Pa*m^0.5"}};
+}
+
+template <int dim>
+void JIntegral<dim>::read(GaugeLook<dim> &look, double *values)
+{
+  follow(look.body);
+  core::ExactSum sum;
+  for (const Sample &s : samples_) {
+    const auto &u =
+        s.particle >= 0 ? look.body.zone->state.displacement : look.body.far->displacement;
+    Eigen::Matrix<double, dim, dim> h = Eigen::Matrix<double, dim, dim>::Zero();
+    for (int k = s.first; k < s.first + s.size; ++k)
+      h += get(u, terms_[k].item) * terms_[k].gradient.transpose();
+    const Strain<dim> strain = small_strain<dim>(h), stress = stiffness_ * strain;
+    const Vector<dim> along = sign_ * h.col(along_);
+    sum.add(s.volume * (traction<dim>(stress, s.dq).dot(along) -
+                        stress.dot(strain) / 2 * sign_ * s.dq[along_]));
+  }
+  values[0] = sum.value() / depth_;
+  values[1] = std::copysign(std::sqrt(modulus_ * std::abs(values[0])), values[0]);
+}
+
+template <int dim>
+std::string JIntegral<dim>::description() const
+{
+  return fmt::format("domain integral over {} particles and {} points of cells, without terms of "
+                     "inertia; rectangles of other sizes tell its error",
+                     n_particles_, samples_.size() - n_particles_);
+}
+
+template class JIntegral<2>;
+template class JIntegral<3>;
+} // namespace ligament::program

@@ -1,0 +1,66 @@
+#include "src/simulation/history_rows.h"
+
+#include "core/check.h"
+#include "core/keyed_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+constexpr int rows_per_flush = 50;
+
+/// Those of every run, then those of the gauges, which must be others.
+template <int dim>
+std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges)
+{
+  std::vector<Column> columns = history_columns(dim, scene.time.has_phases());
+  for (const Column &column : gauges.columns()) {
+    const bool is_there = std::any_of(columns.begin(), columns.end(),
+                                      [&](const Column &c) { return c.name == column.name; });
+    if (is_there)
+      throw core::KeyedError("/gauges", fmt::format("a gauge has the column \"{}\"", column.name),
+                             "history.csv has a column of that name already", "name it otherwise");
+    columns.push_back(column);
+  }
+  return columns;
+}
+} // namespace
+
+template <int dim>
+HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
+                              const CoupledBody<dim> &body, bool goes_on)
+    : has_phases_(scene.time.has_phases()), gauges_(scene, body),
+      writer_(folder.history(), all_columns(scene, gauges_), rows_per_flush, goes_on)
+{
+}
+
+template <int dim>
+void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                           const HistoryRow &row)
+{
+  writer_.set("time", step.time);
+  writer_.set("step", double(step.step));
+  writer_.set("load", row.reading.load);
+  writer_.set("stress", row.reading.stress);
+  writer_.set("displacement", row.reading.displacement);
+  writer_.set("strain", row.reading.strain);
+  for (const auto &[name, value] : row.ledger.channels())
+    if (name != "settled" || has_phases_)
+      writer_.set(name, value);
+  if (has_phases_)
+    writer_.set("static", row.is_static);
+  writer_.set("broken_bonds", double(row.n_broken));
+  writer_.set("crack_length", row.crack_length);
+  const std::vector<double> values = gauges_.read(body, step.time);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    writer_.set(gauges_.columns()[k].name, values[k]);
+  writer_.end_row();
+}
+
+template class HistoryRows<2>;
+template class HistoryRows<3>;
+} // namespace ligament::program

@@ -1,0 +1,41 @@
+// The rows of history.csv: reading of the test machine, energies, crack, gauges.
+#pragma once
+
+#include "src/output/history.h"
+#include "src/simulation/energy_ledger.h"
+#include "src/simulation/gauges/gauge_set.h"
+#include "src/simulation/test_machine.h"
+
+namespace ligament::program
+{
+/// What a row says besides the body itself.
+struct HistoryRow
+{
+  Reading reading;
+  EnergyLedger ledger;
+  std::int64_t n_broken = 0;
+  double crack_length = 0; // m, m^2 in 3D
+  bool is_static = false;
+};
+
+template <int dim>
+class HistoryRows
+{
+public:
+  /// With `goes_on` behind the rows that are there.
+  HistoryRows(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
+              bool goes_on);
+
+  void add(const CoupledBody<dim> &body, const coupling::StepTime &step, const HistoryRow &row);
+  void flush() { writer_.flush(); }
+  /// All rows are on the disk.
+  void sync() { writer_.sync(); }
+
+  GaugeSet<dim> &gauges() { return gauges_; }
+
+private:
+  bool has_phases_;
+  GaugeSet<dim> gauges_;
+  HistoryWriter writer_;
+};
+} // namespace ligament::program
