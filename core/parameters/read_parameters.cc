@@ -130,6 +130,8 @@ private:
       return list(p, json, path, label);
     case Kind::points:
       return points(p, json, path, label);
+    case Kind::table:
+      return table(p, json, path, label);
     case Kind::members:
       if (!json.is(JsonKind::object))
         return wrong_type(p, json, path, label);
@@ -192,6 +194,29 @@ private:
       components(p, json.elements[k], path + "/" + std::to_string(k),
                  fmt::format("point {} of {}", k + 1, label), value);
       target.push_back({value[0].value_or(0), value[1].value_or(0), value[2].value_or(0)});
+    }
+  }
+
+  void table(const Parameter &p, const JsonValue &json, const std::string &path,
+             const std::string &label)
+  {
+    if (!json.is(JsonKind::array))
+      return wrong_type(p, json, path, label);
+    auto &target = *std::get<std::vector<NumberPair> *>(p.target);
+    target.clear();
+    for (std::size_t k = 0; k < json.elements.size(); ++k) {
+      const JsonValue &row = json.elements[k];
+      const std::string row_path = path + "/" + std::to_string(k);
+      if (!row.is(JsonKind::array) || row.elements.size() != 2 ||
+          !row.elements[1].is(JsonKind::number)) {
+        error(row.place, row_path,
+              fmt::format("row {} of {} is no pair [{}, a number]", k + 1, label, number_type(p)),
+              p.text, "give " + p.type(dimension_));
+        continue;
+      }
+      if (const auto first = number(p, row.elements[0], row_path + "/0",
+                                    fmt::format("row {} of {}", k + 1, label)))
+        target.push_back({*first, row.elements[1].number});
     }
   }
 

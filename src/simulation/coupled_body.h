@@ -19,6 +19,7 @@ struct CoupledBody
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
+  std::vector<double> loaded_faces;          // m^2, on which each load acts in the zone
   std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
 
   Vector<dim> lower, upper;            // m, specimen

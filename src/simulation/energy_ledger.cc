@@ -34,6 +34,8 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   ledger.settled = body.settled;
   if (body.zone)
     ledger.absorbed += body.zone->dashpots.energy();
+  if (body.zone)
+    ledger.external_work += body.zone->body_force.work();
   if (body.far)
     ledger.absorbed += body.far->absorbed_energy();
   if (const auto *force = body.force()) {
