@@ -82,9 +82,10 @@ struct Parameter
     required,
     conditional // checked where the condition is known; absent values are zero or empty
   };
-  using Target = std::variant<std::monostate, double *, int *, bool *, std::string *,
-                              std::optional<double> *, Point *, PartialPoint *,
-                              std::vector<Point> *, std::vector<NumberPair> *, std::vector<JsonMember> *, Choice>;
+  using Target =
+      std::variant<std::monostate, double *, int *, bool *, std::string *, std::optional<double> *,
+                   Point *, PartialPoint *, std::vector<Point> *, std::vector<NumberPair> *,
+                   std::vector<JsonMember> *, Choice>;
 
   std::string key;
   Kind kind = Kind::ignored;

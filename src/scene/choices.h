@@ -133,8 +133,7 @@ inline const std::vector<std::string> &words(StaticSolver)
 
 inline const std::vector<std::string> &words(LoadKind)
 {
-  static const std::vector<std::string> list = {"velocity", "displacement", "traction",
-                                                "force"};
+  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force"};
   return list;
 }
 

@@ -196,10 +196,10 @@ struct LoadParameters
   History history;
   std::optional<double> from, to; // m, along the side in 2D
   Region within;
-  bool absorbing = false;                        // lets waves out, beside a traction or alone
-  double absorbing_layer = 0;                    // m
-  LoadKind kind = LoadKind::traction;            // the one that has components
-  PartialPoint value;                            // and its components
+  bool absorbing = false;             // lets waves out, beside a traction or alone
+  double absorbing_layer = 0;         // m
+  LoadKind kind = LoadKind::traction; // the one that has components
+  PartialPoint value;                 // and its components
 };
 
 /// Where the run begins, a part of the body or all of it moves.

@@ -32,6 +32,7 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   ledger.damping = damping;
   ledger.regime_change = body.regime_change;
   ledger.settled = body.settled;
+  ledger.external_work += body.started;
   if (body.zone)
     ledger.absorbed += body.zone->dashpots.energy();
   if (body.zone)

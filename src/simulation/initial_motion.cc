@@ -46,6 +46,35 @@ Motion<dim> motion_at(const Scene &scene, const Vector<dim> &x)
   }
   return motion;
 }
+
+/// Of all particles, whatever the overlap makes of them.
+template <int dim>
+void move_particles(const Scene &scene, particles::Particles<dim> &zone)
+{
+  for (int i = 0; i < zone.size(); ++i) {
+    const Motion<dim> motion = motion_at<dim>(scene, get(zone.reference, i));
+    set(zone.velocity, i, motion.velocity);
+    if (zone.turns)
+      set(zone.spin, i, motion.spin);
+  }
+}
+
+template <int dim>
+void move_members(const coupling::Overlap<dim> &overlap, CoupledBody<dim> &body)
+{
+  auto &zone = body.zone->state;
+  for (const auto &member : overlap.members) {
+    Motion<dim> motion{Vector<dim>::Zero(), Spin<dim>::Zero()};
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
+      const Vector<dim> v = get(body.far->velocity, overlap.near_nodes[member.nodes[a]]);
+      motion.velocity += member.value[a] * v;
+      motion.spin += overlap.spin_block(member, a) * v;
+    }
+    set(zone.velocity, member.particle, motion.velocity);
+    if (zone.turns)
+      set(zone.spin, member.particle, motion.spin);
+  }
+}
 } // namespace
 
 template <int dim>
@@ -59,29 +88,14 @@ void start_motion(const Scene &scene, CoupledBody<dim> &body)
       set(far.velocity, i, motion_at<dim>(scene, far.mesh().nodes[i]).velocity);
     far.distribute();
   }
-  if (!body.zone)
-    return;
-  auto &zone = body.zone->state;
-  for (int i = 0; i < zone.size(); ++i) {
-    const Motion<dim> motion = motion_at<dim>(scene, get(zone.reference, i));
-    set(zone.velocity, i, motion.velocity);
-    if (zone.turns)
-      set(zone.spin, i, motion.spin);
-  }
+  if (body.zone)
+    move_particles<dim>(scene, body.zone->state);
   if (const auto *overlap = body.coupler->overlap())
-    for (const auto &member : overlap->members) {
-      Motion<dim> motion{Vector<dim>::Zero(), Spin<dim>::Zero()};
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
-        const Vector<dim> v = get(body.far->velocity, overlap->near_nodes[member.nodes[a]]);
-        motion.velocity += member.value[a] * v;
-        motion.spin += overlap->spin_block(member, a) * v;
-      }
-      set(zone.velocity, member.particle, motion.velocity);
-      if (zone.turns)
-        set(zone.spin, member.particle, motion.spin);
-    }
+    move_members<dim>(*overlap, body);
   auto bodies = body.bodies();
   body.coupler->take_velocities(bodies);
+  const auto e = body.coupler->energy(bodies, {0, 0, body.dt}); // no force acts yet
+  body.started = e.kinetic_discrete + e.kinetic_far;
 }
 
 template void start_motion(const Scene &, CoupledBody<2> &);

@@ -5,9 +5,9 @@
 
 namespace ligament::program
 {
-/// Gives particles, nodes and overlap the velocities of the scene, as those of half a step before
-/// the beginning. Members of the overlap move and turn with the mesh: there is no fine-scale
-/// motion.
+/// The kinetic energy is booked as work done on the body before. Gives particles, nodes and overlap
+/// the velocities of the scene, as those of half a step before the beginning. Members of the
+/// overlap move and turn with the mesh: there is no fine-scale motion.
 template <int dim>
 void start_motion(const Scene &scene, CoupledBody<dim> &body);
 } // namespace ligament::program

@@ -112,6 +112,7 @@ TEST(InitialMotion, FreeFlightIsUniform)
       if (first < 0)
         first = kinetic;
       EXPECT_NEAR(kinetic / first, 1, 1e-12);
+      EXPECT_NEAR(read_ledger(small.body, step, 0).residual() / first, 0, 1e-12);
     });
     EXPECT_NEAR(first / (0.5 * 24 * 120 * 1e-5), 1, 1e-2) << "half of m v^2";
     const Vector<2> u = 60 * small.body.dt * Vector<2>(3e-3, -1e-3);
