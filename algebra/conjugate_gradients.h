@@ -47,12 +47,14 @@ private:
 
 /// Solves A x = right from x on (zero where it is empty). apply(p, ap): ap = A p, A symmetric and
 /// not negative, right in its range. precondition(r, z): z near A^-1 r, symmetric and positive.
-/// project(v): takes out of v the motions that nothing resists, orthogonally (may do nothing).
-/// Stops at |r| <= tolerance (absolute). The residual is carried along and taken anew in the end,
-/// by one more apply: where x is large beside what it is made of, the two differ. The search then
-/// goes on as long as that helps.
-template <typename Apply, typename Precondition, typename Project>
-CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project &&project,
+/// Where nothing resists some motions, project_right(r) takes out of a right-hand side what they
+/// feel of it and project_motion(z) their share out of a motion; each is the other's transpose, and
+/// they are projectors. Stops at |r| <= tolerance (absolute). The residual is carried along and
+/// taken anew in the end, by one more apply: where x is large beside what it is made of, the two
+/// differ. The search then goes on as long as that helps.
+template <typename Apply, typename Precondition, typename ProjectRight, typename ProjectMotion>
+CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition,
+                             ProjectRight &&project_right, ProjectMotion &&project_motion,
                              const Eigen::VectorXd &right, Eigen::VectorXd &x, double tolerance,
                              int max_iterations)
 {
@@ -63,13 +65,13 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
     apply(x, ap);
     round_off.see(x.norm(), ap.norm(), x.norm());
     r = right - ap;
-    project(r);
+    project_right(r);
     result.residual = r.norm();
   };
   if (x.size() == 0) {
     x.setZero(right.size());
     r = right;
-    project(r);
+    project_right(r);
     result.residual = r.norm();
   } else
     renew_residual();
@@ -96,7 +98,7 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
       return result;
 
     precondition(r, z);
-    project(z);
+    project_motion(z);
     const double rz = r.dot(z);
     if (since == 0)
       p = z;
@@ -122,5 +124,16 @@ CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition, Project
     ++result.iterations;
     ++since;
   }
+}
+
+/// The same where everything is resisted.
+template <typename Apply, typename Precondition>
+CgResult conjugate_gradients(Apply &&apply, Precondition &&precondition,
+                             const Eigen::VectorXd &right, Eigen::VectorXd &x, double tolerance,
+                             int max_iterations)
+{
+  const auto nothing = [](Eigen::VectorXd &) {};
+  return conjugate_gradients(apply, precondition, nothing, nothing, right, x, tolerance,
+                             max_iterations);
 }
 } // namespace ligament::algebra

@@ -48,7 +48,7 @@ void solve(const algebra::BlockMatrix &matrix, const algebra::Preconditioner &pr
   const algebra::CgResult result =
       algebra::conjugate_gradients([&](const auto &p, auto &ap) { matrix.multiply(p, ap); },
                                    [&](const auto &r, auto &z) { preconditioner.apply(r, z); },
-                                   [](auto &) {}, right, x, 1e-9 * right.norm(), 1000);
+                                   right, x, 1e-9 * right.norm(), 1000);
   print("solve", watch.seconds(), "s");
   print("iterations", result.iterations, "-");
   print("residual", result.residual / right.norm(), "of the load");

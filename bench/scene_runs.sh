@@ -3,7 +3,7 @@
 programs=${1:-build/release/bin}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-scene=examples/cracked_plate/scene.json
+scene=examples/cracked_plate/fast.json
 
 # key: its number in the JSON object on the standard input
 field() { sed -n "s/.*\"$1\":\([-+0-9.e]*\).*/\1/p"; }

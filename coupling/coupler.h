@@ -117,7 +117,7 @@ public:
                                        Components<dim> & /*nodal_force*/) const
   {
   }
-  /// That K in N/m, dim rows per near node; empty without overlap.
+  /// That K in N/m: rows of all near nodes in x, then in y, then in z; empty without overlap.
   virtual Eigen::SparseMatrix<double> near_stiffness() const { return {}; }
   /// The body was moved from outside; what follows the nodes but is no part of their motion.
   virtual void follow(Bodies<dim> &) {}

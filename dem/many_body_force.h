@@ -55,7 +55,8 @@ public:
   void compute_trial(Particles &particles, double time, double noted_share) override;
   double trial_share(const Particles &particles) const override;
   /// The law linearised: the motion must be so small that its square is round-off.
-  void compute_linear(Particles &particles) override;
+  void compute_bonds(Particles &particles, bool has_loads) override;
+  void add_touching(Particles &particles) override;
   void add_other_tangent(
       const Particles &particles,
       const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const override;

@@ -23,14 +23,22 @@ double ManyBodyForce<dim>::trial_share(const Particles &p) const
 }
 
 template <int dim>
-void ManyBodyForce<dim>::compute_linear(Particles &p)
+void ManyBodyForce<dim>::compute_bonds(Particles &p, bool has_loads)
 {
   Evaluation<dim> &e = energy_evaluation_;
-  e.has_loads = false;
+  e.has_loads = has_loads;
   find_forces(p, e);
   e.has_loads = true;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::add_touching(Particles &p)
+{
   const auto moved = [&](int i, const Vector<dim> &lever) -> Vector<dim> {
-    return get(p.displacement, i) + Turn<dim>::of(p, i).change(lever);
+    if constexpr (dim == 2)
+      return get(p.velocity, i) + p.spin[0][i] * Vector<2>(-lever[1], lever[0]);
+    else
+      return get(p.velocity, i) + get(p.spin, i).cross(lever);
   };
   for (const auto &c : touching_) {
     const Vector<dim> f = c.stiffness * c.answer(moved(c.j, c.lever_j) - moved(c.i, c.lever_i));
@@ -83,8 +91,10 @@ template void ManyBodyForce<2>::compute_trial(Particles &, double, double);
 template void ManyBodyForce<3>::compute_trial(Particles &, double, double);
 template double ManyBodyForce<2>::trial_share(const Particles &) const;
 template double ManyBodyForce<3>::trial_share(const Particles &) const;
-template void ManyBodyForce<2>::compute_linear(Particles &);
-template void ManyBodyForce<3>::compute_linear(Particles &);
+template void ManyBodyForce<2>::compute_bonds(Particles &, bool);
+template void ManyBodyForce<3>::compute_bonds(Particles &, bool);
+template void ManyBodyForce<2>::add_touching(Particles &);
+template void ManyBodyForce<3>::add_touching(Particles &);
 template void ManyBodyForce<2>::add_other_tangent(
     const Particles &, const std::function<void(const particles::QuadraticTerm<2> &)> &) const;
 template void ManyBodyForce<3>::add_other_tangent(

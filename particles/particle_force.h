@@ -118,7 +118,7 @@ public:
                            const std::function<void(const QuadraticTerm<dim> &)> &add,
                            const std::vector<int> *of = nullptr) const = 0;
 
-  /// Whether it has the three looks below, which a body in equilibrium needs.
+  /// Whether it has the looks below, which a body in equilibrium needs.
   virtual bool has_trials() const { return false; }
 
   /// The forces of a state that the body may not stay in, as compute() would find them at the loads
@@ -129,9 +129,12 @@ public:
   /// reaches the noted one.
   virtual double trial_share(const Particles<dim> &) const { return 0; }
 
-  /// Overwrites forces and torques by those of a small motion about the reference, to first order:
-  /// supports stand still, no load acts. Faces that touched in the last trial go on touching.
-  virtual void compute_linear(Particles<dim> &) {}
+  /// Overwrites forces and torques by those of the bonds and outer faces, at the loads of the last
+  /// trial, or where supports stand where they were at first and nothing pulls.
+  virtual void compute_bonds(Particles<dim> &, bool /*has_loads*/) {}
+  /// Adds what faces that touched in the last trial answer to the motion that the velocities and
+  /// spins are, over 1 s; to first order.
+  virtual void add_touching(Particles<dim> &) {}
   /// Terms near to what add_tangent() lacks of it: of these faces, and between materials.
   virtual void add_other_tangent(const Particles<dim> &,
                                  const std::function<void(const QuadraticTerm<dim> &)> &) const

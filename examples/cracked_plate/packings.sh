@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 plate() {
   name=$1
   shift
-  "$programs/ligament" run examples/cracked_plate/scene.json --output "$work/run" --json \
+  "$programs/ligament" run examples/cracked_plate/fast.json --output "$work/run" --json \
     --set '/specimen/size=["40 mm", "100 mm"]' --set '/time/duration=2.5 ms' \
     --set '/loads/0/velocity=[null, "3.3 mm/s"]' --set '/loads/1/velocity=[null, "-3.3 mm/s"]' \
     --set '/far_field={"cell_size": "2.07 mm", "levels": 1}' "$@" 2>/dev/null | tail -n 1 >"$work/json"

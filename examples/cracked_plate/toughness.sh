@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 # spacing, half height of the zone, cell size, all in mm
 plate() {
   set -- "$1" "$2" "$3" "${far:-{\"cell_size\": \"$3 mm\", \"levels\": 1\}}"
-  "$programs/ligament" run examples/cracked_plate/scene.json --output "$work/$1" --json \
+  "$programs/ligament" run examples/cracked_plate/fast.json --output "$work/$1" --json \
     --set '/specimen/size=["40 mm", "100 mm"]' --set '/time/duration=1.6 ms' \
     --set '/loads/0/velocity=[null, "3.3 mm/s"]' --set '/loads/0/ramp=0.2 ms' \
     --set '/loads/1/velocity=[null, "-3.3 mm/s"]' --set '/loads/1/ramp=0.2 ms' \

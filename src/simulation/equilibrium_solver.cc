@@ -3,6 +3,7 @@
 #include "core/check.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <random>
@@ -11,7 +12,6 @@ namespace ligament::program
 {
 namespace
 {
-constexpr double tolerance = 1e-9; // of the largest load
 constexpr int most_iterations = 2000;
 
 /// Columns of the same span, in their order; those that depend on others are left out.
@@ -88,6 +88,14 @@ EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preco
 }
 
 template <int dim>
+void EquilibriumSolver<dim>::renew()
+{
+  preconditioner_.reset();
+  if (knows_free_motions_)
+    make_free_motions(orthonormal(system_.rigid_motions()), free_shares_);
+}
+
+template <int dim>
 void EquilibriumSolver<dim>::prepare()
 {
   if (!knows_free_motions_)
@@ -112,20 +120,6 @@ void EquilibriumSolver<dim>::prepare()
       if (penalty > 100)
         throw;
     }
-}
-
-// The y nearest to zero of the same motion T y. Forces T^T f have no part in the y that T takes for
-// no motion, and keep to that when such a y is projected out of them.
-template <int dim>
-Eigen::VectorXd EquilibriumSolver<dim>::without_nothing(const Eigen::VectorXd &y)
-{
-  const Eigen::VectorXd right = system_.folded(y);
-  Eigen::VectorXd nearest;
-  algebra::conjugate_gradients(
-      [&](const Eigen::VectorXd &p, Eigen::VectorXd &bp) { bp = system_.folded(p); },
-      [](const Eigen::VectorXd &r, Eigen::VectorXd &z) { z = r; }, [](Eigen::VectorXd &) {}, right,
-      nearest, 1e-15 * right.norm(), most_iterations);
-  return nearest;
 }
 
 // Of the rigid motions, as far as supports let them be, those that cost no energy.
@@ -162,10 +156,12 @@ void EquilibriumSolver<dim>::make_free_motions(const Eigen::MatrixXd &rigid,
                                                const Eigen::MatrixXd &shares)
 {
   free_shares_ = shares;
-  free_motions_.resize(rigid.rows(), shares.cols());
+  free_motions_ = rigid * shares;
+  free_forces_.resize(rigid.rows(), shares.cols());
   for (int k = 0; k < shares.cols(); ++k)
-    free_motions_.col(k) = without_nothing(rigid * shares.col(k));
-  free_motions_ = orthonormal(free_motions_);
+    free_forces_.col(k) = system_.folded(free_motions_.col(k));
+  const Eigen::MatrixXd works = free_motions_.transpose() * free_forces_;
+  free_forces_ *= works.inverse();
 }
 
 template <int dim>
@@ -190,11 +186,20 @@ void EquilibriumSolver<dim>::set_free_shares(const FreeShares &free)
                     Eigen::Map<const Eigen::MatrixXd>(free.shares.data(), rigid.cols(), free.n));
 }
 
+// Where y is redundant, a force has no part in what T takes for no motion at all. It keeps to that
+// when what the free motions feel is taken out by forces T^T f.
 template <int dim>
-void EquilibriumSolver<dim>::project(Eigen::VectorXd &y) const
+void EquilibriumSolver<dim>::project_force(Eigen::VectorXd &r) const
 {
   if (free_motions_.cols() > 0)
-    y -= free_motions_ * (free_motions_.transpose() * y).eval();
+    r -= free_forces_ * (free_motions_.transpose() * r).eval();
+}
+
+template <int dim>
+void EquilibriumSolver<dim>::project_motion(Eigen::VectorXd &y) const
+{
+  if (free_motions_.cols() > 0)
+    y -= free_motions_ * (free_forces_.transpose() * y).eval();
 }
 
 template <int dim>
@@ -209,7 +214,8 @@ algebra::CgResult EquilibriumSolver<dim>::solve(const Eigen::VectorXd &right, do
         preconditioner_->apply(r, z);
         system_.drop_inert(z);
       },
-      [&](Eigen::VectorXd &v) { project(v); }, right, y, absolute, most_iterations);
+      [&](Eigen::VectorXd &r) { project_force(r); }, [&](Eigen::VectorXd &z) { project_motion(z); },
+      right, y, absolute, most_iterations);
   ++n_solves_;
   n_iterations_ += result.iterations;
   return result;
@@ -219,7 +225,7 @@ template <int dim>
 Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 {
   Eigen::VectorXd r = system_.forces(time);
-  project(r);
+  project_force(r);
   norm = r.norm();
   largest_load_ = std::max(largest_load_, system_.load_force());
   return r;
@@ -227,7 +233,7 @@ Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 
 template <int dim>
 typename EquilibriumSolver<dim>::End
-EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
+EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved, double tolerance)
 {
   if (!knows_free_motions_)
     find_free_motions();
@@ -247,8 +253,9 @@ EquilibriumSolver<dim>::find_equilibrium(double time, Eigen::VectorXd &moved)
       return End::converged;
     since_least = norm < 0.9 * least ? 0 : since_least + 1;
     least = std::min(least, norm);
+    system_.linearise_here();
     Eigen::VectorXd y;
-    const auto result = solve(r, std::max(0.3 * goal, 1e-5 * norm), y);
+    const auto result = solve(r, std::max(0.3 * goal, 1e-6 * norm), y);
     if (result.end == algebra::CgResult::End::indefinite) {
       end = End::indefinite;
       break;
@@ -267,6 +274,7 @@ void EquilibriumSolver<dim>::settle_linear(double time)
 {
   if (!knows_free_motions_)
     find_free_motions();
+  system_.linearise_at_reference();
   system_.displace(system_.held_gap(time));
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
@@ -287,13 +295,14 @@ typename EquilibriumSolver<dim>::End EquilibriumSolver<dim>::find_response(doubl
   if (!knows_free_motions_)
     find_free_motions();
   const Eigen::VectorXd held = system_.held_motion(from, to);
+  system_.linearise_here();
   Eigen::VectorXd growth = system_.forces(to);
   growth -= system_.forces(from);
   // Faces that are about to touch or to part: those that do at the end decide.
   constexpr int most_changes = 3; // what then is wrong yet, the next equilibrium corrects
   for (int change = 0;; ++change) {
     Eigen::VectorXd right = growth - system_.stiffness_times(held);
-    project(right);
+    project_force(right);
     const double norm = right.norm();
     if (norm == 0) {
       y = held;

@@ -12,9 +12,9 @@ namespace ligament::program
 /// What a scene's word says.
 algebra::Preconditioning preconditioning(StaticSolver solver);
 
-/// Newton's method with the stiffness about the reference, each step by preconditioned conjugate
-/// gradients on y (theory.md section 6). What that stiffness doesn't know, large rotations and
-/// faces that slide, is learnt from the last steps (Anderson's acceleration).
+/// Newton's method, each step by preconditioned conjugate gradients on y (theory.md section 6).
+/// What the stiffness doesn't know, faces that slide and cells that turn, is learnt from the last
+/// steps (Anderson's acceleration).
 template <int dim>
 class EquilibriumSolver
 {
@@ -29,19 +29,23 @@ public:
   /// The body must outlive it and have trials.
   EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind);
 
+  /// What may stay out of balance, of the largest load: work and energy lack the square of it.
+  static constexpr double exact = 1e-9;
+
   /// From the present place to equilibrium at the loads of `time` (s), held components being where
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
-  End find_equilibrium(double time, Eigen::VectorXd &moved);
+  End find_equilibrium(double time, Eigen::VectorXd &moved, double tolerance = exact);
 
-  /// To equilibrium as near as round-off lets it come: motions so small that their squares are none.
+  /// To equilibrium as near as round-off lets it come: motions so small that their squares are
+  /// none.
   void settle_linear(double time);
 
   /// How far the body moves from its place, where it is in equilibrium at the loads of `from`, when
   /// they become those of `to`, to first order: y with held components.
   End find_response(double from, double to, Eigen::VectorXd &y);
 
-  /// Bonds have broken: the next solve makes a new preconditioner.
-  void renew() { preconditioner_.reset(); }
+  /// Bonds have broken, and the body has moved: the next solve makes a new preconditioner.
+  void renew();
 
   StaticSystem<dim> &system() { return system_; }
 
@@ -71,16 +75,16 @@ private:
   void prepare();
   void find_free_motions();
   void make_free_motions(const Eigen::MatrixXd &rigid, const Eigen::MatrixXd &shares);
-  Eigen::VectorXd without_nothing(const Eigen::VectorXd &y);
-  void project(Eigen::VectorXd &y) const;
+  void project_force(Eigen::VectorXd &r) const;
+  void project_motion(Eigen::VectorXd &y) const;
   algebra::CgResult solve(const Eigen::VectorXd &right, double tolerance, Eigen::VectorXd &y);
   Eigen::VectorXd balance(double time, double &norm);
 
   CoupledBody<dim> &body_;
   algebra::Preconditioning kind_;
   StaticSystem<dim> system_;
-  Eigen::MatrixXd free_motions_; // orthonormal columns
-  Eigen::MatrixXd free_shares_;  // of the rigid motions, before
+  Eigen::MatrixXd free_motions_, free_forces_; // columns; each force works on its own motion alone
+  Eigen::MatrixXd free_shares_;                // of the rigid motions that the first are made of
   bool knows_free_motions_ = false;
   std::unique_ptr<algebra::Preconditioner> preconditioner_;
   Faces touching_; // that it knows

@@ -111,6 +111,7 @@ struct StaticPhases<dim>::Work
   }
 
   bool is_calm(const CoupledBody<dim> &body, const Clock &clock);
+  int n_failures() const;
   void end_dynamic_phase(const CoupledBody<dim> &body, const Clock &clock);
   std::optional<Stop> advance_once(CoupledBody<dim> &body, Clock &clock, double damping,
                                    const Look &look);
@@ -160,12 +161,27 @@ bool StaticPhases<dim>::are_due(const CoupledBody<dim> &body, const Clock &clock
   return work_ && !clock.is_at_end() && work_->is_calm(body, clock);
 }
 
+// Static phases of late that found no equilibrium: the next one has to wait for longer.
+template <int dim>
+int StaticPhases<dim>::Work::n_failures() const
+{
+  int n = 0;
+  for (auto phase = phases.rbegin(); phase != phases.rend(); ++phase) {
+    if (!phase->is_static)
+      continue;
+    if (phase->reason != PhaseEnd::out_of_balance && phase->reason != PhaseEnd::no_resistance)
+      break;
+    ++n;
+  }
+  return n;
+}
+
 // Once every quarter of a transit, counted from the last phase: a run that goes on from a
 // checkpoint looks in the same steps.
 template <int dim>
 bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock &clock)
 {
-  if (dynamic_since < 0 || loading == Loading::sequential)
+  if (dynamic_since < 0 || (loading == Loading::sequential && n_failures() == 0))
     return true;
   const long far_steps = (clock.now.step - dynamic_since) / ratio;
   const long interval =
@@ -176,7 +192,7 @@ bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock 
   if (n_broken(body) > 0)
     since = std::max(since, body.force()->broken_bonds().back().time);
   const double transits = (clock.now.time - since) / transit;
-  if (transits < calm)
+  if (transits < calm * std::exp2(std::min(n_failures(), 6)))
     return false;
   is_restless = transits >= most_transits;
   if (is_restless)
@@ -256,7 +272,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   const double before = read_ledger(body, clock.now, damping).residual();
   const auto velocities = solver.system().velocities();
   Eigen::VectorXd moved;
-  const End balanced = solver.find_equilibrium(clock.now.time, moved);
+  // To hand on to where the stretch ends.
+  constexpr double near = 1e-6;
+  const End balanced = solver.find_equilibrium(clock.now.time, moved, near);
   if (balanced != End::converged) {
     solver.system().put_back(velocities);
     auto bodies = body.bodies();
@@ -264,7 +282,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     failed(balanced);
     return stop;
   }
-  // How far at once: less where no equilibrium was found so far away.
+  // How far at once: less where no equilibrium was found so far away, or none that is stable.
   long reach = clock.n_steps;
   int n_halvings = 0;
   constexpr int most_halvings = 5;
@@ -286,7 +304,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     }
     if (end == End::converged)
       end = stretch.find_end();
-    if (end == End::stalled && n_halvings < most_halvings && stretch.n_steps() >= 4 * ratio) {
+    if (end != End::converged && n_halvings < most_halvings && stretch.n_steps() >= 4 * ratio) {
       ++n_halvings;
       stretch.go_back();
       reach = clock.now.step + stretch.n_steps() / (2 * ratio) * ratio;

@@ -153,8 +153,12 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
       system.displace(bend_, longer - 1);
       bend_ *= longer;
     }
+    // What this leaves out of balance, the next one corrects on its way.
+    constexpr double rough = 1e-5;
+    const bool is_rough = k == 0 && predicted;
     Eigen::VectorXd moved;
-    const End end = solver_.find_equilibrium(time_of(step), moved);
+    const End end = solver_.find_equilibrium(time_of(step), moved,
+                                             is_rough ? rough : EquilibriumSolver<dim>::exact);
     if (end != End::converged) {
       end_ = step;
       return end;
@@ -171,6 +175,8 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
     const double one_step = share - growth_.share(time_of(std::max(begin_, step - ratio_)));
     const bool is_first = bears - std::max(slope * one_step, over) < 1 || step - ratio_ <= begin_;
     const bool done = bears >= 1 ? is_first : step == end_;
+    if (done && is_rough)
+      continue;
     if (done || k == most_corrections) {
       end_ = step;
       share_ = share;

@@ -1,5 +1,7 @@
 #include "src/simulation/static_system.h"
 
+#include "particles/turn_orientations.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -8,8 +10,28 @@ namespace ligament::program
 {
 namespace
 {
-/// Of small motions, in spacings: rotations enter forces squared, and this squared is round-off.
-constexpr double amplitude = 1e-14;
+/// Of small motions, in spacings. Rotations enter forces squared: about the reference this squared
+/// is round-off. Elsewhere displacements are round-off of their own, and differences of two sides
+/// lack no more than the square.
+constexpr double about_reference = 1e-14, elsewhere = 1e-4;
+
+/// The body turned by the spins over a time; 2D angles add.
+template <int dim>
+void turn(particles::Particles<dim> &zone, double time)
+{
+  if constexpr (dim == 2)
+    for (int i = 0; i < zone.size(); ++i)
+      zone.rotation[0][i] += time * zone.spin[0][i];
+  else {
+    std::array<double *, 4> q;
+    std::array<const double *, 3> w;
+    for (int k = 0; k < 4; ++k)
+      q[k] = zone.rotation[k].data();
+    for (int k = 0; k < 3; ++k)
+      w[k] = zone.spin[k].data();
+    particles::turn_orientations(q, w, time, zone.size());
+  }
+}
 } // namespace
 
 template <int dim>
@@ -17,9 +39,13 @@ StaticSystem<dim>::StaticSystem(CoupledBody<dim> &body)
     : body_(body), n_particles_(body.zone ? body.zone->state.size() : 0),
       n_nodes_(body.far ? body.far->mesh().n_nodes() : 0)
 {
-  if (body.zone)
-    motion_ = body.zone->state;
   find_inert();
+  if (!body.zone)
+    return;
+  motion_ = body.zone->state;
+  about_.zone = motion_.displacement;
+  about_.rotation = motion_.rotation;
+  linearise_at_reference();
 }
 
 template <int dim>
@@ -149,11 +175,45 @@ double StaticSystem<dim>::round_off() const
 }
 
 template <int dim>
+void StaticSystem<dim>::linearise_here()
+{
+  if (!body_.zone)
+    return;
+  about_.zone = body_.zone->state.displacement;
+  about_.rotation = body_.zone->state.rotation;
+  is_at_reference_ = false;
+}
+
+template <int dim>
+void StaticSystem<dim>::linearise_at_reference()
+{
+  for (auto &values : about_.zone)
+    std::fill(values.begin(), values.end(), 0.);
+  for (std::size_t k = 0; k < about_.rotation.size(); ++k)
+    std::fill(about_.rotation[k].begin(), about_.rotation[k].end(), dim == 3 && k == 0 ? 1. : 0.);
+  is_at_reference_ = true;
+}
+
+template <int dim>
+void StaticSystem<dim>::compute_bonds_near(double scale)
+{
+  for (int c = 0; c < dim; ++c)
+    for (int i = 0; i < n_particles_; ++i)
+      motion_.displacement[c][i] = about_.zone[c][i] + scale * motion_.velocity[c][i];
+  if (motion_.turns) {
+    motion_.rotation = about_.rotation;
+    turn(motion_, scale);
+  }
+  body_.force()->compute_bonds(motion_, !is_at_reference_);
+}
+
+// What the zone answers is the difference of the forces on both sides of the state, about the
+// reference those of one side.
+template <int dim>
 Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
 {
   Components<dim> nodal = nodal_zero();
   take(y, motion_, nodal);
-  double scale = 1;
   if (body_.zone) {
     double largest = 0;
     for (const auto &v : motion_.velocity)
@@ -162,19 +222,21 @@ Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
     for (const auto &w : motion_.spin)
       for (const double value : w)
         largest = std::max(largest, body_.spacing * std::abs(value));
-    scale = largest > 0 ? amplitude * body_.spacing / largest : 1;
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < n_particles_; ++i)
-        motion_.displacement[c][i] = scale * motion_.velocity[c][i];
-    for (int c = 0; c < n_spins<dim> && motion_.turns; ++c)
-      for (int i = 0; i < n_particles_; ++i)
-        if constexpr (dim == 2)
-          motion_.rotation[c][i] = scale * motion_.spin[c][i];
-        else
-          motion_.rotation[c + 1][i] = scale / 2 * motion_.spin[c][i];
-    if (dim == 3 && motion_.turns)
-      std::fill(motion_.rotation[0].begin(), motion_.rotation[0].end(), 1.);
-    body_.force()->compute_linear(motion_);
+    const double amplitude = (is_at_reference_ ? about_reference : elsewhere) * body_.spacing;
+    const double scale = largest > 0 ? amplitude / largest : 1;
+    compute_bonds_near(scale);
+    if (!is_at_reference_) {
+      const auto force = motion_.force;
+      const auto torque = motion_.torque;
+      compute_bonds_near(-scale);
+      const auto subtract = [](auto &from, const auto &ahead) {
+        for (std::size_t c = 0; c < from.size(); ++c)
+          for (std::size_t i = 0; i < from[c].size(); ++i)
+            from[c][i] = (ahead[c][i] - from[c][i]) / 2;
+      };
+      subtract(motion_.force, force);
+      subtract(motion_.torque, torque);
+    }
     const auto undo = [&](auto &components) {
       for (auto &component : components)
         for (double &value : component)
@@ -182,6 +244,7 @@ Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
     };
     undo(motion_.force);
     undo(motion_.torque);
+    body_.force()->add_touching(motion_);
   }
   Components<dim> force = nodal_zero();
   if (body_.far) {
@@ -361,9 +424,10 @@ Eigen::MatrixXd StaticSystem<dim>::rigid_motions() const
       motions(row * block + dim + k, dim + k) = 1;
   };
   for (int i = 0; i < n_particles_; ++i)
-    put(i, get(body_.zone->state.reference, i), body_.zone->state.turns);
+    put(i, get(body_.zone->state.reference, i) + get(body_.zone->state.displacement, i),
+        body_.zone->state.turns);
   for (int i = 0; i < n_nodes_; ++i)
-    put(node_block(i), body_.far->mesh().nodes[i], false);
+    put(node_block(i), body_.far->mesh().nodes[i] + get(body_.far->displacement, i), false);
   for (int k = 0; k < size(); ++k)
     if (is_inert_[k])
       motions.row(k).setZero();

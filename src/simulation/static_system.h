@@ -30,8 +30,11 @@ public:
   /// A force in N that is round-off in this body: what a strain of 1e-15 would make act on a face.
   double round_off() const;
 
-  /// K y: minus what a small motion y about the reference makes act. Inert numbers of y count.
+  /// K y: minus what a small motion y makes act. Inert numbers of y count.
   Eigen::VectorXd stiffness_times(const Eigen::VectorXd &y);
+  /// From now on K is that about the present place; or again, as at first, about the reference.
+  void linearise_here();
+  void linearise_at_reference();
 
   /// T^T T y: nothing of it is in the y that T takes for no motion at all.
   Eigen::VectorXd folded(const Eigen::VectorXd &y);
@@ -78,12 +81,15 @@ public:
   /// Faces that touched in the state of the last forces(): both particles, and 1 where they stick.
   std::vector<std::array<int, 3>> touching() const;
 
-  /// Translations and rotations about the middle of the specimen, one column each, as motions y.
+  /// Translations of the present body and small rotations about the middle of the specimen, one
+  /// column each, as motions y.
   Eigen::MatrixXd rigid_motions() const;
 
 private:
   int node_block(int node) const { return n_particles_ + node; }
   void find_inert();
+  /// Forces and torques of the bonds about_, moved by scale times motion_'s velocities.
+  void compute_bonds_near(double scale);
   void take(const Eigen::VectorXd &y, particles::Particles<dim> &zone,
             Components<dim> &nodal) const;
   Eigen::VectorXd give(const particles::Particles<dim> &zone, const Components<dim> &nodal,
@@ -95,5 +101,7 @@ private:
   int n_particles_, n_nodes_;
   std::vector<char> is_inert_;       // of each number of y
   particles::Particles<dim> motion_; // scratch: a small motion of the zone
+  Place about_;                      // what K is linearised about; far is not asked for
+  bool is_at_reference_ = true;      // about_ is
 };
 } // namespace ligament::program

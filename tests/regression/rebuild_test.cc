@@ -101,7 +101,7 @@ std::string pulled(double velocity, const std::string &ramp)
 
 TEST_F(Rebuild, CrackedPlate)
 {
-  expect_the_same_run({"plate", examples + "cracked_plate/scene.json",
+  expect_the_same_run({"plate", examples + "cracked_plate/fast.json",
                        coarse("1.5 mm", "6.15 mm", "30 mm") + pulled(0.04, "0.4 ms"), 0.469e-3,
                        0.55e-3, 7});
 }

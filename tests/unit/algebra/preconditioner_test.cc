@@ -35,7 +35,7 @@ algebra::CgResult solve(const algebra::BlockMatrix &matrix, const algebra::Preco
 {
   return algebra::conjugate_gradients(
       [&](const VectorXd &p, VectorXd &ap) { matrix.multiply(p, ap); },
-      [&](const VectorXd &r, VectorXd &z) { near.apply(r, z); }, project, right, x,
+      [&](const VectorXd &r, VectorXd &z) { near.apply(r, z); }, project, project, right, x,
       1e-10 * right.norm(), 200);
 }
 
