@@ -230,8 +230,8 @@ private:
     if (auto *partial = std::get_if<PartialPoint *>(&p.target))
       **partial = value;
     else
-      for (std::size_t c = 0; c < 3; ++c)
-        (*std::get<Point *>(p.target))[c] = value[c].value_or(0);
+      for (std::size_t c = 0; c < 3; ++c) // 2D: z is what null would be
+        (*std::get<Point *>(p.target))[c] = value[c].value_or(p.null_value.value_or(0));
   }
 
   bool components(const Parameter &p, const JsonValue &json, const std::string &path,
