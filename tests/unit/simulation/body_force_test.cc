@@ -134,9 +134,10 @@ TEST(InitialMotion, SpinIsThatOfARigidBodyAboutItsCentre)
     for_each_point(small.body, [&](const Vector<2> &x, const Vector<2> &, const Vector<2> &v) {
       EXPECT_NEAR((v - 2e-4 * Vector<2>(-(x[1] + 5), x[0] - 3)).norm(), 0, 1e-14);
     });
-    if (small.body.zone)
+    if (small.body.zone) {
       for (const double spin : small.body.zone->state.spin[0])
         EXPECT_NEAR(spin, 2e-4, 1e-15);
+    }
   }
 }
 
