@@ -1,56 +1,27 @@
 #include "core/load.h"
 
-#include <cmath>
-
 namespace ligament::core
 {
-double Ramp::value(double t) const
-{
-  if (t <= 0)
-    return duration == 0 && t == 0 ? 1. : 0.;
-  if (t >= duration)
-    return 1;
-  const double s = t / duration;
-  return s - std::sin(2 * M_PI * s) / (2 * M_PI);
-}
-
-double Ramp::integral(double t) const
-{
-  if (t <= 0)
-    return 0;
-  if (t >= duration)
-    return t - duration / 2;
-  const double s = t / duration;
-  return duration * (s * s / 2 + (std::cos(2 * M_PI * s) - 1) / (4 * M_PI * M_PI));
-}
-
-double Ramp::rate(double t) const
-{
-  if (t <= 0 || t >= duration)
-    return 0;
-  return (1 - std::cos(2 * M_PI * t / duration)) / duration;
-}
-
 template <int dim>
 double BoundaryLoad<dim>::displacement(int c, double t) const
 {
-  return *value[c] * (kind == Kind::velocity ? ramp.integral(t) : ramp.value(t));
+  return *value[c] * (kind == Kind::velocity ? history.integral(t) : history.value(t));
 }
 
 template <int dim>
 double BoundaryLoad<dim>::velocity(int c, double t) const
 {
-  return *value[c] * (kind == Kind::velocity ? ramp.value(t) : ramp.rate(t));
+  return *value[c] * (kind == Kind::velocity ? history.value(t) : history.rate(t));
 }
 
 template <int dim>
 Vector<dim> BoundaryLoad<dim>::traction(double t) const
 {
   Vector<dim> p = Vector<dim>::Zero();
-  if (kind == Kind::traction)
+  if (kind == Kind::traction || kind == Kind::acceleration)
     for (int c = 0; c < dim; ++c)
       if (value[c])
-        p[c] = *value[c] * ramp.value(t);
+        p[c] = *value[c] * history.value(t);
   return p;
 }
 

@@ -1,40 +1,32 @@
-// Loads on the sides of the specimen and their growth in time; both models read the same ones.
+// Loads on parts of the specimen's sides, and their course in time; both models read the same ones.
 #pragma once
 
-#include "core/types.h"
+#include "core/part.h"
+#include "core/time_function.h"
 
 #include <algorithm>
 #include <optional>
 
 namespace ligament::core
 {
-/// Growth from 0 to 1 over `duration` seconds without a jump of the rate:
-/// f(t) = s - sin(2 pi s)/(2 pi), s = t/duration.
-struct Ramp
-{
-  double duration = 0; // s; 0: a step
-
-  double value(double t) const;
-  /// Integral of value from 0 to t, in s.
-  double integral(double t) const;
-  /// d(value)/dt, in 1/s.
-  double rate(double t) const;
-};
-
-/// What acts on one side of the specimen. A component without a value is free.
+/// What acts on one side of the specimen, or a part of it. A component without a value is free.
 template <int dim>
 struct BoundaryLoad
 {
   enum class Kind
   {
-    velocity,     // m/s: value * ramp.value(t)
-    displacement, // m: value * ramp.value(t)
-    traction      // Pa: value * ramp.value(t)
+    velocity,     // m/s: value * history.value(t)
+    displacement, // m: value * history.value(t)
+    traction,     // Pa: value * history.value(t)
+    acceleration  // m/s^2: value * history.value(t), of every mass of the body
   };
+  /// The boundary of an acceleration, which has none.
+  static constexpr int whole_body = -1;
   int boundary = 0;
   Kind kind = Kind::velocity;
   std::array<std::optional<double>, dim> value;
-  Ramp ramp;
+  TimeFunction history;
+  Part<dim> part;
   /// Waves leave through this side, beside the traction (theory.md eq. (A1)); kind traction only.
   bool absorbing = false;
   double absorbing_layer = 0; // m, width of the damping layer inside it; 0: dashpots alone
@@ -42,7 +34,7 @@ struct BoundaryLoad
   /// Prescribed displacement of component c at time t, in m (kinds velocity and displacement).
   double displacement(int c, double t) const;
   double velocity(int c, double t) const;
-  /// Prescribed traction, in Pa; zero for components without a value.
+  /// Given traction in Pa or acceleration in m/s^2; zero for components without a value.
   Vector<dim> traction(double t) const;
 };
 } // namespace ligament::core

@@ -45,6 +45,7 @@ public:
   std::vector<core::SkippedPart> skipped_parts() const override;
   const Overlap<dim> *overlap() const override { return &overlap_; }
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
+  std::vector<double> near_weight(const particles::Particles<dim> &particles) const override;
 
   /// Largest stable step of the near cells by themselves, in s.
   double near_stable_step() const;

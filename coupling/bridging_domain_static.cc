@@ -55,6 +55,16 @@ void BridgingDomain<dim>::subtract_near_stiffness(const Components<dim> &u,
   near_.write(force, nodal_force);
 }
 
+// Particles and nodes share the mass by the weights, and each its own part of the force.
+template <int dim>
+std::vector<double> BridgingDomain<dim>::near_weight(const particles::Particles<dim> &) const
+{
+  const Eigen::VectorXd weight = mass_ * Eigen::VectorXd::Ones(overlap_.n_nodes());
+  return {weight.begin(), weight.end()};
+}
+
+template std::vector<double> BridgingDomain<2>::near_weight(const particles::Particles<2> &) const;
+template std::vector<double> BridgingDomain<3>::near_weight(const particles::Particles<3> &) const;
 // The rest of the class is instantiated in its own file.
 template void BridgingDomain<2>::expand(particles::Particles<2> &, Components<2> &) const;
 template void BridgingDomain<3>::expand(particles::Particles<3> &, Components<3> &) const;

@@ -140,6 +140,10 @@ public:
   /// Scalar mass of the overlap's near nodes including the far field's share, kg.
   virtual Eigen::SparseMatrix<double> near_mass() const { return {}; }
 
+  /// Mass in kg on which a body force acts at each near node, beside the masses of the particles:
+  /// together with these it moves the overlap as one body.
+  virtual std::vector<double> near_weight(const particles::Particles<dim> &) const { return {}; }
+
 protected:
   core::Timers &timers_;
   const int forces_, motion_, far_, coupling_; // sections

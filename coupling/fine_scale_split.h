@@ -84,6 +84,7 @@ public:
   Eigen::SparseMatrix<double> near_stiffness() const override { return stiffness_; }
   /// M_c
   Eigen::SparseMatrix<double> near_mass() const override { return mass_; }
+  std::vector<double> near_weight(const particles::Particles<dim> &particles) const override;
 
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }

@@ -59,6 +59,20 @@ void FineScaleSplit<dim>::start_velocities(Bodies<dim> &bodies, const StepTime &
   take_velocities(bodies);
 }
 
+// What acts on the members reaches the nodes through Phi^T: the nodes get what is left of M_c.
+template <int dim>
+std::vector<double>
+FineScaleSplit<dim>::near_weight(const particles::Particles<dim> &particles) const
+{
+  Eigen::VectorXd weight = mass_ * Eigen::VectorXd::Ones(overlap_.n_nodes());
+  for (const auto &member : overlap_.members)
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+      weight[member.nodes[a]] -= member.value[a] * particles.mass[member.particle];
+  return {weight.begin(), weight.end()};
+}
+
+template std::vector<double> FineScaleSplit<2>::near_weight(const particles::Particles<2> &) const;
+template std::vector<double> FineScaleSplit<3>::near_weight(const particles::Particles<3> &) const;
 // The rest of the class is instantiated in its own file.
 template void FineScaleSplit<2>::expand(particles::Particles<2> &, Components<2> &) const;
 template void FineScaleSplit<3>::expand(particles::Particles<3> &, Components<3> &) const;

@@ -22,7 +22,7 @@ void Coupler<dim>::compute_trial(Bodies<dim> &bodies, double time, double noted_
                                  Components<dim> &nodal_force) const
 {
   if (bodies.zone)
-    bodies.zone->force->compute_trial(bodies.zone->state, time, noted_share);
+    bodies.zone->compute_trial(time, noted_share);
   if (bodies.far) {
     bodies.far->compute_trial(time);
     nodal_force = bodies.far->force;

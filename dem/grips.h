@@ -15,7 +15,7 @@ std::vector<core::BoundaryLoad<dim>> grips(double opening_rate, double ramp = 0)
   for (int k = 0; k < 2; ++k) {
     loads[k].boundary = 2 + k;
     loads[k].value[1] = (k == 0 ? -0.5 : 0.5) * opening_rate;
-    loads[k].ramp.duration = ramp;
+    loads[k].history = core::Ramp{ramp};
   }
   return loads;
 }

@@ -14,33 +14,64 @@ SurfaceLoads<dim>::SurfaceLoads(const packings::Packing<dim> &packing, const Mat
     : loads_(std::move(loads)), displacement_(loads_.size(), Vector<dim>::Zero()),
       traction_(displacement_), has_begun_(loads_.size(), 0)
 {
-  using Kind = typename core::BoundaryLoad<dim>::Kind;
-  for (const auto &face : packing.boundary_faces) {
-    const double shear_modulus = materials.of(face.i).shear_modulus();
-    WallFace<dim> wall{face.i, face.normal,         face.lever, face.area,
-                       face.q, Vector<dim>::Zero(), {},         shear_modulus};
-    wall.load.fill(-1);
-    for (std::size_t l = 0; l < loads_.size(); ++l)
-      if (loads_[l].boundary == face.boundary && loads_[l].kind != Kind::traction)
-        for (int c = 0; c < dim; ++c)
-          if (loads_[l].value[c]) {
-            core::require(
-                wall.load[c] < 0,
-                fmt::format("two loads prescribe component {} on boundary {}", c, face.boundary));
-            wall.prescribed[c] = 1;
-            wall.load[c] = int(l);
-          }
-    if (wall.prescribed.any())
-      walls_.push_back(wall);
-    for (std::size_t l = 0; l < loads_.size(); ++l)
-      if (loads_[l].boundary == face.boundary && loads_[l].kind == Kind::traction)
-        tractions_.push_back({face.i, face.lever, face.area, int(l),
-                              Vector<dim>(Vector<dim>::Ones() - wall.prescribed), shear_modulus});
-  }
+  for (const auto &face : packing.boundary_faces)
+    add_faces(packings::OuterFace<dim>(face, packing), materials.of(face.i).shear_modulus());
   for (std::size_t w = 0; w < walls_.size(); ++w)
     faces_of_[walls_[w].i][0].push_back(int(w));
   for (std::size_t f = 0; f < tractions_.size(); ++f)
     faces_of_[tractions_[f].i][1].push_back(int(f));
+}
+
+// Loads that hold the same part of the face make one wall, so that all components of it are told
+// the same by the particle.
+template <int dim>
+void SurfaceLoads<dim>::add_faces(const packings::OuterFace<dim> &face, double shear_modulus)
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  struct Held
+  {
+    core::Part<dim> part;
+    WallFace<dim> wall;
+  };
+  std::vector<Held> held;
+  const auto wall_of = [&](const core::Part<dim> &part) -> WallFace<dim> * {
+    for (Held &h : held)
+      if (h.part == part)
+        return &h.wall;
+    const auto inside = face.inside({part});
+    if (!inside)
+      return nullptr;
+    WallFace<dim> wall{face.of.i,    face.of.normal, inside->lever,
+                       inside->area, face.of.q,      Vector<dim>::Zero(),
+                       {},           shear_modulus};
+    wall.load.fill(-1);
+    held.push_back({part, wall});
+    return &held.back().wall;
+  };
+  for (std::size_t l = 0; l < loads_.size(); ++l)
+    if (loads_[l].boundary == face.of.boundary && loads_[l].kind != Kind::traction)
+      if (WallFace<dim> *wall = wall_of(loads_[l].part))
+        for (int c = 0; c < dim; ++c)
+          if (loads_[l].value[c]) {
+            core::require(wall->load[c] < 0,
+                          fmt::format("two loads prescribe component {} on boundary {}", c,
+                                      face.of.boundary));
+            wall->prescribed[c] = 1;
+            wall->load[c] = int(l);
+          }
+  for (const Held &h : held)
+    if (h.wall.prescribed.any())
+      walls_.push_back(h.wall);
+  for (std::size_t l = 0; l < loads_.size(); ++l)
+    if (loads_[l].boundary == face.of.boundary && loads_[l].kind == Kind::traction)
+      if (const auto inside = face.inside({loads_[l].part})) {
+        Vector<dim> acting = Vector<dim>::Ones();
+        for (const Held &h : held)
+          if (face.inside({loads_[l].part, h.part}))
+            acting -= acting.cwiseProduct(h.wall.prescribed);
+        tractions_.push_back(
+            {face.of.i, inside->lever, inside->area, int(l), acting, shear_modulus});
+      }
 }
 
 template <int dim>

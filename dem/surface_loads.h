@@ -5,6 +5,7 @@
 #include "core/load.h"
 #include "dem/loaded_faces.h"
 #include "dem/parts/force_part.h"
+#include "packings/outer_face.h"
 
 #include <map>
 
@@ -56,6 +57,8 @@ public:
   int n_loads() const { return int(loads_.size()); }
 
 private:
+  /// What the loads make of it.
+  void add_faces(const packings::OuterFace<dim> &face, double shear_modulus);
   Vector<dim> relative(const WallFace<dim> &wall, const Particles &p, bool has_loads) const;
   Vector<dim> traction(const TractionFace<dim> &face, bool has_loads) const;
   /// On the particle, in N.

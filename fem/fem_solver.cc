@@ -3,11 +3,13 @@
 #include "core/check.h"
 #include "fem/cell_kernel.h"
 #include "fem/corotated_kernel.h"
+#include "fem/part_shares.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace ligament::fem
 {
@@ -65,10 +67,13 @@ void FemSolver<dim>::find_held_components()
         for (const int a : face_nodes<dim>(face.face))
           for (int c = 0; c < dim; ++c) {
             const int node = mesh_.cells[face.cell][a];
+            const double tolerance = 1e-9 * mesh_.cell_size[face.cell].minCoeff();
+            if (!loads_[l].part.holds(mesh_.nodes[node], tolerance))
+              continue;
             if (!loads_[l].value[c] || held_[c][node] || is_hanging[node])
               continue;
             held_[c][node] = 1;
-            held_components_.push_back({node, c, l, 0});
+            held_components_.push_back({node, c, l, 0, false});
           }
 }
 
@@ -102,14 +107,38 @@ void FemSolver<dim>::update_own_cells()
   for (int l = 0; l < int(loads_.size()); ++l) {
     if (loads_[l].kind != core::BoundaryLoad<dim>::Kind::traction)
       continue;
-    const std::vector<double> area = side_areas(loads_[l].boundary);
+    const std::vector<double> area = loaded_areas(loads_[l]);
     for (int c = 0; c < dim; ++c)
       for (int i = 0; i < mesh_.n_nodes(); ++i)
         if (loads_[l].value[c] && area[i] > 0)
-          traction_components_.push_back({i, c, l, area[i]});
+          traction_components_.push_back({i, c, l, area[i], false});
   }
+  add_body_forces();
   has_previous_forces_ = false;
   find_dashpots();
+}
+
+template <int dim>
+void FemSolver<dim>::add_body_forces()
+{
+  std::vector<double> weight = mass_;
+  for (const auto &[node, mass] : weights_)
+    weight[node] = mass;
+  for (int l = 0; l < int(loads_.size()); ++l)
+    if (loads_[l].kind == core::BoundaryLoad<dim>::Kind::acceleration)
+      for (int c = 0; c < dim; ++c)
+        for (int i = 0; i < mesh_.n_nodes(); ++i)
+          if (loads_[l].value[c] && weight[i] != 0)
+            traction_components_.push_back({i, c, l, weight[i], true});
+}
+
+template <int dim>
+void FemSolver<dim>::set_weights(const std::vector<int> &nodes, const std::vector<double> &masses)
+{
+  weights_.clear();
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    weights_.emplace_back(nodes[k], masses[k]);
+  update_own_cells();
 }
 
 template <int dim>
@@ -126,6 +155,42 @@ std::vector<double> FemSolver<dim>::side_areas(int boundary, bool times_depth) c
     }
   hand_to_masters(area);
   return area;
+}
+
+template <int dim>
+std::vector<double> FemSolver<dim>::loaded_areas(const core::BoundaryLoad<dim> &load) const
+{
+  if (load.part.is_whole())
+    return side_areas(load.boundary);
+  std::vector<double> area(mesh_.n_nodes(), 0.);
+  for (const CellFace<dim> &face : mesh_.boundary_faces)
+    if (face.boundary == load.boundary && is_own_cell_[face.cell]) {
+      const auto shares = part_shares<dim>(load.part, mesh_.cell_lower[face.cell],
+                                           mesh_.cell_size[face.cell], face.face);
+      for (const int a : face_nodes<dim>(face.face))
+        area[mesh_.cells[face.cell][a]] += body_.thickness * shares[a];
+    }
+  hand_to_masters(area);
+  return area;
+}
+
+template <int dim>
+double FemSolver<dim>::loaded_area(int load) const
+{
+  double sum = 0;
+  for (const double area : loaded_areas(loads_[load]))
+    sum += area;
+  return sum;
+}
+
+template <int dim>
+int FemSolver<dim>::n_held_nodes(int load) const
+{
+  std::set<int> nodes;
+  for (const LoadedComponent &h : held_components_)
+    if (h.load == load)
+      nodes.insert(h.node);
+  return int(nodes.size());
 }
 
 template <int dim>
@@ -182,6 +247,9 @@ void FemSolver<dim>::release_cells(const std::vector<int> &cells)
     for (const auto &load : loads_)
       core::require(is_own_cell_[face.cell] || face.boundary != load.boundary ||
                         load.kind != core::BoundaryLoad<dim>::Kind::traction ||
+                        part_shares<dim>(load.part, mesh_.cell_lower[face.cell],
+                                         mesh_.cell_size[face.cell], face.face)
+                                .sum() <= 0 ||
                         std::none_of(load.value.begin(), load.value.end(),
                                      [](const auto &v) { return bool(v); }),
                     "the overlap or its transition reaches a side of the specimen with a traction; "
@@ -380,7 +448,7 @@ void FemSolver<dim>::book_work()
   for (auto *components : {&held_components_, &traction_components_})
     for (LoadedComponent &c : *components) {
       const double u = displacement[c.component][c.node];
-      if (has_previous_forces_ && !released_node_[c.node])
+      if (has_previous_forces_ && (c.counts_when_released || !released_node_[c.node]))
         external_work_ += (c.old_force + c.force) / 2 * (u - c.old_displacement);
       c.old_force = c.force;
       c.old_displacement = u;
@@ -393,8 +461,9 @@ bool FemSolver<dim>::is_loaded(double time) const
 {
   const auto acts = [&](const LoadedComponent &c) {
     const core::BoundaryLoad<dim> &load = loads_[c.load];
-    return (load.kind == core::BoundaryLoad<dim>::Kind::traction ? load.traction(time)[c.component]
-                                                                 : prescribed(c, time)) != 0;
+    const bool is_given = load.kind == core::BoundaryLoad<dim>::Kind::traction ||
+                          load.kind == core::BoundaryLoad<dim>::Kind::acceleration;
+    return (is_given ? load.traction(time)[c.component] : prescribed(c, time)) != 0;
   };
   return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
          std::any_of(traction_components_.begin(), traction_components_.end(), acts);
@@ -404,8 +473,7 @@ template <int dim>
 Vector<dim> FemSolver<dim>::reaction(int load) const
 {
   const auto &l = loads_[load];
-  const bool is_jump =
-      l.kind == core::BoundaryLoad<dim>::Kind::displacement && l.ramp.duration == 0;
+  const bool is_jump = l.kind == core::BoundaryLoad<dim>::Kind::displacement && l.history.jumps();
   Vector<dim> sum = Vector<dim>::Zero();
   for (const auto *components : {&held_components_, &traction_components_})
     for (const LoadedComponent &c : *components)

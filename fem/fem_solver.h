@@ -49,6 +49,10 @@ public:
   /// From now on the cells (by index) belong to the coupler.
   void release_cells(const std::vector<int> &cells);
 
+  /// Mass in kg on which accelerations act at nodes that a coupler moves; at all others it is the
+  /// lumped mass.
+  void set_weights(const std::vector<int> &nodes, const std::vector<double> &masses);
+
   /// Whether every cell turns with its material (theory.md eq. (F6)); else rotations must stay
   /// small. Takes effect with the next compute_forces.
   void set_corotated(bool corotated);
@@ -144,6 +148,11 @@ public:
   /// forces. Index as in the list given to the constructor.
   Vector<dim> reaction(int load) const;
 
+  /// Of a traction: the area in m^2 on which it acts on the own cells.
+  double loaded_area(int load) const;
+  /// Number of the nodes that the load holds.
+  int n_held_nodes(int load) const;
+
   /// Motion, absorbing sides and what the next work is booked against, between drift and
   /// compute_forces, as the tables "nodes", "loaded_nodes", "far_dashpots" and "far_field". Names
   /// of nodes: node_names(). Nodes without rows stay as they are.
@@ -163,7 +172,8 @@ private:
   struct LoadedComponent
   {
     int node, component, load;
-    double area;                                // m^2, of tractions: the node's share of the side
+    double area; // m^2, of tractions: the node's share of the side; of accelerations its mass, kg
+    bool counts_when_released = false;          // its work is booked whoever moves the node
     double force = 0;                           // N, on the body, at the last compute_forces
     double old_force = 0, old_displacement = 0; // at the one before
   };
@@ -172,6 +182,9 @@ private:
   void update_own_cells();
   /// Of the own cells, per node, in m^2; times the cells' extent along the normal in m^3.
   std::vector<double> side_areas(int boundary, bool times_depth = false) const;
+  /// Shares of the nodes in the part that the load acts on, in m^2; of the own cells.
+  std::vector<double> loaded_areas(const core::BoundaryLoad<dim> &load) const;
+  void add_body_forces();
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
   /// Displacement of a held component at a time in s, in m.
@@ -199,6 +212,7 @@ private:
   std::unique_ptr<CellKernel<dim>> kernel_;
   std::unique_ptr<CorotatedKernel<dim>> corotated_; // null: linear
   std::vector<double> mass_, inverse_mass_;
+  std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;
   core::Dashpots<dim> dashpots_;
   double external_work_ = 0;

@@ -17,7 +17,13 @@ struct PartSum
   double distance;
   double area;
   Vector<dim> moment;
+  std::vector<Vector<dim>> corners; // empty where it has several pieces
 };
+
+constexpr bool is_side(int id)
+{
+  return id <= first_side_plane && id > first_void_plane;
+}
 
 /// The Voronoi cell of all kept lattice points and the flat sides of the specimen.
 template <int dim>
@@ -93,11 +99,16 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
 {
   std::vector<PartSum<dim>> sums;
   for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &convex, double sign) {
-    for (const auto &face : convex.faces()) {
+    const auto faces = convex.faces();
+    for (std::size_t k = 0; k < faces.size(); ++k) {
+      const auto &face = faces[k];
       auto sum =
           std::find_if(sums.begin(), sums.end(), [&](const auto &s) { return s.id == face.id; });
-      if (sum == sums.end())
-        sum = sums.insert(sum, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero()});
+      const bool is_first = sum == sums.end();
+      if (is_first)
+        sum = sums.insert(sum, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero(), {}});
+      if (dim == 3 && is_side(face.id))
+        sum->corners = is_first && sign > 0 ? convex.corners(k) : std::vector<Vector<dim>>();
       sum->area += sign * face.area;
       sum->moment += sign * face.area * face.centroid;
       volume += sign * face.area * face.distance / dim;
@@ -112,7 +123,7 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
         radius = std::max(radius, corner.norm());
       }
   });
-  for (const PartSum<dim> &sum : sums) {
+  for (PartSum<dim> &sum : sums) {
     if (std::abs(sum.area) < 1e-12 * std::pow(spacing, dim - 1))
       continue;
     if (sum.id >= 0)
@@ -120,8 +131,8 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
     else if (sum.id == start_plane)
       is_open = true;
     else if (sum.id > first_void_plane)
-      parts.push_back(
-          {-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area, sum.moment});
+      parts.push_back({-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area,
+                       sum.moment, std::move(sum.corners)});
     else // area and moment of what was taken away are negative, the normal leads out of the void
       parts.push_back({-1, inner_surface<dim>, -sum.normal, -sum.distance, -sum.area, -sum.moment});
   }

@@ -39,6 +39,8 @@ struct ClippedCell
     double distance;    // m, from the centre to the plane
     double area;        // m^(dim-1)
     Vector<dim> moment; // area times centroid, about the centre
+    /// About the centre, in turn: of 3D faces on a side of the specimen that no void cuts.
+    std::vector<Vector<dim>> corners = {};
   };
 
   /// What the voids leave of a cell around x that was already cut by its neighbours and the sides

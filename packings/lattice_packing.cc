@@ -174,8 +174,8 @@ void Packer<dim>::add_irregular_faces(int i, const Index &k)
   for (const auto &part : irregular_[irregular_of_[i]].parts) {
     const Vector<dim> lever = part.moment / part.area;
     if (part.neighbour < 0) {
-      packing_.boundary_faces.push_back(
-          {i, part.normal, part.area * thickness_, part.distance, lever, part.boundary});
+      packing_.boundary_faces.push_back({i, part.normal, part.area * thickness_, part.distance,
+                                         lever, part.boundary, part.corners});
       continue;
     }
     const LatticeNeighbour<dim> &n = lattice_.reachable[part.neighbour];

@@ -34,6 +34,8 @@ struct BoundaryFace
   double q;           // m, distance from the centre to the face plane
   Vector<dim> lever;  // m, from the centre to the centroid of the face
   int boundary;       // side of the box, or inner_surface<dim>
+  /// m, from the centre, in turn: of 3D faces on a side that no void cuts.
+  std::vector<Vector<dim>> corners = {};
 };
 
 /// A half of the neighbours of a lattice particle; the other half are the opposite directions.

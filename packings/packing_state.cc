@@ -72,6 +72,40 @@ std::vector<std::int64_t> wide(const std::vector<int> &values)
 {
   return {values.begin(), values.end()};
 }
+
+/// One row for each corner; its keys are the number of the face, and its own there.
+template <int dim>
+core::Table corners_of(const std::vector<BoundaryFace<dim>> &faces)
+{
+  std::vector<std::int64_t> keys;
+  std::vector<Vector<dim>> corners;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t k = 0; k < faces[f].corners.size(); ++k) {
+      keys.insert(keys.end(), {std::int64_t(f), std::int64_t(k)});
+      corners.push_back(faces[f].corners[k]);
+    }
+  core::Table table(std::move(keys), 2);
+  for (int c = 0; c < dim; ++c) {
+    std::vector<double> column;
+    for (const Vector<dim> &corner : corners)
+      column.push_back(corner[c]);
+    table.add("place_" + std::to_string(c), column);
+  }
+  return table;
+}
+
+template <int dim>
+void read_corners(const core::Table &table, std::vector<BoundaryFace<dim>> &faces)
+{
+  std::vector<Vector<dim>> corners(table.n_rows());
+  for (int c = 0; c < dim; ++c) {
+    const auto column = table.reals("place_" + std::to_string(c));
+    for (std::size_t r = 0; r < corners.size(); ++r)
+      corners[r][c] = column[r];
+  }
+  for (std::size_t r = 0; r < corners.size(); ++r)
+    faces[std::size_t(table.keys()[2 * r])].corners.push_back(corners[r]);
+}
 } // namespace
 
 template <int dim>
@@ -111,6 +145,8 @@ void save_packing(core::State &state, const RandomPacking<dim> &random)
   add_vectors<dim>(outer, "lever", p.boundary_faces, [](const B &f) { return f.lever; });
   add_numbers(outer, "boundary", p.boundary_faces, [](const B &f) { return f.boundary; });
   state["outer_faces"] = std::move(outer);
+  if (dim == 3)
+    state["outer_corners"] = corners_of(p.boundary_faces);
 
   core::Table seeds = numbered(random.seeds.centre.size());
   add_vectors<dim>(seeds, "centre", random.seeds.centre, [](const Vector<dim> &x) { return x; });
@@ -171,6 +207,8 @@ RandomPacking<dim> load_packing(const core::State &state, const SpecimenParamete
   read_vectors<dim>(outer, "lever", p.boundary_faces,
                     [](B &f) -> Vector<dim> & { return f.lever; });
   read_integers(outer, "boundary", p.boundary_faces, [](B &f) -> int & { return f.boundary; });
+  if (dim == 3)
+    read_corners(core::table(state, "outer_corners"), p.boundary_faces);
 
   const core::Table &seeds = core::table(state, "seeds");
   random.seeds.centre.resize(seeds.n_rows());

@@ -158,7 +158,7 @@ void Packer<dim>::join_faces()
       const double area = part.area * thickness_;
       if (part.neighbour < 0) {
         packing_.boundary_faces.push_back(
-            {i, part.normal, area, part.distance, lever, part.boundary});
+            {i, part.normal, area, part.distance, lever, part.boundary, part.corners});
         continue;
       }
       const int j = particle_of_[part.neighbour];

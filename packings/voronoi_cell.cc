@@ -194,6 +194,15 @@ auto VoronoiCell<dim>::faces() const -> std::vector<Face>
 }
 
 template <int dim>
+std::vector<Vector<dim>> VoronoiCell<dim>::corners(std::size_t k) const
+{
+  std::vector<Vector<dim>> corners;
+  for (const int v : planes_[k].loop)
+    corners.push_back(vertices_[v]);
+  return corners;
+}
+
+template <int dim>
 double VoronoiCell<dim>::volume() const
 {
   double sum = 0;

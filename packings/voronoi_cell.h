@@ -39,6 +39,8 @@ public:
   Vector<dim> moment() const;
   /// Degenerate faces may come with zero area; an id may come more than once.
   std::vector<Face> faces() const;
+  /// Corners of the k-th of them in turn.
+  std::vector<Vector<dim>> corners(std::size_t k) const;
 
 private:
   struct Plane

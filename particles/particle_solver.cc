@@ -38,6 +38,8 @@ void ParticleSolver<dim>::save(core::State &all) const
   state.save(all, names);
   force->save(all, names, state);
   dashpots.save(all, "particle_dashpots", names);
+  if (!body_force.is_empty())
+    body_force.save(all);
   if (rest_)
     rest_->save(all, names);
 }
@@ -49,6 +51,8 @@ void ParticleSolver<dim>::load(const core::State &all)
   state.load(all, names);
   force->load(all, names, state);
   dashpots.load(all, "particle_dashpots", names);
+  if (!body_force.is_empty())
+    body_force.load(all);
   if (rest_ && all.count("blocks"))
     rest_->load(all, names);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/dashpots.h"
+#include "particles/body_force.h"
 #include "particles/particle_force.h"
 
 #include <memory>
@@ -24,7 +25,21 @@ public:
   /// Of particles that are seen, but not stepped: one process has none.
   void update_ghosts() {}
 
-  void compute_forces(double time) { force->compute(state, time); }
+  void compute_forces(double time)
+  {
+    force->compute(state, time);
+    if (body_force.is_empty())
+      return;
+    body_force.add_forces(state, time);
+    body_force.book_work(state, time);
+  }
+  /// The same of a state at rest that the body may not stay in: see ParticleForce.
+  void compute_trial(double time, double noted_share)
+  {
+    force->compute_trial(state, time, noted_share);
+    if (!body_force.is_empty())
+      body_force.add_forces(state, time);
+  }
 
   double potential_energy() const { return force->potential_energy(state); }
 
@@ -59,6 +74,7 @@ public:
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
   core::Dashpots<dim> dashpots; // of absorbing sides
+  BodyForce<dim> body_force;
 
 private:
   /// visit(begin, end) for the particles that take the step.

@@ -75,6 +75,9 @@ Json value_json(const Parameter &p, int dimension)
     return object;
   }
   Json list = Json::array();
+  if (auto *x = std::get_if<std::vector<NumberPair> *>(&p.target))
+    for (const NumberPair &pair : **x)
+      list.push_back(pair);
   if (auto *x = std::get_if<std::vector<Point> *>(&p.target))
     for (const Point &point : **x)
       list.push_back(point_json(p, point, dimension));
@@ -238,6 +241,13 @@ Json value_schema(const Parameter &p)
   }
   case Kind::points:
     return {{"type", "array"}, {"items", vector_schema(p)}};
+  case Kind::table: {
+    const Json pair = {{"type", "array"},
+                       {"items", Json::array({number_schema(p), Json{{"type", "number"}}})},
+                       {"minItems", 2},
+                       {"maxItems", 2}};
+    return {{"type", "array"}, {"items", pair}};
+  }
   case Kind::members:
     return {{"type", "object"}};
   case Kind::list:

@@ -148,6 +148,8 @@ std::string Parameter::type(int dimension) const
                             : "a number (2D) or a list of 3 numbers (3D)" + unit_text;
   case Kind::points:
     return "a list of points, each " + components;
+  case Kind::table:
+    return "a list of pairs [a number" + unit_text + ", a number]";
   case Kind::members:
     return "an object of keys and values";
   case Kind::section: {

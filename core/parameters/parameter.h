@@ -18,6 +18,7 @@ namespace ligament::core
 class ParameterSection;
 
 using Point = std::array<double, 3>;
+using NumberPair = std::array<double, 2>;
 using PartialPoint = std::array<std::optional<double>, 3>;
 
 /// An enum, reached by the index of its word in Parameter::choices; -1: not given.
@@ -70,6 +71,7 @@ struct Parameter
     vector,   // one number per dimension
     rotation, // 2D: an angle, 3D: a rotation vector
     points,   // list of vectors
+    table,    // list of pairs: a number in the unit, and one without
     members,  // keys of another table with their values, kept as they were written
     section,
     list // of sections
@@ -80,9 +82,10 @@ struct Parameter
     required,
     conditional // checked where the condition is known; absent values are zero or empty
   };
-  using Target = std::variant<std::monostate, double *, int *, bool *, std::string *,
-                              std::optional<double> *, Point *, PartialPoint *,
-                              std::vector<Point> *, std::vector<JsonMember> *, Choice>;
+  using Target =
+      std::variant<std::monostate, double *, int *, bool *, std::string *, std::optional<double> *,
+                   Point *, PartialPoint *, std::vector<Point> *, std::vector<NumberPair> *,
+                   std::vector<JsonMember> *, Choice>;
 
   std::string key;
   Kind kind = Kind::ignored;

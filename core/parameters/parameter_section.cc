@@ -59,6 +59,12 @@ Parameter &ParameterSection::add(const std::string &key, std::vector<Point> &tar
   return insert(key, Kind::points, &target, text);
 }
 
+Parameter &ParameterSection::add(const std::string &key, std::vector<NumberPair> &target,
+                                 const std::string &text)
+{
+  return insert(key, Kind::table, &target, text);
+}
+
 Parameter &ParameterSection::add(const std::string &key, std::vector<JsonMember> &target,
                                  const std::string &text)
 {

@@ -25,6 +25,8 @@ public:
   Parameter &add(const std::string &key, Point &target, const std::string &text);
   Parameter &add(const std::string &key, PartialPoint &target, const std::string &text);
   Parameter &add(const std::string &key, std::vector<Point> &target, const std::string &text);
+  /// A list of pairs [x, y]: x in the unit, y without one.
+  Parameter &add(const std::string &key, std::vector<NumberPair> &target, const std::string &text);
   /// Keys of another table, for the program to read later.
   Parameter &add(const std::string &key, std::vector<JsonMember> &target, const std::string &text);
 

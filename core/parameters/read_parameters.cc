@@ -130,6 +130,8 @@ private:
       return list(p, json, path, label);
     case Kind::points:
       return points(p, json, path, label);
+    case Kind::table:
+      return table(p, json, path, label);
     case Kind::members:
       if (!json.is(JsonKind::object))
         return wrong_type(p, json, path, label);
@@ -195,6 +197,29 @@ private:
     }
   }
 
+  void table(const Parameter &p, const JsonValue &json, const std::string &path,
+             const std::string &label)
+  {
+    if (!json.is(JsonKind::array))
+      return wrong_type(p, json, path, label);
+    auto &target = *std::get<std::vector<NumberPair> *>(p.target);
+    target.clear();
+    for (std::size_t k = 0; k < json.elements.size(); ++k) {
+      const JsonValue &row = json.elements[k];
+      const std::string row_path = path + "/" + std::to_string(k);
+      if (!row.is(JsonKind::array) || row.elements.size() != 2 ||
+          !row.elements[1].is(JsonKind::number)) {
+        error(row.place, row_path,
+              fmt::format("row {} of {} is no pair [{}, a number]", k + 1, label, number_type(p)),
+              p.text, "give " + p.type(dimension_));
+        continue;
+      }
+      if (const auto first = number(p, row.elements[0], row_path + "/0",
+                                    fmt::format("row {} of {}", k + 1, label)))
+        target.push_back({*first, row.elements[1].number});
+    }
+  }
+
   void vector(const Parameter &p, const JsonValue &json, const std::string &path,
               const std::string &label)
   {
@@ -205,8 +230,8 @@ private:
     if (auto *partial = std::get_if<PartialPoint *>(&p.target))
       **partial = value;
     else
-      for (std::size_t c = 0; c < 3; ++c)
-        (*std::get<Point *>(p.target))[c] = value[c].value_or(0);
+      for (std::size_t c = 0; c < 3; ++c) // 2D: z is what null would be
+        (*std::get<Point *>(p.target))[c] = value[c].value_or(p.null_value.value_or(0));
   }
 
   bool components(const Parameter &p, const JsonValue &json, const std::string &path,

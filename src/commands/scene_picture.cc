@@ -164,13 +164,43 @@ Segments outline(const Side<dim> &side, double inside, Color color, double width
   return lines;
 }
 
+/// Those of the places that the load acts on; the middle of its part where none is.
+template <int dim>
+std::vector<std::array<double, 3>> loaded_places(const LoadParameters &load, const Side<dim> &side,
+                                                 int density)
+{
+  auto places = side.places(density);
+  const auto part = part_of<dim>(load);
+  places.erase(std::remove_if(places.begin(), places.end(),
+                              [&](const auto &place) {
+                                return !part.holds(Vector<dim>(place.data()), 1e-9 * side.size());
+                              }),
+               places.end());
+  if (!places.empty())
+    return places;
+  std::array<double, 3> middle = {};
+  const auto piece =
+      part.clip(core::side_corners<dim>(side.lower, side.upper, 2 * side.axis + side.is_upper));
+  for (int c = 0; c < dim && !piece.empty(); ++c)
+    middle[c] = core::face_centroid<dim>(piece)[c];
+  for (int c = 0; c < dim && piece.empty(); ++c) // a point
+    middle[c] = c == side.axis ? (side.is_upper ? side.upper : side.lower)[c]
+                : load.from    ? *load.from
+                               : std::max(load.within.lower[c], side.lower[c]);
+  return {middle};
+}
+
 /// Short slanted lines on the outer side of a held side.
 template <int dim>
-Segments hatching(const Side<dim> &side)
+Segments hatching(const LoadParameters &load, const Side<dim> &side)
 {
-  Segments lines = outline(side, 0, held_color, 2, false);
+  Segments lines;
+  if (part_of<dim>(load).is_whole())
+    lines = outline(side, 0, held_color, 2, false);
+  lines.color = held_color;
+  lines.width = 2;
   const double depth = 0.02 * side.size();
-  for (const auto &place : side.places(40)) {
+  for (const auto &place : loaded_places(load, side, 40)) {
     auto outer = place;
     outer[side.axis] += side.is_upper ? depth : -depth;
     outer[side.axis == 0 ? 1 : 0] -= depth;
@@ -197,8 +227,11 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
 {
   const Side<dim> side{body.lower, body.upper, load.boundary / 2, load.boundary % 2 == 1};
   const std::string &name = side_names[load.boundary];
-  const bool is_traction = load.kind == LoadKind::traction;
-  const std::string unit = load.kind == LoadKind::velocity ? "m/s" : is_traction ? "Pa" : "m";
+  const bool is_traction = load.kind == LoadKind::traction || load.kind == LoadKind::force;
+  const std::string unit = load.kind == LoadKind::velocity ? "m/s"
+                           : load.kind == LoadKind::force  ? "N"
+                           : is_traction                   ? "Pa"
+                                                           : "m";
   const Color color = is_traction ? traction_color : motion_color;
 
   std::array<double, 3> direction = {};
@@ -206,7 +239,7 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
     direction[c] = load.value[c].value_or(0);
   const double outward = direction[side.axis] * (side.is_upper ? 1 : -1);
   if (direction != std::array<double, 3>{}) {
-    for (const auto &place : side.places(dim == 2 ? 12 : 6))
+    for (const auto &place : loaded_places(load, side, dim == 2 ? 12 : 6))
       picture.arrows.push_back({place, direction, outward < 0, color});
     picture.legend.push_back(
         {name + ": " + word_of(load.kind) + component_text(load.value, unit, false), color,
@@ -214,7 +247,7 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
   }
   if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction)
   {
-    picture.segments.push_back(hatching(side));
+    picture.segments.push_back(hatching(load, side));
     picture.legend.push_back({name + ": held in" + held, held_color, Mark::line});
   }
   if (load.absorbing) {

@@ -23,12 +23,14 @@ std::vector<std::string> kinds_of(const LoadParameters &load)
     kinds.push_back("displacement");
   if (has_components(load.traction))
     kinds.push_back("traction");
+  if (has_components(load.force))
+    kinds.push_back("force");
   return kinds;
 }
 
 bool acts_on(const LoadParameters &load, int c)
 {
-  return load.velocity[c] || load.displacement[c] || load.traction[c];
+  return load.velocity[c] || load.displacement[c] || load.traction[c] || load.force[c];
 }
 
 /// What "absorbing" excludes, alone and with the loads before.
@@ -70,13 +72,15 @@ void check_twice(const Scene &scene, std::size_t k, const std::string &key, Find
   for (std::size_t j = 0; j < k; ++j)
     for (int c = 0; c < scene.dimension; ++c)
       if (scene.loads[j].boundary == load.boundary && acts_on(load, c) &&
-          acts_on(scene.loads[j], c))
+          acts_on(scene.loads[j], c) && act_on_common_area(scene, load, scene.loads[j]))
         return f.error(
             key + "/boundary",
             fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice", key,
                         "xyz"[c], side_names[load.boundary]),
             fmt::format("/loads/{} acts on it already", j),
-            "keep one of the two, or set the component to null in one");
+            "keep one of the two, set the component to null in one, or let them act on parts of "
+            "the "
+            "side that do not overlap");
 }
 
 /// Whether several boxes leave no gap in this side of the specimen, down to a depth in m.
@@ -120,12 +124,14 @@ void check_layer(const Scene &scene, const LoadParameters &load, const std::stri
             "make the layer thinner, or move the side away from the zone");
 }
 
-void check_against_overlap(const LoadParameters &load, const std::string &key, const Layout &layout,
-                           Findings &f)
+void check_against_overlap(const Scene &scene, const LoadParameters &load, const std::string &key,
+                           const Layout &layout, Findings &f)
 {
   const int side = load.boundary, axis = side / 2;
   if (!layout.coupled || layout.coupled_side[side])
     return;
+  if (load.from || load.to || !load.within.is_everything())
+    return check_part_against_overlap(scene, load, key, layout, f);
   if (!layout.boxes.boxes.empty()) {
     if (!cover_side(layout, side, 0))
       f.error(
@@ -169,19 +175,23 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     }
     const std::vector<std::string> kinds = kinds_of(load);
     if (kinds.empty() && !load.absorbing)
-      f.error(key, fmt::format("{} has no \"velocity\", \"displacement\" or \"traction\"", key),
-              "a load without components does nothing",
-              "add one of them or \"absorbing\", or remove the load");
+      f.error(
+          key,
+          fmt::format("{} has no \"velocity\", \"displacement\", \"traction\" or \"force\"", key),
+          "a load without components does nothing",
+          "add one of them or \"absorbing\", or remove the load");
     if (kinds.size() > 1)
       f.error(key + "/" + kinds[1],
               fmt::format("both \"{}\" and \"{}\" in {}", kinds[0], kinds[1], key),
               "one load is of one kind", "write two loads with different components");
     check_absorbing(scene, k, key, f);
+    check_history(scene, load, key, f);
+    check_part(scene, load, key, f);
     if (!f.sound({key}))
       continue;
     check_twice(scene, k, key, f);
     if (layout && f.sound({key}))
-      check_against_overlap(load, key, *layout, f);
+      check_against_overlap(scene, load, key, *layout, f);
     if (layout && load.absorbing && f.sound({key}))
       check_layer(scene, load, key, *layout, f);
     if (load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"}))
@@ -189,7 +199,8 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
                 fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
                 "the load will not reach its value", "");
   }
-  if (scene.loads.empty() && !scene.time.has_phases() && f.sound({"/loads"}))
+  if (scene.loads.empty() && !scene.body_force.is_any() && scene.initial_motion.empty() &&
+      !scene.time.has_phases() && f.sound({"/loads"}))
     f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
 }
 } // namespace ligament::program

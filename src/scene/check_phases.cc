@@ -24,7 +24,8 @@ bool has_components(const PartialPoint &value)
 
 bool moves(const LoadParameters &load)
 {
-  return is_nonzero(load.velocity) || is_nonzero(load.displacement) || is_nonzero(load.traction);
+  return is_nonzero(load.velocity) || is_nonzero(load.displacement) || is_nonzero(load.traction) ||
+         is_nonzero(load.force);
 }
 
 template <typename Is>
@@ -35,13 +36,16 @@ bool any_load(const Scene &scene, Is &&is)
 
 void check_what_loads(const Scene &scene, const std::string &how, Findings &f)
 {
-  if (!any_load(scene, moves))
+  const BodyForceParameters &body = scene.body_force;
+  if (body.is_any() && (body.ramp > 0 || body.history.is_given()))
+    return;
+  if (!any_load(scene, moves) && !body.is_any())
     return f.error("/loads", fmt::format("nothing loads the specimen, but {}", how),
                    scene.loads.empty() ? "\"loads\" is empty: the body is in equilibrium for good"
                                        : "all loads are 0: the body is in equilibrium for good",
                    "add a load that grows, or choose \"dynamic\"");
   const auto grows = [](const LoadParameters &load) {
-    return is_nonzero(load.velocity) || (moves(load) && load.ramp > 0);
+    return is_nonzero(load.velocity) || (moves(load) && (load.ramp > 0 || load.history.is_given()));
   };
   if (!any_load(scene, grows))
     f.warning("/loads", fmt::format("no load grows, but {}", how),

@@ -65,6 +65,19 @@ void check_gauges(const Scene &scene, const Box &specimen, Findings &findings);
 /// The rectangles of a J-integral: around one tip, inside the specimen, nothing else between them.
 void check_j_integral(const Scene &scene, const GaugeParameters &gauge, const Box &specimen,
                       const std::string &key, Findings &findings);
+/// The course in time of a load, and the part of its side, each for itself.
+void check_history(const Scene &scene, const LoadParameters &load, const std::string &key,
+                   Findings &findings);
+void check_part(const Scene &scene, const LoadParameters &load, const std::string &key,
+                Findings &findings);
+/// Whether the parts of the same side on which they act have an area in common.
+bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b);
+/// Whether the part keeps its distance from an overlap that ends at the same side.
+void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
+                                const std::string &key, const Layout &layout, Findings &findings);
+
+/// What moves at the beginning, and what acts on every mass.
+void check_motion(const Scene &scene, Findings &findings);
 
 /// Loads against each other, and against the overlap. `layout` as above.
 void check_loads(const Scene &scene, const Layout *layout, Findings &findings);

@@ -71,8 +71,22 @@ enum class LoadKind
 {
   velocity,     // m/s
   displacement, // m
-  traction      // Pa
+  traction,     // Pa
+  force         // N, spread over the part
 };
+
+/// The form of a single pulse.
+enum class PulseShape
+{
+  half_sine,
+  ricker
+};
+
+inline const std::vector<std::string> &words(PulseShape)
+{
+  static const std::vector<std::string> list = {"half_sine", "ricker"};
+  return list;
+}
 
 inline const std::vector<std::string> &words(PackingKind)
 {
@@ -119,7 +133,7 @@ inline const std::vector<std::string> &words(StaticSolver)
 
 inline const std::vector<std::string> &words(LoadKind)
 {
-  static const std::vector<std::string> list = {"velocity", "displacement", "traction"};
+  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force"};
   return list;
 }
 

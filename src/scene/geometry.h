@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/box_union.h"
+#include "core/part.h"
 #include "src/scene/scene.h"
 
 namespace ligament::program
@@ -29,6 +30,25 @@ core::BoxUnion<dim> zone_shape(const Scene &scene)
     }
   }
   return shape;
+}
+
+/// What of its side the load acts on.
+template <int dim>
+core::Part<dim> part_of(const LoadParameters &load)
+{
+  const auto vector = [](const Point &p) { return Vector<dim>(p.data()); };
+  if (load.within.is_ball()) {
+    Vector<dim> centre;
+    for (int c = 0; c < dim; ++c)
+      centre[c] = load.within.centre[c].value_or(0);
+    return core::Part<dim>::ball(centre, load.within.radius);
+  }
+  Vector<dim> lower = vector(load.within.lower), upper = vector(load.within.upper);
+  const int along = load.boundary / 2 == 0 ? 1 : 0;
+  lower[along] = load.from.value_or(lower[along]);
+  upper[along] = load.to.value_or(upper[along]);
+  const bool is_whole = (lower.array() == -infinity).all() && (upper.array() == infinity).all();
+  return is_whole ? core::Part<dim>() : core::Part<dim>::box(lower, upper);
 }
 
 /// Cells of size h between the inner end of the overlap and the first larger ones: what the scene

@@ -111,9 +111,10 @@ void complete(Scene &scene)
   for (LoadParameters &load : scene.loads) {
     if (load.absorbing)
       load.kind = LoadKind::traction;
-    for (const auto &[kind, value] : {std::pair(LoadKind::velocity, load.velocity),
-                                      std::pair(LoadKind::displacement, load.displacement),
-                                      std::pair(LoadKind::traction, load.traction)})
+    for (const auto &[kind, value] :
+         {std::pair(LoadKind::velocity, load.velocity),
+          std::pair(LoadKind::displacement, load.displacement),
+          std::pair(LoadKind::traction, load.traction), std::pair(LoadKind::force, load.force)})
       if (value[0] || value[1] || value[2]) {
         load.kind = kind;
         load.value = value;

@@ -143,15 +143,77 @@ struct Damping
 inline const std::vector<std::string> side_names = {"left", "right", "bottom",
                                                     "top",  "back",  "front"};
 
+/// A part of the body: a box, or a ball (in 2D a disc) where there is a radius.
+struct Region
+{
+  Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity}; // m
+  PartialPoint centre;                                                                     // m
+  double radius = 0;                                                                       // m
+
+  bool is_ball() const { return radius > 0; }
+  /// Nothing is left out.
+  bool is_everything() const
+  {
+    const Region plain;
+    return !is_ball() && lower == plain.lower && upper == plain.upper;
+  }
+};
+
+struct PulseParameters
+{
+  PulseShape shape = PulseShape::half_sine;
+  double start = 0, duration = 0; // s
+};
+
+struct CyclesParameters
+{
+  double mean = 0, amplitude = 1, period = 0; // -, -, s
+};
+
+/// The course of a load in time; nothing of it: its ramp.
+struct History
+{
+  std::vector<std::array<double, 2>> table; // s, -
+  std::optional<PulseParameters> pulse;
+  std::optional<CyclesParameters> cycles;
+
+  bool is_given() const { return !table.empty() || pulse || cycles; }
+};
+
 struct LoadParameters
 {
-  int boundary = 0;                              // number of the side, see side_names
-  PartialPoint velocity, displacement, traction; // m/s, m, Pa; one of them has components
-  double ramp = 0;                               // s
-  bool absorbing = false;                        // lets waves out, beside a traction or alone
-  double absorbing_layer = 0;                    // m
-  LoadKind kind = LoadKind::traction;            // the one that has components
-  PartialPoint value;                            // and its components
+  int boundary = 0;                                     // number of the side, see side_names
+  PartialPoint velocity, displacement, traction, force; // m/s, m, Pa, N; one has components
+  double ramp = 0;                                      // s
+  History history;
+  std::optional<double> from, to; // m, along the side in 2D
+  Region within;
+  bool absorbing = false;             // lets waves out, beside a traction or alone
+  double absorbing_layer = 0;         // m
+  LoadKind kind = LoadKind::traction; // the one that has components
+  PartialPoint value;                 // and its components
+};
+
+/// Where the run begins, a part of the body or all of it moves.
+struct InitialMotion
+{
+  Point velocity = {0, 0, 0}; // m/s
+  Point spin = {0, 0, 0};     // rad/s, 2D: the first; about the centre
+  Point centre = {0, 0, 0};   // m
+  Region within;
+};
+
+/// Acts on every mass.
+struct BodyForceParameters
+{
+  Point acceleration = {0, 0, 0}; // m/s^2
+  double ramp = 0;                // s
+  History history;
+
+  bool is_any() const
+  {
+    return acceleration[0] != 0 || acceleration[1] != 0 || acceleration[2] != 0;
+  }
 };
 
 struct TimeParameters
@@ -198,6 +260,8 @@ struct Scene
   Damping damping;
   std::vector<LoadParameters> loads;
   std::vector<GaugeParameters> gauges;
+  BodyForceParameters body_force;
+  std::vector<InitialMotion> initial_motion;
   TimeParameters time;
   OutputParameters output;
 };

@@ -122,15 +122,64 @@ void declare_damping(Section &s, Damping &d)
   s.add("kinetic", d.kinetic, "velocities become zero when the kinetic energy has a peak");
 }
 
+void declare_region_of(Section &s, Region &r)
+{
+  s.add("lower", r.lower, "corner of a box with the smallest coordinates; null: reaches through").in("m").usually(0, 1e4, "mm um").null_means(-infinity);
+  s.add("upper", r.upper, "corner of a box with the largest coordinates; null: reaches through").in("m").usually(0, 1e4, "mm um").null_means(infinity);
+  s.add("centre", r.centre, "of a disc (2D) or ball, in place of a box").in("m").usually(0, 1e4, "mm um");
+  s.add("radius", r.radius, "of a disc (2D) or ball; 0: a box").in("m").usually(1e-8, 1e4, "mm um nm").at_least(0);
+}
+
+void declare_pulse(Section &s, PulseParameters &p)
+{
+  s.add("shape", p.shape, "half a sine wave; or Ricker's wavelet, (1 - 2 a^2) exp(-a^2), whose peak frequency is 3/duration", words(PulseShape()));
+  s.add("start", p.start, "when it begins").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  s.add("duration", p.duration, "how long it lasts; the peak, 1, is in the middle").in("s").usually(1e-12, 1e5, "us ms ns").above(0).required();
+}
+
+void declare_cycles(Section &s, CyclesParameters &c)
+{
+  s.add("mean", c.mean, "about which it swings; reached by the ramp, after which the cycles begin");
+  s.add("amplitude", c.amplitude, "of the sine; the load is mean + amplitude sin(2 pi (t - ramp)/period) times its value");
+  s.add("period", c.period, "of one cycle").in("s").usually(1e-12, 1e5, "us ms ns").above(0).required();
+}
+
+void declare_history(Section &s, History &h)
+{
+  s.add("table", h.table, "pairs of a time and a factor on the load's value: straight lines between them, level before and after; velocities follow it, displacements move along it").in("s");
+  s.section("pulse", h.pulse, "none", "one pulse", declare_pulse);
+  s.section("cycles", h.cycles, "none", "a sine wave about a mean", declare_cycles);
+}
+
 void declare_load(Section &s, LoadParameters &l)
 {
   s.add("boundary", l.boundary, "side of the specimen", side_names).required();
   s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
+  s.add("force", l.force, "prescribed force in all, in 2D over the thickness, spread evenly over the part; null: none").in("N").usually(1e-9, 1e12, "kN MN mN");
   s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  declare_history(s.section("history", "course of the load in time, as a factor on its value, in place of a ramp: one of a table, a pulse, cycles"), l.history);
+  s.add("from", l.from, "the load acts on a part of the side: from this coordinate along it; not set: from its end").in("m").usually(0, 1e4, "mm um").only_in(2);
+  s.add("to", l.to, "to this one; not set: to its end; a force may act at a point, from = to").in("m").usually(0, 1e4, "mm um").only_in(2);
+  declare_region_of(s.section("within", "the load acts on the part of the side within a box or a ball"), l.within);
   s.add("absorbing", l.absorbing, "waves leave through this side; alone or with a traction");
   s.add("absorbing_layer", l.absorbing_layer, "width of a damping layer inside the absorbing side, one to two wave lengths; 0: dashpots on the side alone").in("m").usually(0, 1e4, "mm um").at_least(0);
+}
+
+void declare_initial_motion(Section &s, InitialMotion &m)
+{
+  s.add("velocity", m.velocity, "of all points there").in("m/s").usually(1e-12, 1e4, "mm/s um/s km/h");
+  s.add("spin", m.spin, "turning about the centre besides: a rate (2D) or a vector (3D)").in("rad/s").as_rotation();
+  s.add("centre", m.centre, "about which it turns").in("m").usually(0, 1e4, "mm um");
+  declare_region_of(s.section("within", "the part of the body that moves; not given: all of it"), m.within);
+}
+
+void declare_body_force(Section &s, BodyForceParameters &b)
+{
+  s.add("acceleration", b.acceleration, "force per mass; gravity is [0, -9.81]").in("m/s^2").usually(1e-6, 1e9, "mm/s^2");
+  s.add("ramp", b.ramp, "time over which it grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  declare_history(s.section("history", "course of the force in time, as for loads"), b.history);
 }
 
 void declare_time(Section &s, TimeParameters &t)
@@ -177,6 +226,8 @@ void declare_scene(Section &s, Scene &scene)
   declare_damping(s.section("damping", "losses without physical meaning, for quasi-static scenes"), scene.damping);
   s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);
   s.list("gauges", scene.gauges, "what is measured besides load and elongation: columns of history.csv, curves of the report", declare_gauge);
+  declare_body_force(s.section("body_force", "acts on every mass, of both models"), scene.body_force);
+  s.list("initial_motion", scene.initial_motion, "motions of the body or parts of it at the beginning, which add up; the overlap begins with the motion of the mesh there", declare_initial_motion);
   declare_time(s.section("time", "how long"), scene.time);
   declare_output(s.section("output", "what is written, and how often"), scene.output);
 }

@@ -22,6 +22,7 @@ core::State take_state(const CoupledBody<dim> &body)
   body.coupler->save(state, body.bodies());
   core::save_value(state, "body", "regime_change", body.regime_change);
   core::save_value(state, "body", "settled", body.settled);
+  core::save_value(state, "body", "started", body.started);
   return state;
 }
 
@@ -36,6 +37,7 @@ void give_state(const core::State &state, CoupledBody<dim> &body)
   body.coupler->load(state, bodies);
   body.regime_change = core::load_real(state, "body", "regime_change");
   body.settled = core::load_real(state, "body", "settled");
+  body.started = core::load_real(state, "body", "started");
 }
 
 template core::State take_state(const CoupledBody<2> &);

@@ -5,6 +5,7 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/make_loads.h"
 #include "src/simulation/make_zone.h"
 
 #include <fmt/format.h>
@@ -17,27 +18,6 @@ namespace ligament::program
 namespace
 {
 using core::require;
-
-template <int dim>
-std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
-{
-  std::vector<core::BoundaryLoad<dim>> loads;
-  for (const auto &parameters : scene.loads) {
-    core::BoundaryLoad<dim> load;
-    using Kind = typename core::BoundaryLoad<dim>::Kind;
-    load.boundary = parameters.boundary;
-    load.kind = parameters.kind == LoadKind::velocity       ? Kind::velocity
-                : parameters.kind == LoadKind::displacement ? Kind::displacement
-                                                            : Kind::traction;
-    for (int c = 0; c < dim; ++c)
-      load.value[c] = parameters.value[c];
-    load.ramp.duration = parameters.ramp;
-    load.absorbing = parameters.absorbing;
-    load.absorbing_layer = parameters.absorbing_layer;
-    loads.push_back(load);
-  }
-  return loads;
-}
 
 /// Volume of the specimen without its holes and notches, in m^3.
 double material_volume(const Scene &scene)
@@ -191,6 +171,44 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
   body.coupler = std::move(split);
 }
 
+/// Each load must find faces or nodes in its part of a side, and a force all of its area.
+template <int dim>
+void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::Log &log)
+{
+  for (std::size_t l = 0; l < scene.loads.size(); ++l) {
+    const auto &load = body.loads[l];
+    const bool is_force = scene.loads[l].kind == LoadKind::force;
+    if (load.part.is_whole() && !is_force)
+      continue;
+    const bool is_held = load.kind != core::BoundaryLoad<dim>::Kind::traction;
+    const std::string key = fmt::format("/loads/{}", l);
+    double area = body.zone ? body.loaded_faces[l] : 0;
+    const double whole = loaded_area<dim>(scene, load);
+    if (is_held) {
+      const int n_nodes = body.far ? body.far->n_held_nodes(int(l)) : 0;
+      if (area == 0 && n_nodes == 0)
+        throw core::KeyedError(
+            key, "no node of the far field lies in the part of the side that this load moves",
+            fmt::format("its nodes are about {:.4g} m apart, the part is {:.4g} m^{} large",
+                        body.far ? scene.far_field->cell_size : body.spacing,
+                        dim == 2 ? whole / body.thickness : whole, dim - 1),
+            "make the part wider than a cell, or the cells smaller");
+      log.info("load {} holds {} nodes of the far field and faces of {:.4g} m^2 in all; its part "
+               "of the side has {:.4g} m^2",
+               l, n_nodes, area, whole);
+      continue;
+    }
+    if (body.far)
+      area += body.far->loaded_area(int(l));
+    if (area == 0 || (is_force && std::abs(area / whole - 1) > 1e-6))
+      throw core::KeyedError(
+          key, "the load does not find its part of the side",
+          fmt::format("a hole or notch cuts it: {:.4g} m^2 of {:.4g} m^2 are left", area, whole),
+          is_force ? "move the force, or give a traction" : "move the load");
+    log.info("load {} acts on {:.6g} m^2", l, area);
+  }
+}
+
 template <int dim>
 std::vector<SkippedPart> skipped_parts(const CoupledBody<dim> &body)
 {
@@ -240,6 +258,11 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     if (!body.coupler)
       make_fine_scale_split(scene, body, log, timers);
   });
+  check_loaded_parts(scene, body, log);
+  if (body.zone)
+    body.zone->body_force = particles::BodyForce<dim>(body.loads);
+  if (const auto *overlap = body.coupler->overlap(); overlap && scene.body_force.is_any())
+    body.far->set_weights(overlap->near_nodes, body.coupler->near_weight(body.zone->state));
   body.skipped = skipped_parts(body);
   return body;
 }

@@ -19,6 +19,7 @@ struct CoupledBody
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::vector<core::BoundaryLoad<dim>> loads;
+  std::vector<double> loaded_faces;          // m^2, on which each load acts in the zone
   std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
 
   Vector<dim> lower, upper;            // m, specimen
@@ -30,6 +31,7 @@ struct CoupledBody
   double dt_zone = 0;                    // s, stable step of the discrete side
   double dt_far = 0;                     // s, of the far field's own cells
   double regime_change = 0;              // J, taken by changes of regime so far
+  double started = 0;                    // J, kinetic energy that the body began with
   double settled = 0;                    // J, taken by settling into equilibria so far
   std::int64_t equivalent_particles = 0; // of the pure discrete model
   std::int64_t n_cracked_faces = 0;      // cut by initial cracks

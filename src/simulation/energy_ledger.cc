@@ -32,8 +32,11 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   ledger.damping = damping;
   ledger.regime_change = body.regime_change;
   ledger.settled = body.settled;
+  ledger.external_work += body.started;
   if (body.zone)
     ledger.absorbed += body.zone->dashpots.energy();
+  if (body.zone)
+    ledger.external_work += body.zone->body_force.work();
   if (body.far)
     ledger.absorbed += body.far->absorbed_energy();
   if (const auto *force = body.force()) {

@@ -26,6 +26,8 @@ template <int dim>
 void require_free_side(const CoupledBody<dim> &body, const Vector<dim> &x)
 {
   for (const core::BoundaryLoad<dim> &load : body.loads) {
+    if (load.boundary < 0)
+      continue;
     const int axis = load.boundary / 2;
     const double distance =
         load.boundary % 2 ? body.upper[axis] - x[axis] : x[axis] - body.lower[axis];
@@ -42,6 +44,8 @@ void require_that_it_fits(const core::State &state, double old_dt, const Coupled
           "a zone grows into a mesh: both bodies need particles and cells");
   require(state.count("split") > 0 && larger.coupler->can_turn(),
           "energy-weighted couplers weigh the whole overlap: their zone cannot grow");
+  require(larger.zone->body_force.is_empty(),
+          "a zone on whose masses a body force acts cannot grow");
   require(!larger.zone->rest(), "a zone whose particles may rest cannot grow");
   require(
       larger.dt == old_dt,

@@ -11,14 +11,14 @@ namespace
 template <int dim>
 double size_at(const core::BoundaryLoad<dim> &load, double time)
 {
-  return load.kind == core::BoundaryLoad<dim>::Kind::velocity ? load.ramp.integral(time)
-                                                              : load.ramp.value(time);
+  return load.kind == core::BoundaryLoad<dim>::Kind::velocity ? load.history.integral(time)
+                                                              : load.history.value(time);
 }
 template <int dim>
 double rate_at(const core::BoundaryLoad<dim> &load, double time)
 {
-  return load.kind == core::BoundaryLoad<dim>::Kind::velocity ? load.ramp.value(time)
-                                                              : load.ramp.rate(time);
+  return load.kind == core::BoundaryLoad<dim>::Kind::velocity ? load.history.value(time)
+                                                              : load.history.rate(time);
 }
 
 template <int dim>
@@ -74,9 +74,16 @@ double LoadGrowth<dim>::next_corner(const std::vector<core::BoundaryLoad<dim>> &
 {
   double corner = last;
   for (const auto &load : loads)
-    if (load.ramp.duration > from * (1 + 1e-12) && has_value(load))
-      corner = std::min(corner, load.ramp.duration);
+    if (has_value(load))
+      corner = std::min(corner, load.history.next_corner(from));
   return corner;
+}
+
+template <int dim>
+bool LoadGrowth<dim>::may_turn(const std::vector<core::BoundaryLoad<dim>> &loads)
+{
+  return std::any_of(loads.begin(), loads.end(),
+                     [](const auto &load) { return has_value(load) && !load.history.is_ramp(); });
 }
 
 template class LoadGrowth<2>;

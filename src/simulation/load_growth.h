@@ -25,7 +25,9 @@ public:
   /// Its rate, in 1/s.
   double rate(double time) const;
 
-  /// Where a next one should end, at most at `last`: the corner of a ramp.
+  /// Some load may fall or turn, at corners alone.
+  static bool may_turn(const std::vector<core::BoundaryLoad<dim>> &loads);
+  /// Where a next one should end, at most at `last`: the next corner of a load.
   static double next_corner(const std::vector<core::BoundaryLoad<dim>> &loads, double from,
                             double last);
 

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "packings/absorbing_sides.h"
+#include "packings/outer_face.h"
 #include "src/simulation/make_packing.h"
 
 #include <fmt/format.h>
@@ -56,6 +57,13 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     densities.push_back(inclusion.material.density);
   particles::Particles<dim> state;
   packings::fill_particles(packing, densities, state);
+  body.loaded_faces.assign(body.loads.size(), 0.);
+  for (const auto &face : packing.boundary_faces)
+    for (std::size_t l = 0; l < body.loads.size(); ++l)
+      if (face.boundary == body.loads[l].boundary)
+        if (const auto inside =
+                packings::OuterFace<dim>(face, packing).inside({body.loads[l].part}))
+          body.loaded_faces[l] += inside->area;
   const auto constants = elastic_constants_of<dim>(scene);
   auto dashpots = packings::absorbing_dashpots(packing, state, body.loads, scene.material.density,
                                                constants.wave_speed_p, constants.wave_speed_s);

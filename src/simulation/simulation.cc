@@ -6,6 +6,7 @@
 #include "particles/instruction_set.h"
 #include "src/analysis/verdict.h"
 #include "src/simulation/body_state.h"
+#include "src/simulation/initial_motion.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -34,6 +35,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
   setup_seconds_ = timers_.total();
+  if (!from)
+    start_motion(scene_, body_);
   if (from)
     go_on_from(*from);
   else if (body_.seeds)
@@ -160,7 +163,8 @@ template <int dim>
 void Simulation<dim>::let_rest()
 {
   if (!body_.zone || !body_.force()->can_rest() || !body_.coupler->can_rest() ||
-      scene_.time.has_phases()) // an equilibrium moves all
+      scene_.time.has_phases() || // an equilibrium moves all
+      scene_.body_force.is_any() || !scene_.initial_motion.empty())
     return;
   const double strain = scene_.time.rest_threshold;
   body_.zone->let_rest(particles::RestLimits::of_strain(

@@ -5,17 +5,34 @@
 
 namespace ligament::program
 {
+namespace
+{
+/// The last step of the far field before a load turns, one at least: within a stretch the growth
+/// has one direction.
+template <int dim>
+long before_turn(const CoupledBody<dim> &body, const Clock &clock, int ratio, long reach)
+{
+  if (!LoadGrowth<dim>::may_turn(body.loads))
+    return reach;
+  const double now = clock.now.time, step = ratio * clock.now.dt;
+  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, double(reach) * clock.now.dt);
+  return std::clamp(clock.now.step + ratio * long((corner - now) / step + 1e-6),
+                    clock.now.step + ratio, reach);
+}
+} // namespace
+
 // Loads that don't grow in proportion almost do so over short stretches within their ramps.
 template <int dim>
 StaticStretch<dim>::StaticStretch(CoupledBody<dim> &body, EquilibriumSolver<dim> &solver,
                                   const Clock &clock, long reach)
     : body_(body), solver_(solver), dt_(clock.now.dt), ratio_(body.coupler->step_ratio()),
-      begin_(clock.now.step), end_(reach), growth_(growth_to(reach)),
-      start_(solver.system().place())
+      begin_(clock.now.step), end_(before_turn(body, clock, ratio_, reach)),
+      growth_(growth_to(end_)), start_(solver.system().place())
 {
   if (growth_.is_proportional())
     return;
   const double now = time_of(begin_);
+  reach = end_;
   const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(reach));
   end_ =
       std::clamp(begin_ + ratio_ * long(std::ceil((corner - now) / (ratio_ * dt_) * (1 - 1e-12))),

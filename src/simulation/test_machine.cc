@@ -53,7 +53,7 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
 {
   double largest = 0;
   for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
-    for (int c = 0; c < dim; ++c)
+    for (int c = 0; c < dim && body.loads[l].boundary >= 0; ++c)
       if (body.loads[l].value[c] && std::abs(*body.loads[l].value[c]) > largest) {
         largest = std::abs(*body.loads[l].value[c]);
         load_ = int(l);
@@ -66,7 +66,11 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
   sign_ = body.loads[load_].boundary % 2 ? 1 : -1;
   const Vector<dim> size = body.upper - body.lower;
   size_ = size[axis_];
-  area_ = size.prod() / size_ * body.thickness;
+  const auto side = core::side_corners<dim>(body.lower, body.upper, body.loads[load_].boundary);
+  area_ = body.loads[load_].part.is_whole()
+              ? size.prod() / size_ * body.thickness
+              : core::face_area<dim>(body.loads[load_].part.clip(side)) *
+                    (dim == 2 ? body.thickness : 1);
 }
 
 template <int dim>

@@ -8,12 +8,14 @@ namespace ligament::program
 struct Reading
 {
   double load = 0;         // N
-  double stress = 0;       // Pa, load over the area of the side
+  double stress = 0;       // Pa, load over the area of the side, or of the loaded part of it
   double displacement = 0; // m, elongation between the two sides of the axis
   double strain = 0;       // elongation over the specimen's size
 };
 
 /// Reads the first load that has a component: its largest one is the axis of the test.
+/// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
+/// whole sides.
 template <int dim>
 class TestMachine
 {

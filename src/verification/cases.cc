@@ -4,6 +4,7 @@
 #include "src/verification/bodies/waves_twin.h"
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
+#include "src/verification/cases/lab.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -41,6 +42,7 @@ std::vector<Case> all_cases()
   add(static_cases());
   add(static_run_cases());
   add(lab_gauges_cases());
+  add(lab_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -130,6 +130,24 @@ TEST_F(Rebuild, ClosedCrack)
        0.227e-3, 0.26e-3, 7});
 }
 
+// Pulses, tables and cycles, parts of sides, forces on every mass, and motion from the start.
+TEST_F(Rebuild, LoadsInTimeOnAMovingPlate)
+{
+  const std::string command =
+      std::string("run " LIGAMENT_SOURCE_DIR "/tests/support/scenes/moving_plate.json") +
+      set("/output/field_interval", "never") + set("/output/history_interval", "1e-7") +
+      set("/output/checkpoint_interval", "0.001") + " -o moving";
+  const auto done = [](const Outcome &outcome) {
+    ASSERT_EQ(outcome.code, 0) << outcome.output << outcome.errors;
+  };
+  done(run_ligament(command + "_whole"));
+  done(run_ligament(command + "_seldom --rebuild-interval 11"));
+  expect_same("moving_seldom", "moving_whole");
+  done(run_ligament(command + "_often" + with_duration(1.7e-5)));
+  done(run_ligament("resume moving_often --rebuild-interval 7" + with_duration(5e-5)));
+  expect_same("moving_often", "moving_whole");
+}
+
 const std::string bar = examples + "notched_bar_3d/scene.json";
 
 TEST_F(Rebuild, SmallNotchedBar)

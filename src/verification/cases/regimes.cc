@@ -6,6 +6,7 @@
 #include "src/simulation/test_machine.h"
 #include "src/verification/bodies/unit_bodies.h"
 #include "src/verification/cases.h"
+#include "src/verification/instruments/free_flight.h"
 #include "src/verification/instruments/noise_run.h"
 
 #include <Eigen/Geometry>
@@ -136,65 +137,6 @@ std::vector<Result> turned_patch()
           {"patch_turned/second_order", finite, 1e-2, {}}};
 }
 
-/// Moment of momentum of (C1), (C6) about the origin; positions and velocities as they are.
-template <int dim>
-Spin<dim> angular_momentum(const CoupledBody<dim> &body, const Eigen::SparseMatrix<double> &mass)
-{
-  const auto &overlap = *body.coupler->overlap();
-  const auto &far = *body.far;
-  const auto &zone = body.zone->state;
-  Spin<dim> sum = Spin<dim>::Zero();
-  Eigen::MatrixXd v(overlap.n_nodes(), dim);
-  for (int i = 0; i < overlap.n_nodes(); ++i)
-    v.row(i) = get(far.velocity, overlap.near_nodes[i]).transpose();
-  const Eigen::MatrixXd momentum = mass * v;
-  const auto place = [&](int node) -> Vector<dim> {
-    return far.mesh().nodes[node] + get(far.displacement, node);
-  };
-  for (int i = 0; i < overlap.n_nodes(); ++i)
-    sum += core::moment(place(overlap.near_nodes[i]), Vector<dim>(momentum.row(i).transpose()));
-  for (int i = 0; i < far.mesh().n_nodes(); ++i)
-    if (!far.is_released_node(i))
-      sum += far.lumped_mass()[i] * core::moment(place(i), get(far.velocity, i));
-  for (int i = 0; i < zone.size(); ++i) {
-    Vector<dim> x = get(zone.reference, i) + get(zone.displacement, i), w = get(zone.velocity, i);
-    const int index = overlap.member_of_particle[i];
-    if (index >= 0)
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
-        const auto &m = overlap.members[index];
-        x -= m.value[a] * place(overlap.near_nodes[m.nodes[a]]);
-        w -= m.value[a] * get(far.velocity, overlap.near_nodes[m.nodes[a]]);
-      }
-    if (index >= 0 && overlap.members[index].pad)
-      continue;
-    sum += zone.mass[i] * core::moment(x, w) + zone.inertia(i) * get(zone.spin, i);
-  }
-  return sum;
-}
-
-/// |last/first - 1|, of the mean energies of the first and the last tenth of the run.
-template <int dim>
-double energy_change(CoupledBody<dim> &body, long n_steps)
-{
-  auto bodies = body.bodies();
-  double sum[2] = {}, number[2] = {}; // first, last
-  coupling::StepTime step;
-  step.dt = body.dt;
-  for (; step.step < n_steps; ++step.step, step.time = double(step.step) * step.dt) {
-    body.coupler->compute_forces(bodies, step);
-    const bool begins = step.step < n_steps / 10, ends = step.step >= n_steps - n_steps / 10;
-    if ((begins || ends) && step.step % 5 == 0) {
-      const auto e = body.coupler->energy(bodies, step);
-      sum[ends] +=
-          e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended;
-      number[ends] += 1;
-    }
-    body.coupler->kick(bodies, step);
-    body.coupler->drift(bodies, step);
-  }
-  return std::abs(sum[1] / number[1] / (sum[0] / number[0]) - 1);
-}
-
 /// Undamped noise of finite amplitude in the nonlinear regime: slope of the shadow energy, per run.
 std::vector<Result> noise(const std::string &name, long n_steps)
 {
@@ -230,10 +172,9 @@ std::vector<Result> spin(const std::string &name, const std::string &regime, dou
     set(body.far->velocity, i, velocity(body.far->mesh().nodes[i]));
   auto bodies = body.bodies();
   body.coupler->take_velocities(bodies);
-  const Eigen::SparseMatrix<double> mass = body.coupler->near_mass();
-  const Spin<dim> before = angular_momentum<dim>(body, mass);
+  const Spin<dim> before = angular_momentum<dim>(body);
   const double energy = energy_change(body, std::lround(turns * 2 * M_PI / rate / body.dt));
-  const double momentum = (angular_momentum<dim>(body, mass) - before).norm() / before.norm();
+  const double momentum = (angular_momentum<dim>(body) - before).norm() / before.norm();
   return {{name + "/energy", energy, 1e-6, {}}, {name + "/angular_momentum", momentum, 1e-10, {}}};
 }
 

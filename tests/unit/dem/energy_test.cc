@@ -123,12 +123,12 @@ std::array<double, 3> tear(double fraction, double damping = 0)
     loads[end].boundary = 2 + end;
     for (int c = 0; c < dim; ++c)
       loads[end].value[c] = c == 1 && end ? 20. : 0.;
-    loads[end].ramp.duration = 1e-5;
+    loads[end].history = core::Ramp{1e-5};
   }
   loads[2].boundary = 1;
   loads[2].kind = core::BoundaryLoad<dim>::Kind::traction;
   loads[2].value[0] = 2e7;
-  loads[2].ramp.duration = 3e-5;
+  loads[2].history = core::Ramp{3e-5};
   Run<dim> run(packing, material, loads, {FractureLaw::Criterion::maximum_tension, 2e8});
   run.dt *= fraction;
   double largest = 0;

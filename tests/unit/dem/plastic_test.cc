@@ -203,7 +203,7 @@ TEST(PlasticStrip, TensionFollowsTheContinuumAndUnloadsElastically)
   for (auto &load : loads)
     load.kind = core::BoundaryLoad<2>::Kind::displacement;
   const double duration = 2000;
-  loads[1].ramp.duration = duration;
+  loads[1].history = core::Ramp{duration};
   Particles<2> p;
   packings::fill_particles(packing, 1., p);
   auto f = std::make_unique<ManyBodyForce<2>>(packing, material, loads);

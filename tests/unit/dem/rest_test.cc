@@ -23,7 +23,7 @@ Loads<dim> impact(int side, bool absorbing)
   push.boundary = side;
   push.kind = Kind::velocity;
   push.value[side / 2] = 1e-3;
-  push.ramp.duration = 0.05;
+  push.history = core::Ramp{0.05};
   other.boundary = side ^ 1;
   other.kind = absorbing ? Kind::traction : Kind::displacement;
   other.absorbing = absorbing;

@@ -270,7 +270,7 @@ int expect_same_motion(const Packing<dim> &packing, bool rests, int steps)
   loads[0].boundary = 0;
   loads[0].kind = core::BoundaryLoad<dim>::Kind::velocity;
   loads[0].value[0] = -0.02;
-  loads[0].ramp.duration = 0.4; // 40 spacings of the wave
+  loads[0].history = core::Ramp{0.4}; // 40 spacings of the wave
   const auto make = [&](double noted_share) {
     const DemMaterial material{1., 0.3, 1, PlaneMode::strain, 0};
     auto force = std::make_unique<ManyBodyForce<dim>>(

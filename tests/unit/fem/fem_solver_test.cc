@@ -242,7 +242,7 @@ core::BoundaryLoad<dim> load(int boundary, typename core::BoundaryLoad<dim>::Kin
   l.boundary = boundary;
   l.kind = kind;
   l.value[component] = value;
-  l.ramp.duration = ramp;
+  l.history = core::Ramp{ramp};
   return l;
 }
 

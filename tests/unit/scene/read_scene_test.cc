@@ -1,3 +1,4 @@
+#include "core/files.h"
 #include "src/scene/read_scene.h"
 
 #include <gtest/gtest.h>
@@ -28,6 +29,27 @@ Scene good(const std::string &file, const std::vector<std::string> &overrides = 
   const ReadResult result = read_scene(file, overrides);
   EXPECT_EQ(all(result), "");
   return result.scene.value_or(Scene());
+}
+
+// Regions that are not given are everything, and are so when they are read again.
+TEST(ReadScene, PartsOfSidesSurviveTheirEcho)
+{
+  const std::string scene =
+      core::read_file(LIGAMENT_SOURCE_DIR "/tests/support/scenes/moving_plate.json");
+  const auto first = parse_scene(scene, "scene");
+  ASSERT_TRUE(first.scene);
+  const auto again = parse_scene(first.resolved.dump(), "echo");
+  for (const auto &error : again.errors)
+    ADD_FAILURE() << core::to_string(error);
+  ASSERT_TRUE(again.scene);
+  EXPECT_EQ(again.resolved, first.resolved);
+  const LoadParameters &load = again.scene->loads[0];
+  EXPECT_EQ(load.from, -0.009);
+  EXPECT_TRUE(load.within.is_everything());
+  EXPECT_EQ(again.scene->loads[1].kind, LoadKind::force);
+  EXPECT_EQ(again.scene->loads[1].history.table.size(), 3u);
+  EXPECT_EQ(again.scene->body_force.history.cycles->mean, 0.3);
+  EXPECT_EQ(again.scene->initial_motion[0].spin[0], 3);
 }
 } // namespace
 

@@ -1,0 +1,239 @@
+// The parts of sides on which loads act, and the loads' course in time.
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+/// Corners of the whole side.
+template <int dim>
+core::FaceCorners<dim> side_of(const Scene &scene, int side)
+{
+  const Vector<dim> half = Vector<dim>(scene.specimen.size.data()) / 2;
+  return core::side_corners<dim>(-half, half, side);
+}
+
+/// The part; where it has no width, a little of one.
+template <int dim>
+core::Part<dim> part_with_area(const Scene &scene, LoadParameters load)
+{
+  constexpr double little = 1e-6;
+  const int along = load.boundary / 2 == 0 ? 1 : 0;
+  if (load.from && load.to && *load.from == *load.to) {
+    *load.from -= little * scene.specimen.size[along];
+    *load.to += little * scene.specimen.size[along];
+  }
+  for (int c = 0; c < dim; ++c)
+    if (c != load.boundary / 2 && load.within.lower[c] == load.within.upper[c]) {
+      load.within.lower[c] -= little * scene.specimen.size[c];
+      load.within.upper[c] += little * scene.specimen.size[c];
+    }
+  return part_of<dim>(load);
+}
+
+template <int dim>
+bool share_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b)
+{
+  const auto side = side_of<dim>(scene, a.boundary);
+  const auto both = part_with_area<dim>(scene, b).clip(part_with_area<dim>(scene, a).clip(side));
+  return core::face_area<dim>(both) > 1e-12 * core::face_area<dim>(side);
+}
+
+/// Smallest box around the loaded part of the side; nothing where there is none.
+template <int dim>
+std::optional<Box> box_of(const Scene &scene, const LoadParameters &load)
+{
+  const auto part = part_with_area<dim>(scene, load).clip(side_of<dim>(scene, load.boundary));
+  if (part.empty())
+    return {};
+  std::vector<Point> points;
+  for (const auto &x : part) {
+    Point p = {0, 0, 0};
+    for (int c = 0; c < dim; ++c)
+      p[c] = x[c];
+    points.push_back(p);
+  }
+  return bounding_box(points);
+}
+
+std::optional<Box> box_of(const Scene &scene, const LoadParameters &load)
+{
+  return scene.dimension == 2 ? box_of<2>(scene, load) : box_of<3>(scene, load);
+}
+
+/// Up to which value at most `most` the condition holds, if it does at 0.
+template <typename Holds>
+double largest(double most, Holds &&holds)
+{
+  if (!holds(0.))
+    return -infinity;
+  double low = 0, high = most;
+  if (holds(most))
+    return most;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = (low + high) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+bool is_point_like(const LoadParameters &load, int dim)
+{
+  const int axis = load.boundary / 2;
+  if (load.from && load.to && *load.from == *load.to)
+    return true;
+  for (int c = 0; c < dim; ++c)
+    if (c != axis && load.within.lower[c] == load.within.upper[c])
+      return true;
+  return false;
+}
+
+/// The keys of the part for themselves.
+void check_part_keys(const Scene &scene, const LoadParameters &load, const std::string &key,
+                     Findings &f)
+{
+  const Region &w = load.within;
+  const bool has_range = load.from || load.to;
+  if (has_range && !w.is_everything())
+    f.error(key + "/within", fmt::format("both \"within\" and \"from\" or \"to\" in {}", key),
+            "they are two ways to say on which part of the side the load acts", "keep one of them");
+  if (load.from && load.to && *load.from > *load.to)
+    f.error(key + "/to", fmt::format("\"to\" in {} is below \"from\"", key),
+            fmt::format("the part would go from {} m to {} m", *load.from, *load.to), "swap them");
+  const bool has_centre = w.centre[0] || w.centre[1] || w.centre[2];
+  if (has_centre != w.is_ball())
+    f.error(key + "/within",
+            fmt::format("\"within\" in {} has one of \"centre\" and \"radius\"", key),
+            "a ball needs both", "give both, or \"lower\" and \"upper\" of a box");
+  for (int c = 0; c < scene.dimension; ++c)
+    if (w.lower[c] > w.upper[c])
+      return f.error(key + "/within", fmt::format("\"within\" in {} is empty in {}", key, "xyz"[c]),
+                     fmt::format("it goes from {} m to {} m", w.lower[c], w.upper[c]),
+                     "give \"lower\" below \"upper\"");
+  const bool is_part = has_range || !w.is_everything();
+  if (load.absorbing && is_part)
+    f.error(key + "/absorbing", fmt::format("\"absorbing\" on a part of a side in {}", key),
+            "only whole sides let waves out", "let the load act on the whole side");
+}
+} // namespace
+
+bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b)
+{
+  return scene.dimension == 2 ? share_area<2>(scene, a, b) : share_area<3>(scene, a, b);
+}
+
+void check_history(const Scene &scene, const LoadParameters &load, const std::string &key,
+                   Findings &f)
+{
+  const History &h = load.history;
+  const std::string history = key + "/history";
+  if (!h.is_given() || !f.sound({history}))
+    return;
+  if (int(!h.table.empty()) + int(h.pulse.has_value()) + int(h.cycles.has_value()) > 1)
+    return f.error(history,
+                   fmt::format("{} has several of \"table\", \"pulse\", \"cycles\"", history),
+                   "a load has one course in time", "keep one; a table describes any course");
+  if (load.ramp > 0 && !h.cycles)
+    f.error(key + "/ramp", fmt::format("both \"ramp\" and \"history\" in {}", key),
+            "the history says how the load grows; only cycles have a ramp, to their mean",
+            "remove one of them");
+  for (std::size_t k = 0; k < h.table.size(); ++k)
+    if (k == 0 ? h.table[k][0] < 0 : h.table[k][0] <= h.table[k - 1][0])
+      return f.error(
+          fmt::format("{}/table/{}", history, k),
+          fmt::format("row {} of \"table\" in {} is at {} s", k + 1, history, h.table[k][0]),
+          k == 0 ? "runs begin at 0 s"
+                 : fmt::format("the row before is at {} s", h.table[k - 1][0]),
+          "give times from 0 on that rise from row to row");
+  if (!f.sound_and_given({"/time/duration"}))
+    return;
+  const double end = scene.time.duration;
+  if (h.pulse && h.pulse->start >= end)
+    f.error(history + "/pulse/start",
+            fmt::format("the pulse in {} begins at {} s, after the end of the run", key,
+                        h.pulse->start),
+            fmt::format("/time/duration is {} s", end), "begin it earlier, or run longer");
+  else if (h.pulse && h.pulse->start + h.pulse->duration > end)
+    f.warning(history + "/pulse/duration",
+              fmt::format("the pulse in {} ends at {} s, after the end of the run", key,
+                          h.pulse->start + h.pulse->duration),
+              fmt::format("/time/duration is {} s", end), "");
+  if (!h.table.empty() && h.table.back()[0] > end)
+    f.warning(history + "/table",
+              fmt::format("the table in {} goes on until {} s, after the end of the run", history,
+                          h.table.back()[0]),
+              fmt::format("/time/duration is {} s", end), "");
+  if (h.cycles && load.ramp + h.cycles->period > end)
+    f.warning(history + "/cycles/period",
+              fmt::format("the run ends within the first cycle of {}", key),
+              fmt::format("/time/duration is {} s", end), "");
+}
+
+void check_part(const Scene &scene, const LoadParameters &load, const std::string &key, Findings &f)
+{
+  check_part_keys(scene, load, key, f);
+  if (!f.sound({key, "/specimen/size"}))
+    return;
+  const std::string part = load.from || load.to ? key + "/from" : key + "/within";
+  const bool has_force =
+      std::any_of(load.force.begin(), load.force.end(), [](const auto &x) { return bool(x); });
+  if (is_point_like(load, scene.dimension) && !has_force)
+    return f.error(part, fmt::format("the part of the side in {} has no width", key),
+                   "only a force may act at a point or on a line",
+                   "give a \"force\", or the part a width");
+  if (box_of(scene, load))
+    return;
+  const int axis = load.boundary / 2;
+  std::string where;
+  for (int c = 0; c < scene.dimension; ++c)
+    where += fmt::format("{}{} {:.6g} m{}", where.empty() ? "" : ", ", "xyz"[c],
+                         c == axis ? (load.boundary % 2 ? 0.5 : -0.5) * scene.specimen.size[c]
+                                   : -scene.specimen.size[c] / 2,
+                         c == axis ? "" : fmt::format(" to {:.6g} m", scene.specimen.size[c] / 2));
+  f.error(part,
+          fmt::format("{} acts on no part of the side \"{}\"", key, side_names[load.boundary]),
+          "the side lies at " + where, "move the part onto the side");
+}
+
+void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
+                                const std::string &key, const Layout &layout, Findings &f)
+{
+  const auto part = box_of(scene, load);
+  if (!part || !layout.coupled || layout.coupled_side[load.boundary])
+    return;
+  const int axis = load.boundary / 2;
+  const Vector<3> lower(part->lower.data()), upper(part->upper.data());
+  const auto zone = zone_shape<3>(scene);
+  const double tolerance = 1e-9 * layout.cell_size;
+  // Within the zone: off the overlap and the cells that reach into it. Beside it: off the
+  // transition, whose cells the coupler has.
+  const double margin_inside = layout.overlap + 2 * scene.zone.spacing,
+               margin_beside = (scene.coupling.transition_cells + 1) * layout.cell_size;
+  const double inside = largest(margin_inside, [&](double margin) {
+    return zone.eroded(margin).covers(lower, upper, tolerance);
+  });
+  const double beside = largest(margin_beside, [&](double margin) {
+    Vector<3> far = Vector<3>::Constant(margin);
+    far[axis] = 0;
+    return !zone.meets(lower - far, upper + far, tolerance);
+  });
+  if (inside == margin_inside || beside == margin_beside)
+    return;
+  const double missing = std::min(margin_inside - inside, margin_beside - beside);
+  f.error(key + "/boundary",
+          fmt::format("\"boundary\" in {}: the loaded part of the side \"{}\" is too near to the "
+                      "end of the overlap there",
+                      key, side_names[load.boundary]),
+          missing < infinity
+              ? fmt::format("{:.4g} m are missing: within the zone it keeps {:.4g} m from the "
+                            "zone's edge (the overlap and two spacings), beside it {:.4g} m (the "
+                            "transition and a cell)",
+                            missing, margin_inside, margin_beside)
+              : "it lies across the edge of the zone, where both models are one body",
+          "move the part or the zone's edge, or make the overlap or the transition narrower");
+}
+} // namespace ligament::program

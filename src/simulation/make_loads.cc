@@ -1,0 +1,107 @@
+#include "src/simulation/make_loads.h"
+
+#include "src/scene/geometry.h"
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+template <int dim>
+Vector<dim> half_size(const Scene &scene)
+{
+  return Vector<dim>(scene.specimen.size.data()) / 2;
+}
+
+/// Wider than nothing along the side, so that a point has an area.
+template <int dim>
+core::Part<dim> widened(const Scene &scene, LoadParameters load)
+{
+  double width = infinity;
+  if (scene.zone.spacing > 0)
+    width = scene.zone.spacing;
+  if (scene.far_field)
+    width = std::min(width, scene.far_field->cell_size);
+  width *= 1e-3;
+  if (load.from && load.to && *load.from == *load.to) {
+    *load.from -= width / 2;
+    *load.to += width / 2;
+  }
+  for (int c = 0; c < dim; ++c)
+    if (c != load.boundary / 2 && load.within.lower[c] == load.within.upper[c]) {
+      load.within.lower[c] -= width / 2;
+      load.within.upper[c] += width / 2;
+    }
+  return part_of<dim>(load);
+}
+} // namespace
+
+core::TimeFunction time_function_of(const History &history, double ramp)
+{
+  if (!history.table.empty())
+    return core::TimeTable(history.table);
+  if (history.pulse) {
+    core::Pulse pulse;
+    pulse.shape = history.pulse->shape == PulseShape::ricker ? core::Pulse::Shape::ricker
+                                                             : core::Pulse::Shape::half_sine;
+    pulse.start = history.pulse->start;
+    pulse.duration = history.pulse->duration;
+    return pulse;
+  }
+  if (history.cycles)
+    return core::Cycles{core::Ramp{ramp}, history.cycles->mean, history.cycles->amplitude,
+                        history.cycles->period};
+  return core::Ramp{ramp};
+}
+
+template <int dim>
+double loaded_area(const Scene &scene, const core::BoundaryLoad<dim> &load)
+{
+  const Vector<dim> half = half_size<dim>(scene);
+  const auto side = core::side_corners<dim>(-half, half, load.boundary);
+  return core::face_area<dim>(load.part.clip(side)) * (dim == 2 ? scene.specimen.thickness : 1);
+}
+
+template <int dim>
+std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
+{
+  std::vector<core::BoundaryLoad<dim>> loads;
+  for (const auto &parameters : scene.loads) {
+    core::BoundaryLoad<dim> load;
+    using Kind = typename core::BoundaryLoad<dim>::Kind;
+    load.boundary = parameters.boundary;
+    load.kind = parameters.kind == LoadKind::velocity       ? Kind::velocity
+                : parameters.kind == LoadKind::displacement ? Kind::displacement
+                                                            : Kind::traction;
+    const bool is_force = parameters.kind == LoadKind::force;
+    load.part = is_force ? widened<dim>(scene, parameters) : part_of<dim>(parameters);
+    for (int c = 0; c < dim; ++c)
+      load.value[c] = parameters.value[c];
+    if (is_force)
+      for (auto &component : load.value)
+        if (component)
+          *component /= loaded_area<dim>(scene, load);
+    load.history = time_function_of(parameters.history, parameters.ramp);
+    load.absorbing = parameters.absorbing;
+    load.absorbing_layer = parameters.absorbing_layer;
+    loads.push_back(load);
+  }
+  if (scene.body_force.is_any()) {
+    core::BoundaryLoad<dim> load;
+    load.boundary = core::BoundaryLoad<dim>::whole_body;
+    load.kind = core::BoundaryLoad<dim>::Kind::acceleration;
+    for (int c = 0; c < dim; ++c)
+      if (scene.body_force.acceleration[c] != 0)
+        load.value[c] = scene.body_force.acceleration[c];
+    load.history = time_function_of(scene.body_force.history, scene.body_force.ramp);
+    loads.push_back(load);
+  }
+  return loads;
+}
+
+template double loaded_area(const Scene &, const core::BoundaryLoad<2> &);
+template double loaded_area(const Scene &, const core::BoundaryLoad<3> &);
+template std::vector<core::BoundaryLoad<2>> make_loads(const Scene &);
+template std::vector<core::BoundaryLoad<3>> make_loads(const Scene &);
+} // namespace ligament::program

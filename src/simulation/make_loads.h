@@ -1,0 +1,19 @@
+// From the loads of a scene to those that both models read.
+#pragma once
+
+#include "core/load.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+core::TimeFunction time_function_of(const History &history, double ramp);
+
+/// Those of the scene's list in its order, and behind them the body force if there is one. A force
+/// is spread over its part of the side; one at a point over a thousandth of a cell there.
+template <int dim>
+std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene);
+
+/// Area in m^2 of the part of the specimen's box on which the load acts.
+template <int dim>
+double loaded_area(const Scene &scene, const core::BoundaryLoad<dim> &load);
+} // namespace ligament::program

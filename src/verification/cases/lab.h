@@ -1,0 +1,9 @@
+// Verification of what a laboratory does: loads on parts, motion from the start, waves that meet.
+#pragma once
+
+#include "src/verification/cases.h"
+
+namespace ligament::program
+{
+std::vector<Case> lab_cases();
+} // namespace ligament::program
