@@ -3,6 +3,7 @@
 #include "core/parameters/spelling.h"
 #include "core/tell.h"
 #include "core/version.h"
+#include "src/launcher/scene_kinds.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -80,6 +81,15 @@ void declare(CLI::App &app, CommandLine &line)
   check.add_flag("--draw", line.draw, "also draws zones and boundary conditions");
   check.add_flag("--full", line.full,
                  "builds the bodies whatever their size, instead of answering from volumes");
+
+  CLI::App &begin = *app.add_subcommand("new", "writes a commented scene to begin with");
+  begin.add_option("kind", line.kind, "of test; without it: a list of all kinds")
+      ->type_name("KIND");
+  begin
+      .add_option("--output,-o", line.output,
+                  "the file, which must not exist; - for standard output; without it: KIND.json")
+      ->type_name("FILE");
+  begin.footer("Kinds:\n" + list_of_kinds());
 
   CLI::App &compare = *app.add_subcommand("compare", "a run beside its reference");
   compare.add_option("run", line.run, "folder of the run")->required()->type_name("RUN");

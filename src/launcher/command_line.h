@@ -11,12 +11,13 @@ namespace ligament::program
 {
 struct CommandLine
 {
-  std::string command; // run resume check compare sweep explain report verify
+  std::string command; // run resume check new compare sweep explain report verify
   bool json = false;   // end with one JSON object on the last line of standard output
 
   std::string scene;                  // run, check: file; resume: empty: that of the run
   std::vector<std::string> overrides; // run, check: "/path=value", in their order
-  std::string output;                 // folder for what is written; empty: chosen from the name
+  std::string kind;                   // new: of scene; empty: lists them
+  std::string output;                 // what is written: folder, new: file; empty: of that name
   int ranks = 1;                      // run, check
   bool draw = false;                  // check: also a picture
   std::string study;                  // sweep: file

@@ -5,6 +5,7 @@
 #include "core/tell.h"
 #include "src/analysis/compare.h"
 #include "src/analysis/report.h"
+#include "src/launcher/new_command.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
 #include "src/launcher/sweep_command.h"
@@ -103,6 +104,8 @@ ExitCode print_report(const CommandLine &line)
 
 int dispatch(const CommandLine &line, int argc, char **argv)
 {
+  if (line.command == "new")
+    return new_command(line);
   if (line.command == "sweep")
     return sweep_command(line);
   if (line.command == "run" || line.command == "check")

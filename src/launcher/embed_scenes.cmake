@@ -1,0 +1,16 @@
+# Writes the scenes of a folder into a source file as string literals: one program needs no files beside it.
+# ligament_embed_scenes(<folder> <source>): the kinds are the names of the files, in the order of the alphabet.
+function(ligament_embed_scenes folder source)
+  file(GLOB scenes CONFIGURE_DEPENDS ${folder}/*.json)
+  list(SORT scenes)
+  set(text "// Written by embed_scenes.cmake.\n#include \"src/launcher/scene_kinds.h\"\n\n")
+  string(APPEND text "std::vector<ligament::program::SceneKind> ligament::program::scene_kinds()\n{\n  return {\n")
+  foreach(scene IN LISTS scenes)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${scene})
+    get_filename_component(kind ${scene} NAME_WE)
+    file(READ ${scene} content)
+    string(APPEND text "    {\"${kind}\", R\"scene(${content})scene\"},\n")
+  endforeach()
+  string(APPEND text "  };\n}\n")
+  file(GENERATE OUTPUT ${source} CONTENT "${text}")
+endfunction()
