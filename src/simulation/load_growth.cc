@@ -41,31 +41,59 @@ LoadGrowth<dim>::LoadGrowth(const std::vector<core::BoundaryLoad<dim>> &loads, d
     : from_(from), to_(to)
 {
   constexpr double round_off = 1e-9;
+  const auto are_in_proportion = [&](const auto &a, const auto &b) {
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double time = from + part * (to - from);
+      if (!(std::abs(share_of(a, from, to, time) - share_of(b, from, to, time)) < round_off))
+        return false;
+    }
+    return true;
+  };
   for (const auto &load : loads) {
     if (!has_value(load) || size_at(load, to) == size_at(load, from))
       continue;
-    if (!lead_) {
-      lead_ = &load;
-      continue;
-    }
-    for (const double part : {0.25, 0.5, 0.75}) {
-      const double time = from + part * (to - from);
-      is_proportional_ = is_proportional_ && std::abs(share_of(load, from, to, time) -
-                                                      share_of(*lead_, from, to, time)) < round_off;
-    }
+    if (std::none_of(courses_.begin(), courses_.end(),
+                     [&](const auto *course) { return are_in_proportion(load, *course); }))
+      courses_.push_back(&load);
   }
 }
 
 template <int dim>
 double LoadGrowth<dim>::share(double time) const
 {
-  return lead_ ? share_of(*lead_, from_, to_, time) : (time - from_) / (to_ - from_);
+  return courses_.empty() ? (time - from_) / (to_ - from_)
+                          : share_of(*courses_[0], from_, to_, time);
 }
 
 template <int dim>
-double LoadGrowth<dim>::rate(double time) const
+Eigen::VectorXd LoadGrowth<dim>::shares(double time) const
 {
-  return lead_ ? rate_at(*lead_, time) / (size_at(*lead_, to_) - size_at(*lead_, from_)) : 0;
+  Eigen::VectorXd shares(n_courses());
+  shares[0] = share(time);
+  for (int k = 1; k < n_courses(); ++k)
+    shares[k] = share_of(*courses_[k], from_, to_, time);
+  return shares;
+}
+
+template <int dim>
+Eigen::VectorXd LoadGrowth<dim>::rates(double time) const
+{
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(n_courses());
+  for (std::size_t k = 0; k < courses_.size(); ++k)
+    rates[Eigen::Index(k)] =
+        rate_at(*courses_[k], time) / (size_at(*courses_[k], to_) - size_at(*courses_[k], from_));
+  return rates;
+}
+
+template <int dim>
+double LoadGrowth<dim>::time_of(double wanted) const
+{
+  double low = from_, high = to_;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = low + (high - low) / 2;
+    (share(middle) >= wanted ? high : low) = middle;
+  }
+  return high;
 }
 
 template <int dim>

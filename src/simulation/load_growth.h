@@ -1,13 +1,15 @@
-// How far the loads of a scene have grown, where one number says it for all of them.
+// How far the loads of a scene have grown: one number for each course in time that they take.
 #pragma once
 
 #include "core/load.h"
+
+#include <Eigen/Core>
 
 #include <vector>
 
 namespace ligament::program
 {
-/// Loads between two times, in steps of the far field.
+/// Loads between two times. Those that grow in proportion take one course; the first one leads.
 template <int dim>
 class LoadGrowth
 {
@@ -15,15 +17,17 @@ public:
   /// Times in s.
   LoadGrowth(const std::vector<core::BoundaryLoad<dim>> &loads, double from, double to);
 
-  /// Something changes at all.
-  bool is_any() const { return lead_ != nullptr; }
-  /// All that change do so in proportion.
-  bool is_proportional() const { return is_proportional_; }
+  /// One at least: where nothing grows, it is time.
+  int n_courses() const { return courses_.empty() ? 1 : int(courses_.size()); }
 
-  /// 0 at the beginning, 1 at the end; monotonous.
+  /// Of each course: 0 at the beginning, 1 at the end; monotonous where no load turns.
+  Eigen::VectorXd shares(double time) const;
+  /// Their rates, in 1/s; 0 where nothing grows.
+  Eigen::VectorXd rates(double time) const;
+  /// Of the first one.
   double share(double time) const;
-  /// Its rate, in 1/s.
-  double rate(double time) const;
+  /// When it is that far, in s.
+  double time_of(double share) const;
 
   /// Some load may fall or turn, at corners alone.
   static bool may_turn(const std::vector<core::BoundaryLoad<dim>> &loads);
@@ -32,8 +36,7 @@ public:
                             double last);
 
 private:
-  const core::BoundaryLoad<dim> *lead_ = nullptr;
+  std::vector<const core::BoundaryLoad<dim> *> courses_;
   double from_, to_;
-  bool is_proportional_ = true;
 };
 } // namespace ligament::program

@@ -1,5 +1,7 @@
 #include "src/simulation/static_stretch.h"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +23,7 @@ long before_turn(const CoupledBody<dim> &body, const Clock &clock, int ratio, lo
 }
 } // namespace
 
-// Loads that don't grow in proportion almost do so over short stretches within their ramps.
+// Where loads take several courses, a stretch ends where one of them has a corner.
 template <int dim>
 StaticStretch<dim>::StaticStretch(CoupledBody<dim> &body, EquilibriumSolver<dim> &solver,
                                   const Clock &clock, long reach)
@@ -29,36 +31,71 @@ StaticStretch<dim>::StaticStretch(CoupledBody<dim> &body, EquilibriumSolver<dim>
       begin_(clock.now.step), end_(before_turn(body, clock, ratio_, reach)),
       growth_(growth_to(end_)), start_(solver.system().place())
 {
-  if (growth_.is_proportional())
+  if (growth_.n_courses() == 1)
     return;
   const double now = time_of(begin_);
-  reach = end_;
-  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(reach));
-  end_ =
-      std::clamp(begin_ + ratio_ * long(std::ceil((corner - now) / (ratio_ * dt_) * (1 - 1e-12))),
-                 begin_ + ratio_, reach);
-  constexpr int parts = 4;
-  const long far_steps = (end_ - begin_) / ratio_;
-  if (!growth_to(end_).is_proportional() && far_steps >= parts)
-    end_ = begin_ + far_steps / parts * ratio_;
+  const double corner = LoadGrowth<dim>::next_corner(body.loads, now, time_of(end_));
+  const double far_step = ratio_ * dt_;
+  end_ = std::clamp(begin_ + ratio_ * long(std::ceil((corner - now) / far_step * (1 - 1e-12))),
+                    begin_ + ratio_, end_);
   growth_ = growth_to(end_);
 }
 
 template <int dim>
 typename StaticStretch<dim>::End StaticStretch<dim>::find_response()
 {
-  const End end = solver_.find_response(time_of(begin_), time_of(end_), response_);
-  if (end == End::indefinite)
-    response_.resize(0);
-  return end;
+  const int n = growth_.n_courses();
+  responses_.assign(n, Eigen::VectorXd());
+  courses_at_responses_.resize(n, n);
+  End worst = End::converged;
+  for (int k = 0; k < n; ++k) {
+    const double time = time_of(begin_) + (time_of(end_) - time_of(begin_)) * (n - k) / n;
+    courses_at_responses_.col(k) = growth_.shares(time);
+    const End end = solver_.find_response(time_of(begin_), time, responses_[k]);
+    if (end != End::converged)
+      worst = end;
+    if (end == End::indefinite) {
+      responses_.clear();
+      break;
+    }
+  }
+  return worst;
+}
+
+// Courses that hardly differ count as one.
+template <int dim>
+Eigen::VectorXd StaticStretch<dim>::parts_of(const Eigen::VectorXd &courses) const
+{
+  if (courses.size() == 1)
+    return courses;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-7);
+  return solver.compute(courses_at_responses_).solve(courses);
+}
+
+template <int dim>
+void StaticStretch<dim>::move(double from, double to)
+{
+  const auto parts = [&](double share) {
+    return growth_.n_courses() == 1 ? Eigen::VectorXd::Constant(1, share)
+                                    : parts_of(growth_.shares(growth_.time_of(share)));
+  };
+  const Eigen::VectorXd way = growth_.n_courses() == 1 ? Eigen::VectorXd::Constant(1, to - from)
+                                                       : Eigen::VectorXd(parts(to) - parts(from));
+  for (std::size_t k = 0; k < responses_.size(); ++k)
+    solver_.system().displace(responses_[k], way[Eigen::Index(k)]);
 }
 
 template <int dim>
 Eigen::VectorXd StaticStretch<dim>::velocities(double time) const
 {
-  if (response_.size() == 0)
-    return Eigen::VectorXd::Zero(solver_.system().size());
-  return growth_.rate(time) * response_;
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(solver_.system().size());
+  if (responses_.empty())
+    return y;
+  const Eigen::VectorXd parts = parts_of(growth_.rates(time));
+  for (std::size_t k = 0; k < responses_.size(); ++k)
+    y += parts[Eigen::Index(k)] * responses_[k];
+  return y;
 }
 
 template <int dim>
@@ -95,7 +132,7 @@ std::optional<double> StaticStretch<dim>::share_that_breaks(double &slope)
   double at = 0; // the body is there
   auto &system = solver_.system();
   const auto bears = [&](double share, double noted) {
-    system.displace(response_, share - at);
+    move(at, share);
     at = share;
     return bond_share(time_of(step_of(share)), noted);
   };
@@ -147,7 +184,7 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
   constexpr double over = 1e-6; // of the strength
   for (int k = 0;; ++k) {
     const double share = growth_.share(time_of(step));
-    system.displace(response_, share - at);
+    move(at, share);
     if (at > 0) { // along the parabola of walk()
       const double longer = share * share / (at * at);
       system.displace(bend_, longer - 1);
@@ -214,8 +251,10 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
     const double share = growth_.share(clock.now.time);
     if (step == end_)
       system.put_back(finish_);
-    else
-      system.displace(Eigen::VectorXd((share - at) * response_ + (bent(share) - bent(at)) * bend_));
+    else {
+      move(at, share);
+      system.displace(bend_, bent(share) - bent(at));
+    }
     at = share;
     commit(velocities(clock.now.time));
     if (n_broken() > broken_before || step == end_)

@@ -1,4 +1,4 @@
-// A stretch of a static phase: loads grow in proportion, and the body answers by equilibria.
+// A stretch of a static phase: loads grow without a corner, and the body answers by equilibria.
 #pragma once
 
 #include "src/simulation/clock.h"
@@ -45,6 +45,10 @@ private:
     return {body_.loads, time_of(begin_), time_of(step)};
   }
   double time_of(long step) const { return double(step) * dt_; }
+  /// How much of each response makes what the loads have grown by.
+  Eigen::VectorXd parts_of(const Eigen::VectorXd &courses) const;
+  /// Along the responses, from one share of the growth to another.
+  void move(double from, double to);
   /// The first step of the far field after the beginning by which the loads have grown that far.
   long step_of(double share) const;
   std::optional<double> share_that_breaks(double &slope);
@@ -59,7 +63,11 @@ private:
   long begin_, end_; // steps
   LoadGrowth<dim> growth_;
   typename StaticSystem<dim>::Place start_, finish_;
-  Eigen::VectorXd response_, bend_; // y
-  double share_ = 0;                // of the growth, at the end
+  /// y at several times, the end first: as many as there are courses of loads, of which the linear
+  /// answers to each are made.
+  std::vector<Eigen::VectorXd> responses_;
+  Eigen::MatrixXd courses_at_responses_; // shares of each course, one column a response
+  Eigen::VectorXd bend_;                 // y
+  double share_ = 0;                     // of the growth, at the end
 };
 } // namespace ligament::program

@@ -27,7 +27,7 @@ double largest_difference(const CoupledBody<dim> &a, const CoupledBody<dim> &b)
   return difference / largest;
 }
 
-/// The loop of a run: ramps of 1 s, then the loads stand still.
+/// The loop of a run: a ramp, then the loads stand still.
 template <int dim>
 void damp(CoupledBody<dim> &body, double rate, long n_steps)
 {
@@ -46,23 +46,31 @@ void damp(CoupledBody<dim> &body, double rate, long n_steps)
   }
 }
 
+constexpr double exact = 1e-8; // the solver leaves 1e-9 of the load
+
 /// At strains of 1e-3 and a shear that turns the body by as much.
 template <int dim>
 void expect_that_steps_end_there(const std::vector<std::string> &overrides, double rate,
-                                 long n_steps)
+                                 long n_steps, double tolerance = exact)
 {
-  const std::vector<std::string> scene =
+  // Turns about several axes do not commute: in 3D the orientation of pads, which the mesh turns,
+  // depends on the way there by the square of the angles. Waves would make these large.
+  constexpr double ramp = 300;
+  std::vector<std::string> scene =
       overrides + std::vector{dim == 2 ? loads({{"top", "displacement", {"0.3", "0.1"}},
                                                 {"bottom", "displacement", {"0", "0"}}})
-                                       : loads({{"top", "displacement", {"0.2", "0.05", "0"}},
+                                       : loads({{"top", "displacement", {"0.2", "0.05", "0.1"}},
                                                 {"bottom", "displacement", {"0", "0", "0"}}})};
+  std::string &list = scene.back();
+  for (auto at = list.find("\"ramp\": 1}"); at != std::string::npos; at = list.find("\"ramp\": 1}"))
+    list.replace(at, 10, "\"ramp\": " + std::to_string(ramp) + "}");
   StaticBody<dim> sought(scene), stepped(scene);
   Eigen::VectorXd moved;
-  ASSERT_EQ(sought.solver.find_equilibrium(1, moved), EquilibriumSolver<dim>::End::converged);
+  ASSERT_EQ(sought.solver.find_equilibrium(ramp, moved), EquilibriumSolver<dim>::End::converged);
   damp(stepped.body, rate, n_steps);
   const double difference = largest_difference(stepped.body, sought.body);
   std::printf("after %ld steps: displacements differ by %.2e\n", n_steps, difference);
-  EXPECT_LT(difference, 1e-8); // the solver leaves 1e-9 of the load
+  EXPECT_LT(difference, tolerance);
 }
 
 // The slowest of their waves takes 240 to come back: in 1e5 steps of 0.3 it is damped by e^-900.
@@ -86,12 +94,11 @@ TEST(StaticOracle, DampedStepsOfAMesh)
 {
   expect_that_steps_end_there<2>({"/discrete_zone=none"}, 0.03, 20000);
 }
-// Critically damped in bending, of frequency 0.0126. It bends about one axis: turns about several
-// do not commute, so that the orientation of pads, which the mesh turns, depends on the way there,
-// by the square of the angle.
+// Critically damped in bending, of frequency 0.0126.
 TEST(StaticOracle, SlowDampedStepsOfABar)
 {
-  expect_that_steps_end_there<3>({}, 0.025, 10000);
+  constexpr double angle = 0.2 / 60;
+  expect_that_steps_end_there<3>({}, 0.025, 10000, angle * angle);
 }
 TEST(StaticOracle, SlowDampedStepsOfABarOfParticles)
 {
