@@ -209,7 +209,12 @@ algebra::CgResult EquilibriumSolver<dim>::solve(const Eigen::VectorXd &right, do
   prepare();
   y.resize(0);
   const auto result = algebra::conjugate_gradients(
-      [&](const Eigen::VectorXd &p, Eigen::VectorXd &kp) { kp = system_.stiffness_times(p); },
+      [&](const Eigen::VectorXd &p, Eigen::VectorXd &kp) {
+        // Particles that have turned and the mesh, which is linear, do not agree to the last digit
+        // on what moves freely.
+        kp = system_.stiffness_times(p);
+        project_force(kp);
+      },
       [&](const Eigen::VectorXd &r, Eigen::VectorXd &z) {
         preconditioner_->apply(r, z);
         system_.drop_inert(z);

@@ -108,4 +108,22 @@ TEST(FreeMotions, NarrowSupportsHold)
   ASSERT_EQ(body.solver.find_equilibrium(1, moved), EquilibriumSolver<2>::End::converged);
   EXPECT_EQ(body.solver.n_free_motions(), 1); // sideways
 }
+
+// Particles that have turned move freely about where they are, the linear mesh about where it was:
+// what is projected out is near to what nothing resists, not equal to it.
+TEST(StaticFreeMotions, OfACoupledBarThatHasBentAndStretched)
+{
+  StaticBody<3> one(std::vector<std::string>{
+      R"(/specimen/notches=[{"lower": [-4, -0.6, -3.5], "upper": [0, 0.6, 3.5]}])",
+      loads({{"top", "displacement", {"null", "0.3", "null"}},
+             {"bottom", "displacement", {"null", "-0.3", "null"}}})});
+  Eigen::VectorXd moved;
+  ASSERT_EQ(one.solver.find_equilibrium(0.8, moved), EquilibriumSolver<3>::End::converged);
+  EXPECT_EQ(one.solver.n_free_motions(), 3); // sideways, turning
+  one.solver.renew();
+  const int before = one.solver.n_iterations();
+  ASSERT_EQ(one.solver.find_response(0.8, 1, moved), EquilibriumSolver<3>::End::converged);
+  EXPECT_LE(one.solver.n_iterations() - before, 60);
+  ASSERT_EQ(one.solver.find_equilibrium(1, moved), EquilibriumSolver<3>::End::converged);
+}
 } // namespace
