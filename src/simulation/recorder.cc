@@ -251,6 +251,8 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling:
       return;
   }
   broken_time_ = bonds.back().time;
+  // Between two rows of a coarse history all of it may have happened.
+  curve_.add(step.time, machine_.read(body, step.time), n_broken(body));
   curve_.end();
   break_state_ = present_state(body, step.time);
   log_.info("the load path is gone since {:.4g} s: {:.2g} of the section is left", *broken_time_,

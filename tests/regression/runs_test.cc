@@ -69,6 +69,17 @@ TEST(Runs, CoupledPlateBreaksLikeItsPureDiscreteTwin)
   EXPECT_GT(r.particle_ratio.value(), 2);
 }
 
+// The crack runs through, and the load falls, between two rows.
+TEST(Runs, APlateThatBreaksBetweenTwoRowsHasAPeak)
+{
+  const RunRecord record =
+      run("coarse_rows",
+          cracked + std::vector<std::string>{until_broken, "/output/history_interval=600"});
+  EXPECT_EQ(record.reason.substr(0, 15), "specimen broken");
+  ASSERT_TRUE(record.peak_load);
+  EXPECT_GT(*record.peak_load, 0);
+}
+
 TEST(Runs, TheSameSceneGivesTheSameBits)
 {
   const auto overrides =
