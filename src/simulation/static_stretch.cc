@@ -76,12 +76,10 @@ Eigen::VectorXd StaticStretch<dim>::parts_of(const Eigen::VectorXd &courses) con
 template <int dim>
 void StaticStretch<dim>::move(double from, double to)
 {
-  const auto parts = [&](double share) {
-    return growth_.n_courses() == 1 ? Eigen::VectorXd::Constant(1, share)
-                                    : parts_of(growth_.shares(growth_.time_of(share)));
-  };
-  const Eigen::VectorXd way = growth_.n_courses() == 1 ? Eigen::VectorXd::Constant(1, to - from)
-                                                       : Eigen::VectorXd(parts(to) - parts(from));
+  const auto courses = [&](double share) { return growth_.shares(growth_.time_of(share)); };
+  const Eigen::VectorXd way = growth_.n_courses() == 1
+                                  ? Eigen::VectorXd(Eigen::VectorXd::Constant(1, to - from))
+                                  : parts_of(courses(to) - courses(from));
   for (std::size_t k = 0; k < responses_.size(); ++k)
     solver_.system().displace(responses_[k], way[Eigen::Index(k)]);
 }
