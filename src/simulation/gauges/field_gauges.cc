@@ -1,5 +1,7 @@
 #include "src/simulation/gauges/field_gauges.h"
 
+#include "src/simulation/gauges/small_strain.h"
+
 #include "core/check.h"
 #include "core/exact_sum.h"
 
@@ -54,22 +56,6 @@ Tensor<dim> tensor_of(const Strain<dim> &s) // Voigt, of stresses
   else
     t << s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2];
   return t;
-}
-
-template <int dim>
-Strain<dim> small_strain(const Tensor<dim> &h)
-{
-  Strain<dim> e;
-  for (int c = 0; c < dim; ++c)
-    e[c] = h(c, c);
-  if constexpr (dim == 2)
-    e[2] = h(0, 1) + h(1, 0);
-  else {
-    e[3] = h(1, 2) + h(2, 1);
-    e[4] = h(0, 2) + h(2, 0);
-    e[5] = h(0, 1) + h(1, 0);
-  }
-  return e;
 }
 
 /// U - 1 from H = F - 1 without losing digits of small strains: C - 1 = H + H^T + H^T H has the

@@ -1,5 +1,7 @@
 #include "src/simulation/gauges/j_integral.h"
 
+#include "src/simulation/gauges/small_strain.h"
+
 #include "core/check.h"
 #include "core/exact_sum.h"
 
@@ -34,22 +36,6 @@ int axis_of(const Point &direction)
     if (direction[c] != 0)
       axis = c;
   return axis;
-}
-
-template <int dim>
-Strain<dim> small_strain(const Eigen::Matrix<double, dim, dim> &h)
-{
-  Strain<dim> e;
-  for (int c = 0; c < dim; ++c)
-    e[c] = h(c, c);
-  if constexpr (dim == 2)
-    e[2] = h(0, 1) + h(1, 0);
-  else {
-    e[3] = h(1, 2) + h(2, 1);
-    e[4] = h(0, 2) + h(2, 0);
-    e[5] = h(0, 1) + h(1, 0);
-  }
-  return e;
 }
 
 /// sigma n of a stress in Voigt order.
