@@ -89,12 +89,16 @@ public:
   {
     const std::string points = key + "/points";
     const std::size_t n = crack.points.size();
-    if (scene_.dimension == 2 ? n != 2 : n < 3)
-      return f_.error(
-          points, fmt::format("\"points\" in {} has {} points", key, n),
-          scene_.dimension == 2 ? "a crack in 2D is a segment" : "a crack in 3D is a polygon",
-          scene_.dimension == 2 ? "give its two ends; several segments are several cracks"
-                                : "give three corners or more");
+    if (scene_.dimension == 2 ? n < 2 : n < 3)
+      return f_.error(points, fmt::format("\"points\" in {} has {} points", key, n),
+                      scene_.dimension == 2 ? "a crack in 2D is a line"
+                                            : "a crack in 3D is a polygon",
+                      scene_.dimension == 2 ? "give its two ends, and its corners between"
+                                            : "give three corners or more");
+    for (std::size_t k = 1; k < n && scene_.dimension == 2; ++k)
+      if (crack.points[k] == crack.points[k - 1] && n > 2)
+        return f_.error(points, fmt::format("\"points\" in {} has the same point twice", key),
+                        "the crack has no direction there", "remove one of them");
     if (diameter(crack.points) == 0)
       return f_.error(points, fmt::format("\"points\" in {} are all the same", key),
                       "the crack has no length", "give different points");
@@ -104,10 +108,17 @@ public:
     if (scene_.dimension == 3 && !is_convex(crack.points))
       return f_.error(points, fmt::format("\"points\" in {} are no convex polygon", key),
                       "a crack is a convex polygon", "order them along its edge, or split it");
-    const std::vector<Point> inside = clip(crack.points, specimen_, scene_.dimension);
-    const double length = inside.empty()          ? 0
-                          : scene_.dimension == 2 ? diameter(inside)
-                                                  : std::sqrt(polygon_area(inside));
+    std::vector<Point> inside;
+    double length = 0;
+    if (scene_.dimension == 3) {
+      inside = clip(crack.points, specimen_, 3);
+      length = inside.empty() ? 0 : std::sqrt(polygon_area(inside));
+    }
+    for (std::size_t k = 1; k < n && scene_.dimension == 2; ++k) {
+      const auto part = clip({crack.points[k - 1], crack.points[k]}, specimen_, 2);
+      length += part.empty() ? 0 : diameter(part);
+      inside.insert(inside.end(), part.begin(), part.end());
+    }
     if (length == 0)
       return outside("the crack " + key, points);
     if (length < 2 * spacing_ * (1 - 1e-9))
