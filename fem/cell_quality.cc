@@ -36,16 +36,6 @@ bool is_bounding_box(const CellVectors<dim> &corners, const Vector<dim> &lower,
   return true;
 }
 
-template <int dim>
-std::string place_of(const CellVectors<dim> &corners)
-{
-  const Vector<dim> centre = corners.rowwise().mean();
-  std::string text = fmt::format("({:.4g}, {:.4g}", centre[0], centre[1]);
-  if constexpr (dim == 3)
-    text += fmt::format(", {:.4g}", centre[2]);
-  return text + ") m";
-}
-
 /// Smallest determinant of the Jacobian, in m^dim: at the corners, which a cell's volume needs, and
 /// at Gauss' points, where its stiffness is summed.
 template <int dim>
@@ -128,25 +118,32 @@ double worst_angle(const CellVectors<dim> &corners)
 }
 
 template <int dim>
+std::string place_text(const Mesh<dim> &mesh, int cell)
+{
+  const Vector<dim> centre = cell_corners(mesh, cell).rowwise().mean();
+  std::string text = fmt::format("({:.4g}, {:.4g}", centre[0], centre[1]);
+  if constexpr (dim == 3)
+    text += fmt::format(", {:.4g}", centre[2]);
+  return text + ") m";
+}
+
+template <int dim>
 void require_convex(const Mesh<dim> &mesh)
 {
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
     if (mesh.is_box(cell))
       continue;
     const CellVectors<dim> corners = cell_corners(mesh, cell);
-    if constexpr (dim == 2) {
-      const double angle = worst_angle<dim>(corners);
-      core::require(
-          angle < largest_angle,
-          fmt::format("the cell of the far field at {} has an angle of {:.1f} degrees: "
-                      "below {} it bends as theory has it; move the points of the outline "
-                      "there or take smaller cells",
-                      place_of<dim>(corners), angle, largest_angle));
-    }
-    core::require(least_jacobian<dim>(corners) > 0,
-                  fmt::format("the cell of the far field at {} is not convex: it folds over at a "
-                              "corner; move the points of the outline there or take smaller cells",
-                              place_of<dim>(corners)));
+    const double angle = dim == 2 ? worst_angle<dim>(corners) : 0;
+    const bool is_flat = !(angle < largest_angle), is_folded = !(least_jacobian<dim>(corners) > 0);
+    if (is_flat || is_folded)
+      throw core::InputError(fmt::format(
+          "the cell of the far field at {} is not convex enough: {}; move the points of the "
+          "outline there or take smaller cells",
+          place_text(mesh, cell),
+          is_flat ? fmt::format("it has an angle of {:.1f} degrees, at {} it loses its stiffness",
+                                angle, largest_angle)
+                  : "it folds over at a corner"));
   }
 }
 
@@ -156,6 +153,8 @@ template double scaled_jacobian<2>(const CellVectors<2> &);
 template double scaled_jacobian<3>(const CellVectors<3> &);
 template double worst_angle<2>(const CellVectors<2> &);
 template double worst_angle<3>(const CellVectors<3> &);
+template std::string place_text(const Mesh<2> &, int);
+template std::string place_text(const Mesh<3> &, int);
 template void require_convex(const Mesh<2> &);
 template void require_convex(const Mesh<3> &);
 } // namespace ligament::fem

@@ -3,6 +3,8 @@
 
 #include "fem/mesh.h"
 
+#include <string>
+
 namespace ligament::fem
 {
 /// Fills cell_lower, cell_size and general from nodes and cells: whoever makes or moves nodes calls
@@ -19,6 +21,10 @@ double scaled_jacobian(const CellVectors<dim> &corners);
 /// turns inwards.
 template <int dim>
 double worst_angle(const CellVectors<dim> &corners);
+
+/// Where the middle of a cell lies, as messages tell it: "(x, y) m".
+template <int dim>
+std::string place_text(const Mesh<dim> &mesh, int cell);
 
 /// Throws core::InputError with the place of the first cell that general cells cannot be: in 2D an
 /// angle of 170 degrees or more, in 3D a corner or Gauss point whose Jacobian is not positive.
