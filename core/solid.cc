@@ -224,16 +224,18 @@ Vector<dim> Solid<dim>::foot_on(int facet, const Vector<dim> &x) const
 template <int dim>
 auto Solid<dim>::nearest(const Vector<dim> &x, double limit) const -> Foot
 {
-  Foot best;
-  best.distance = limit;
-  const Vector<dim> all = Vector<dim>::Constant(limit);
-  for (const int f : near(x - all, x + all)) {
-    const Vector<dim> foot = foot_on(f, x);
-    const double d = (foot - x).norm();
-    if (d < best.distance || (best.facet < 0 && d <= limit))
-      best = {f, foot, d};
+  for (double reach = std::min(bin_, limit);; reach = std::min(2 * reach, limit)) {
+    Foot best{-1, Vector<dim>::Zero(), limit};
+    const Vector<dim> all = Vector<dim>::Constant(reach);
+    for (const int f : near(x - all, x + all)) {
+      const Vector<dim> foot = foot_on(f, x);
+      const double d = (foot - x).norm();
+      if (d < best.distance || (best.facet < 0 && d <= limit))
+        best = {f, foot, d};
+    }
+    if (reach >= limit || (best.facet >= 0 && best.distance <= reach))
+      return best;
   }
-  return best;
 }
 
 template <int dim>

@@ -4,6 +4,7 @@
 #include "core/types.h"
 
 #include <array>
+#include <limits>
 
 namespace ligament::core
 {
@@ -50,7 +51,7 @@ public:
     double distance = 0; // m, not signed
   };
   /// The point of the surface that is nearest to x, within the limit in m.
-  Foot nearest(const Vector<dim> &x, double limit) const;
+  Foot nearest(const Vector<dim> &x, double limit = std::numeric_limits<double>::infinity()) const;
 
   /// visit(facet) once for each facet whose box meets [lower, upper]; the order is that of their
   /// numbers.

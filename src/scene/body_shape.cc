@@ -386,6 +386,43 @@ std::shared_ptr<const core::Solid<dim>> solid_of(const Specimen &specimen, doubl
 }
 
 template <int dim>
+std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, double side,
+                                                      const core::BoxUnion<dim> &left_out)
+{
+  if (specimen.ball || !specimen.surface_file.empty())
+    throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/surface_file",
+                     "this body has no mesh",
+                     "in 3D the far field fills boxes and prisms along z",
+                     "make it discrete: \"far_field\": \"none\"");
+  Specimen meshed = specimen;
+  if (dim == 3) { // voids in 3D are inside the zone
+    meshed.holes.clear();
+    meshed.notches.clear();
+  }
+  const auto is_left_out = [&](const Point &lower, const Point &upper) {
+    return left_out.covers(Vector<dim>(lower.data()), Vector<dim>(upper.data()), 0);
+  };
+  const auto drop = [](auto &list, const auto &condition) {
+    list.erase(std::remove_if(list.begin(), list.end(), condition), list.end());
+  };
+  drop(meshed.holes, [&](const Hole &hole) {
+    const auto &[c, r] = hole;
+    return is_left_out({c[0] - r, c[1] - r, 0}, {c[0] + r, c[1] + r, 0});
+  });
+  drop(meshed.notches, [&](const Notch &notch) {
+    Point lower = notch.lower, upper = notch.upper;
+    for (int c = 0; c < dim; ++c) {
+      lower[c] = std::max(lower[c], specimen.lower(c));
+      upper[c] = std::min(upper[c], specimen.upper(c));
+    }
+    return is_left_out(lower, upper);
+  });
+  if (meshed.is_plain() && meshed.holes.empty() && meshed.notches.empty())
+    return {};
+  return std::make_shared<core::Solid<2>>(core::make_solid(outline_of(meshed, dim, side, dim == 2)));
+}
+
+template <int dim>
 std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int boundary)
 {
   const double size = std::max(specimen.size[0], specimen.size[1]);
@@ -440,6 +477,10 @@ bool BodyTest::contains(const Point &p) const
   return true;
 }
 
+template std::shared_ptr<const core::Solid<2>> mesh_outline_of<2>(const Specimen &, double,
+                                                                   const core::BoxUnion<2> &);
+template std::shared_ptr<const core::Solid<2>> mesh_outline_of<3>(const Specimen &, double,
+                                                                   const core::BoxUnion<3> &);
 template std::vector<core::FaceCorners<2>> faces_of<2>(const Specimen &, int);
 template std::vector<core::FaceCorners<3>> faces_of<3>(const Specimen &, int);
 template std::shared_ptr<const core::Solid<2>> solid_of(const Specimen &, double);

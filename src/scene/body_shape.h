@@ -1,6 +1,7 @@
 // The body that the keys of /specimen describe: its box, its outline as polygons, its solid.
 #pragma once
 
+#include "core/box_union.h"
 #include "core/outline.h"
 #include "core/part.h"
 #include "src/scene/scene.h"
@@ -26,6 +27,13 @@ std::vector<core::Polygon> outline_of(const Specimen &specimen, int dim, double 
 /// The body, in 2D less its holes and notches; null where it is plain (Specimen::is_plain).
 template <int dim>
 std::shared_ptr<const core::Solid<dim>> solid_of(const Specimen &specimen, double side);
+
+/// The outline of the body as its mesh follows it, arcs in sides of up to `side` (m): holes and
+/// notches left out of it where they do not lie in the boxes that the mesh leaves out anyway. Null
+/// where it is a box. Throws core::KeyedError for bodies that have no outline.
+template <int dim>
+std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, double side,
+                                                      const core::BoxUnion<dim> &left_out);
 
 /// The plane faces of one of its sides. Ends of a prism with openings are given without these.
 template <int dim>

@@ -57,7 +57,7 @@ public:
       inside.lower[c] = std::max(inside.lower[c], specimen_.lower[c]);
       inside.upper[c] = std::min(inside.upper[c], specimen_.upper[c]);
     }
-    in_zone(inside, "the notch " + key, key);
+    off_overlap(inside, "the notch " + key, key);
   }
 
   void hole(const Hole &hole, const std::string &key)
@@ -82,7 +82,7 @@ public:
           fmt::format("\"radius\" in {} is {} m, less than two spacings", key, hole.radius),
           fmt::format("the particles cannot show it: \"spacing\" is {} m", spacing_),
           fmt::format("give at least {:.4g} m, or a smaller spacing", 2 * spacing_));
-    in_zone(box, "the hole " + key, key);
+    off_overlap(box, "the hole " + key, key);
   }
 
   void crack(const Crack &crack, const std::string &key)
@@ -146,6 +146,22 @@ private:
   {
     if (layout_)
       check_inside_zone(cut, name, key, *layout_, f_);
+  }
+
+  /// In 2D the mesh follows holes and notches, too: they may also lie beside the zone and the cells
+  /// that the coupler has. Where a notch crosses the overlap, the mesh decides.
+  void off_overlap(const Box &cut, const std::string &name, const std::string &key)
+  {
+    if (!layout_ || !layout_->coupled)
+      return;
+    const double margin = (scene_.coupling.transition_cells + 1) * layout_->cell_size;
+    Vector<3> lower(cut.lower.data()), upper(cut.upper.data());
+    const Vector<3> all = Vector<3>::Constant(margin);
+    const auto zone = zone_shape<3>(scene_);
+    const bool is_beside = !zone.meets(lower - all, upper + all, 0);
+    const bool is_hole = name.compare(0, 8, "the hole") == 0;
+    if (scene_.dimension == 3 || (is_hole && !is_beside))
+      in_zone(cut, name, key);
   }
 
   const Scene &scene_;
@@ -224,9 +240,12 @@ void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, F
           distance(s.holes[j].centre, s.holes[k].centre) < s.holes[j].radius + s.holes[k].radius)
         f.error(key("holes", k), fmt::format("the holes {} and {} overlap", j, k),
                 "each hole has an edge of its own", "move one of them, or join them");
-  if (scene.zone.extent == DiscreteZone::Extent::none &&
-      !(s.notches.empty() && s.cracks.empty() && s.holes.empty()))
-    f.warning("/specimen", "pure finite elements: notches, holes and cracks are left out",
-              "the mesh is the whole box", "");
+  if (scene.zone.extent == DiscreteZone::Extent::none && !s.cracks.empty())
+    f.error("/specimen/cracks", "a mesh without particles has no cracks",
+            "cells are whole", "remove the cracks, or add a discrete zone around them");
+  if (scene.zone.extent == DiscreteZone::Extent::none && scene.dimension == 3 && !s.notches.empty())
+    f.error("/specimen/notches", "a mesh in 3D has no notches of its own",
+            "it fills boxes and prisms along z",
+            "give \"slots\", which go through along z, or add a discrete zone around them");
 }
 } // namespace ligament::program

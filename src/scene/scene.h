@@ -156,6 +156,7 @@ struct FarField
   int cells_per_level = 4; // cells between two steps of the mesh size
   double growth = 1;       // above 1: from cell to cell, in place of refinement
   int fine_cells = 0;      // cells of size h, from the inner end of the overlap on; 0: automatic
+  double outline_cell_size = 0; // m, along curved and slanted sides; 0: cell_size
 };
 
 struct CouplingParameters

@@ -128,6 +128,7 @@ void declare_far_field(Section &s, FarField &f)
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
   s.add("fine_cells", f.fine_cells, "cells of size h between the inner end of the overlap and the first larger ones; 0: overlap, transition and two more").at_least(0).at_most(1000);
+  s.add("outline_cell_size", f.outline_cell_size, "size of the cells along curved and slanted sides, holes and notches, cell_size times a power of 2; 0: cell_size; not with growth").in("m").usually(1e-9, 1e3, "mm um nm").at_least(0);
 }
 
 void declare_coupling(Section &s, CouplingParameters &c)

@@ -62,6 +62,9 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
     require(!p.inner.empty(), "the discrete zone is nowhere wider than its two overlaps; widen it "
                               "or lower /coupling/overlap_cells");
   }
+  p.outline_cell_size = scene.far_field->outline_cell_size;
+  const double along = p.outline_cell_size > 0 ? p.outline_cell_size : p.cell_size;
+  p.outline = mesh_outline_of<dim>(scene.specimen, along / 20, core::BoxUnion<dim>{p.inner});
   const auto constants = elastic_constants_of<dim>(scene);
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
