@@ -17,9 +17,12 @@ const std::string section = "/specimen";
 /// The ways to say what the specimen is, and which of them are used.
 void check_choice(const Scene &scene, Findings &f)
 {
+  const Specimen &s = scene.specimen;
   std::vector<std::string> given;
-  for (const std::string key : {"size", "outline", "ball", "surface_file"})
-    if (f.given(section + "/" + key))
+  for (const auto &[key, is_given] :
+       {std::pair("size", f.given(section + "/size")), std::pair("outline", !s.outline.empty()),
+        std::pair("ball", s.ball.has_value()), std::pair("surface_file", !s.surface_file.empty())})
+    if (is_given)
       given.push_back(key);
   if (given.empty() && f.sound({section}))
     return f.error(section + "/size", "missing key \"size\" in /specimen",
@@ -39,10 +42,11 @@ void check_choice(const Scene &scene, Findings &f)
       f.sound({section + "/thickness"}))
     f.error(section + "/thickness", "missing key \"thickness\" in /specimen",
             "an outline in 3D is that of a prism along z", "add \"thickness\"");
-  if (scene.specimen.ball || !scene.specimen.surface_file.empty())
-    for (const std::string key : {"cutouts", "slots"})
-      if (f.given(section + "/" + key))
-        f.error(section + "/" + key,
+  if (s.ball || !s.surface_file.empty())
+    for (const auto &[key, is_given] :
+         {std::pair("cutouts", !s.cutouts.empty()), std::pair("slots", !s.slots.empty())})
+      if (is_given)
+        f.error(section + "/" + std::string(key),
                 fmt::format("\"{}\" in /specimen beside \"{}\"", key, given[0]),
                 "they cut boxes and prisms only", "remove them, or give \"notches\"");
 }
