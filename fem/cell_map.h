@@ -74,7 +74,7 @@ CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Stiffness<
 template <int dim>
 std::array<int, n_cell_nodes<dim> / 2> face_nodes(int face)
 {
-  std::array<int, n_cell_nodes<dim> / 2> nodes;
+  std::array<int, n_cell_nodes<dim> / 2> nodes{};
   int n = 0;
   for (int a = 0; a < n_cell_nodes<dim>; ++a)
     if ((a >> (face / 2) & 1) == face % 2)
