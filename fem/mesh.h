@@ -3,7 +3,9 @@
 #pragma once
 
 #include "core/box_union.h"
+#include "core/solid.h"
 
+#include <memory>
 #include <vector>
 
 namespace ligament::fem
@@ -49,6 +51,10 @@ struct MeshParameters
   int fine_cells = 0;               // cells of size h on every path out of the inner box
   int cells_per_level = 4;          // then as many cells on each coarser level
   double growth = 1; // above 1: cells grow to that size one by one by this factor, none hangs
+  /// The body in the plane, within lower and upper, holes left out; 3D: of a prism along z. Null:
+  /// the box.
+  std::shared_ptr<const core::Solid<2>> outline;
+  double outline_cell_size = 0; // m, along its sides that are no lines of the mesh; 0: h
 };
 
 template <int dim>
@@ -78,6 +84,10 @@ struct Mesh
 /// all cells have size h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError
 /// with reason and remedy when a section of the far field is thinner than 3/4 of its largest cells,
 /// when the inner box fills the specimen or lies outside, or when parameters are out of range.
+///
+/// With an outline its long sides along x and y become lines of the mesh where the cells between
+/// are not squeezed by that; along all others cells of outline_cell_size follow it
+/// (fem/fit_outline.h). A prism gets the same cells all along z.
 template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters);
 

@@ -29,6 +29,8 @@ void require_free_side(const CoupledBody<dim> &body, const Vector<dim> &x)
   for (const core::BoundaryLoad<dim> &load : body.loads) {
     if (load.boundary < 0)
       continue;
+    require(load.boundary < inner_surface<dim>,
+            "a zone of a body with loads on sides with names of their own cannot grow");
     const int axis = load.boundary / 2;
     const double distance =
         load.boundary % 2 ? body.upper[axis] - x[axis] : x[axis] - body.lower[axis];
