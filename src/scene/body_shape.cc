@@ -1,7 +1,7 @@
 #include "src/scene/body_shape.h"
 
 #include "core/keyed_error.h"
-#include "src/scene/surface_file.h"
+#include "src/scene/body_file.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -224,15 +224,27 @@ Polygon from_boost(const BoostPolygon::ring_type &ring, const std::vector<Polygo
   return polygon;
 }
 
-/// The first polygon without the others.
-std::vector<Polygon> without(const std::vector<Polygon> &polygons,
+/// The first n polygons, of which those that run clockwise are holes, without the others.
+std::vector<Polygon> without(const std::vector<Polygon> &polygons, std::size_t n,
                              const std::vector<std::string> &keys, double tolerance)
 {
-  BoostPolygons left = {to_boost(polygons[0])};
-  for (std::size_t k = 1; k < polygons.size(); ++k) {
+  BoostPolygons left;
+  for (std::size_t k = 0; k < n; ++k)
+    if (core::signed_area(polygons[k]) > 0)
+      left.push_back(to_boost(polygons[k]));
+  for (std::size_t k = 0; k < n; ++k)
+    if (core::signed_area(polygons[k]) < 0) {
+      BoostPolygon hole = to_boost(polygons[k]);
+      std::reverse(hole.outer().begin(), hole.outer().end());
+      BoostPolygons next;
+      bg::difference(left, hole, next);
+      left = std::move(next);
+    }
+  const BoostPolygons whole = left;
+  for (std::size_t k = n; k < polygons.size(); ++k) {
     BoostPolygons next;
     const BoostPolygon cut = to_boost(polygons[k]);
-    if (!bg::intersects(cut, to_boost(polygons[0])))
+    if (!bg::intersects(cut, whole))
       throw KeyedError(keys[k], fmt::format("{} lies outside the specimen", keys[k]),
                        "it takes nothing away", "move it, or remove it");
     bg::difference(left, cut, next);
@@ -283,6 +295,9 @@ void for_each_name(const Specimen &specimen, Visit &&visit)
   }
   for (const Slot &slot : specimen.slots)
     visit(slot.side);
+  if (specimen.body)
+    for (const std::string &name : specimen.body->names)
+      visit(name);
 }
 } // namespace
 
@@ -305,10 +320,21 @@ void enclose_body(Specimen &specimen, int dim)
   if (specimen.ball) {
     upper = Vector<3>::Constant(specimen.ball->radius);
     lower = -upper;
-  } else if (!specimen.surface_file.empty()) {
-    const core::Solid<3> solid = read_surface(specimen.surface_file);
-    lower = solid.lower();
-    upper = solid.upper();
+  } else if (!specimen.file.empty()) {
+    if (!specimen.body)
+      specimen.body = std::make_shared<BodyFile>(read_body(specimen.file, dim));
+    lower = Vector<3>::Constant(1e300);
+    upper = -lower;
+    const auto include = [&](const Vector<3> &x) {
+      lower = lower.cwiseMin(x);
+      upper = upper.cwiseMax(x);
+    };
+    for (const auto &polygon : specimen.body->polygons)
+      for (const auto &corner : polygon)
+        include({corner.place[0], corner.place[1], 0});
+    for (const auto &facet : specimen.body->facets)
+      for (const auto &[a, b] : facet.edges)
+        include(specimen.body->vertices[a]);
   } else {
     const auto [least, most] = box_around(outline_from(specimen.outline, "", {}, 0));
     lower << least, -specimen.thickness / 2;
@@ -328,7 +354,9 @@ std::vector<Polygon> outline_of(const Specimen &specimen, int dim, double side, 
   const int inner = 2 * dim;
   const std::vector<std::string> names = side_names_of(specimen, dim);
   std::vector<Loop> loops;
-  if (specimen.outline.empty())
+  if (specimen.body && dim == 2)
+    ; // polygons below
+  else if (specimen.outline.empty())
     loops.push_back(
         {core::rectangle({specimen.lower(0), specimen.lower(1)},
                          {specimen.upper(0), specimen.upper(1)}, {inner, inner, inner, inner}),
@@ -357,12 +385,23 @@ std::vector<Polygon> outline_of(const Specimen &specimen, int dim, double side, 
   }
   std::vector<Polygon> polygons;
   std::vector<std::string> keys;
+  if (specimen.body && dim == 2)
+    for (Polygon polygon : specimen.body->polygons) {
+      for (auto &corner : polygon)
+        corner.boundary = corner.boundary < 0
+                              ? inner
+                              : number_of(names, specimen.body->names[corner.boundary], inner);
+      polygons.push_back(std::move(polygon));
+      keys.push_back("/specimen/file");
+    }
+  const std::size_t n_outer = std::max<std::size_t>(1, polygons.size());
   for (const Loop &loop : loops) {
     polygons.push_back(checked_polygon(loop, side));
     keys.push_back(loop.key);
   }
-  if (polygons.size() > 1)
-    polygons = without(polygons, keys, 1e-7 * std::max(specimen.size[0], specimen.size[1]));
+  if (polygons.size() > n_outer)
+    polygons =
+        without(polygons, n_outer, keys, 1e-7 * std::max(specimen.size[0], specimen.size[1]));
   name_sides_of_box(specimen, polygons, inner);
   return polygons;
 }
@@ -378,8 +417,15 @@ std::shared_ptr<const core::Solid<dim>> solid_of(const Specimen &specimen, doubl
     if (specimen.ball)
       return std::make_shared<core::Solid<3>>(
           core::make_ball(Vector<3>::Zero(), specimen.ball->radius, 2 * side, inner_surface<3>));
-    if (!specimen.surface_file.empty())
-      return std::make_shared<core::Solid<3>>(read_surface(specimen.surface_file));
+    if (specimen.body) {
+      const std::vector<std::string> names = side_names_of(specimen, 3);
+      auto facets = specimen.body->facets;
+      for (auto &facet : facets)
+        facet.boundary = facet.boundary < 0 ? inner_surface<3>
+                                            : number_of(names, specimen.body->names[facet.boundary],
+                                                        inner_surface<3>);
+      return std::make_shared<core::Solid<3>>(specimen.body->vertices, std::move(facets));
+    }
     return std::make_shared<core::Solid<3>>(core::extrude(
         outline_of(specimen, 3, side, false), specimen.lower(2), specimen.upper(2), {4, 5}));
   }
@@ -389,9 +435,9 @@ template <int dim>
 std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, double side,
                                                       const core::BoxUnion<dim> &left_out)
 {
-  if (specimen.ball || !specimen.surface_file.empty())
-    throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/surface_file",
-                     "this body has no mesh", "in 3D the far field fills boxes and prisms along z",
+  if (specimen.ball || (dim == 3 && specimen.body))
+    throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/file", "this body has no mesh",
+                     "in 3D the far field fills boxes and prisms along z",
                      "make it discrete: \"far_field\": \"none\"");
   Specimen meshed = specimen;
   if (dim == 3) { // voids in 3D are inside the zone

@@ -109,7 +109,7 @@ void locate_files(const std::string &name, Scene &scene)
 {
   if (name == scene_name("-"))
     return;
-  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.surface_file})
+  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.file})
     if (!path->empty())
       *path = (std::filesystem::path(name).parent_path() / *path).string();
 }

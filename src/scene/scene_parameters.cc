@@ -57,13 +57,13 @@ void declare_specimen_ball(Section &s, Ball &b)
 
 void declare_specimen(Section &s, Specimen &p)
 {
-  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or surface_file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a surface_file");
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
   s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-8, 1e4, "mm um nm").above(0);
   s.list("outline", p.outline, "in place of size: the corners of the body's outline in turn, either way round; in 3D that of a prism along z", declare_corner);
   s.list("cutouts", p.cutouts, "openings of any outline; what reaches out of the specimen opens its side; in 3D they go through along z", declare_cutout);
   s.list("slots", p.slots, "notches with parallel flanks at any angle; in 3D they go through along z", declare_slot);
   s.section("ball", p.ball, "none", "in place of size: a ball about the origin", declare_specimen_ball).only_in(3);
-  s.add("surface_file", p.surface_file, "in place of size: file of a closed surface of triangles (STL) in m, relative to the scene").only_in(3);
+  s.add("file", p.file, "in place of size: a file with the body, lengths in m, relative to the scene: gmsh's .msh (text, version 2.2 or 4.1), whose physical groups of lines (2D) or faces (3D) are names of sides; in 3D also .stl");
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
@@ -140,6 +140,7 @@ void declare_far_field(Section &s, FarField &f)
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
   s.add("fine_cells", f.fine_cells, "cells of size h between the inner end of the overlap and the first larger ones; 0: overlap, transition and two more").at_least(0).at_most(1000);
+  s.add("cells_from_file", f.cells_from_file, "the quadrilaterals of /specimen/file are the mesh, less those in the discrete zone, whose edges must be edges of cells; cells beside the zone must be rectangles along x and y").only_in(2);
   s.add("outline_cell_size", f.outline_cell_size, "size of the cells along curved and slanted sides, holes and notches, cell_size times a power of 2; 0: cell_size; not with growth").in("m").usually(1e-9, 1e3, "mm um nm").at_least(0);
 }
 

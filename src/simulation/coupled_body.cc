@@ -4,6 +4,8 @@
 #include "core/keyed_error.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
+#include "fem/import_mesh.h"
+#include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_loads.h"
@@ -45,6 +47,31 @@ double material_volume(const Scene &scene)
   return volume * (scene.dimension == 2 ? scene.specimen.thickness : 1);
 }
 
+/// Those of the body's file, or made to its outline.
+template <int dim>
+fem::Mesh<dim> make_cells(const Scene &scene, const fem::MeshParameters<dim> &p)
+{
+  if constexpr (dim == 2)
+    if (scene.far_field->cells_from_file) {
+      const GmshMesh &file = scene.specimen.body->mesh;
+      std::vector<Vector<2>> places;
+      for (const auto &x : file.nodes)
+        places.push_back(x.template head<2>());
+      std::vector<std::array<int, 4>> quads;
+      for (const auto &face : file.faces) {
+        const Vector<2> &x = places[face.corners[0]];
+        require(face.corners.size() == 4,
+                fmt::format("/far_field/cells_from_file: the face at ({:.6g}, {:.6g}) m is a "
+                            "triangle; mesh the body by quadrilaterals, or leave the key out: the "
+                            "cells then follow the outline",
+                            x[0], x[1]));
+        quads.push_back({face.corners[0], face.corners[1], face.corners[2], face.corners[3]});
+      }
+      return fem::import_mesh(places, quads, *p.outline, p.inner);
+    }
+  return fem::make_mesh(p);
+}
+
 template <int dim>
 void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
@@ -70,7 +97,7 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   material.stiffness = constants.stiffness;
   material.density = scene.coupling.coarse_mass * constants.density;
   material.thickness = body.thickness;
-  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(p), material, body.loads);
+  body.far = std::make_unique<fem::FemSolver<dim>>(make_cells(scene, p), material, body.loads);
   body.dt_far = body.far->stable_step();
   log.info("{} cells, {} nodes, {} hanging, stable step {:.4g} s", body.far->mesh().n_cells(),
            body.far->mesh().n_nodes(), body.far->mesh().hanging.size(), body.dt_far);

@@ -152,7 +152,7 @@ TEST(Shape, SurfacesOfTrianglesAreRead)
   };
   write(4);
   const std::string scene =
-      R"({"dimension": 3, "specimen": {"surface_file": "tetrahedron.stl"})" + rest +
+      R"({"dimension": 3, "specimen": {"file": "tetrahedron.stl"})" + rest +
       R"(, "discrete_zone": {"extent": "all", "packing": "fcc", "spacing": 0.2}, "far_field": "none"})";
   const ReadResult good = parse_scene(scene, "scene.json", {});
   ASSERT_TRUE(good.scene) << good.errors[0].message << good.errors[0].reason;
