@@ -42,6 +42,7 @@ struct GaugeParameters
   double angle = 0;                                       // rad
   std::optional<int> side;                                // see side_names
   int load = -1;                                          // index into Scene::loads; -1: none
+  std::string tool;                                       // name of one
   double smoothing = 0;                                   // s
   double mass = 0;                                        // kg
 };

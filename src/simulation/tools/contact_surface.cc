@@ -1,0 +1,293 @@
+#include "src/simulation/tools/contact_surface.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ligament::program
+{
+namespace
+{
+// By which a particle that the layer also turns answers faster than by its mass alone: the largest
+// eigenvalue of the layer at a distance of d/2, friction included, for discs and balls.
+constexpr double with_turns = 1.5;
+
+// Gauss points per direction on the face of a cell, where a contact may be narrower than the cell.
+constexpr int n_gauss = 3;
+const std::array<double, n_gauss> gauss_place = {(1 - std::sqrt(0.6)) / 2, 0.5,
+                                                 (1 + std::sqrt(0.6)) / 2},
+                                  gauss_weight = {5. / 18, 8. / 18, 5. / 18};
+
+template <int dim>
+struct Piece
+{
+  Vector<dim> arm;
+  double area;
+};
+
+/// Two Gauss points of a segment, m and m^2.
+std::vector<Piece<2>> pieces_of_segment(const Vector<2> &middle, const Vector<2> &normal,
+                                        double area, double thickness)
+{
+  const Vector<2> half = area / thickness / 2 / std::sqrt(3.) * Vector<2>(-normal[1], normal[0]);
+  return {{middle - half, area / 2}, {middle + half, area / 2}};
+}
+
+template <int dim>
+std::vector<Piece<dim>> pieces_of(const packings::BoundaryFace<dim> &face, double thickness)
+{
+  if constexpr (dim == 2)
+    return pieces_of_segment(face.lever, face.normal, face.area, thickness);
+  else {
+    std::vector<Piece<3>> pieces;
+    const std::size_t n = face.corners.size();
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector<3> a = face.corners[k] - face.lever, b = face.corners[(k + 1) % n] - face.lever;
+      const double area = a.cross(b).norm() / 2;
+      pieces.push_back({face.lever + (a + b) / 3, area});
+      sum += area;
+    }
+    if (sum <= 0)
+      return {{face.lever, face.area}};
+    for (Piece<3> &piece : pieces)
+      piece.area *= face.area / sum;
+    return pieces;
+  }
+}
+} // namespace
+
+template <int dim>
+void ContactSurface<dim>::add_flank(const Flank &flank, double stiffness_per_area,
+                                    std::int64_t owner)
+{
+  std::vector<Piece<dim>> pieces = {{flank.arm, flank.area}};
+  if constexpr (dim == 2)
+    pieces = pieces_of_segment(flank.arm, flank.normal, flank.area, thickness_);
+  for (const Piece<dim> &piece : pieces) {
+    SurfacePoint<dim> point;
+    point.owner = owner;
+    point.number = n_of_particle_[flank.particle]++;
+    point.particle = flank.particle;
+    point.arm = piece.arm;
+    point.area = piece.area;
+    point.stiffness = stiffness_per_area * piece.area;
+    points_.push_back(point);
+  }
+}
+
+template <int dim>
+void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
+                                        const particles::Particles<dim> &particles,
+                                        const ContactStiffness &stiffness, double stable_step)
+{
+  thickness_ = dim == 2 ? packing.thickness : 1;
+  plain_ = stiffness.youngs_modulus / packing.spacing;
+  n_of_particle_.assign(packing.size(), 0);
+  const double most = stiffness.share * std::pow(2 / stable_step, 2) / with_turns;
+  std::vector<double> outer(packing.size(), 0.);
+  for (const auto &face : packing.boundary_faces)
+    outer[face.i] += face.area;
+  per_area_.assign(packing.size(), plain_);
+  for (int i = 0; i < packing.size(); ++i)
+    if (outer[i] > 0 && std::isfinite(particles.mass[i])) {
+      per_area_[i] = std::min(plain_, most * particles.mass[i] / outer[i]);
+      largest_rate_ =
+          std::max(largest_rate_, with_turns * per_area_[i] * outer[i] / particles.mass[i]);
+    }
+  for (const auto &face : packing.boundary_faces)
+    for (const auto &piece : pieces_of<dim>(face, thickness_)) {
+      SurfacePoint<dim> point;
+      point.owner = packing.global_id[face.i];
+      point.number = n_of_particle_[face.i]++;
+      point.particle = face.i;
+      point.arm = piece.arm;
+      point.area = piece.area;
+      point.stiffness = per_area_[face.i] * piece.area;
+      points_.push_back(point);
+    }
+  for (const auto &face : packing.faces)
+    if (face.cracked) {
+      add_flank({face.i, face.lever_i, face.normal, face.area}, plain_, packing.global_id[face.i]);
+      add_flank({face.j, face.lever_j, face.normal, face.area}, plain_, packing.global_id[face.j]);
+    }
+}
+
+template <int dim>
+void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far, const core::Names &names,
+                                    const ContactStiffness &stiffness, double stable_step)
+{
+  const auto &mesh = far.mesh();
+  hanging_.assign(mesh.n_nodes(), -1);
+  for (std::size_t k = 0; k < mesh.hanging.size(); ++k)
+    hanging_[mesh.hanging[k].node] = int(k);
+  const double thickness = dim == 2 ? far.body().thickness : 1;
+  const std::size_t first = points_.size();
+  std::vector<double> share(mesh.n_nodes(), 0.); // N/m
+  std::map<std::int64_t, int> n_of_node;
+  for (const auto &face : mesh.boundary_faces) {
+    if (face.boundary == inner_surface<dim> || !far.is_own_cell(face.cell))
+      continue;
+    SurfacePoint<dim> point;
+    int n = 0;
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+      if ((a >> (face.face / 2) & 1) == face.face % 2)
+        point.nodes[n++] = mesh.cells[face.cell][a];
+    point.owner = -1 - names.name(point.nodes[0]);
+    const double width = mesh.cell_size[face.cell][face.face / 2];
+    const auto &x = mesh.nodes;
+    for (int k = 0; k < (dim == 2 ? n_gauss : n_gauss * n_gauss); ++k) {
+      const double s = gauss_place[k % n_gauss], r = gauss_place[k / n_gauss];
+      double weight = gauss_weight[k % n_gauss];
+      if constexpr (dim == 2) {
+        point.shares << 1 - s, s;
+        weight *= (x[point.nodes[1]] - x[point.nodes[0]]).norm() * thickness;
+      } else {
+        point.shares << (1 - s) * (1 - r), s * (1 - r), (1 - s) * r, s * r;
+        const Vector<3> along = (1 - r) * (x[point.nodes[1]] - x[point.nodes[0]]) +
+                                r * (x[point.nodes[3]] - x[point.nodes[2]]),
+                        across = (1 - s) * (x[point.nodes[2]] - x[point.nodes[0]]) +
+                                 s * (x[point.nodes[3]] - x[point.nodes[1]]);
+        weight *= gauss_weight[k / n_gauss] * along.cross(across).norm();
+      }
+      point.number = n_of_node[point.owner]++;
+      point.area = weight;
+      point.stiffness = stiffness.youngs_modulus / width * weight;
+      points_.push_back(point);
+      for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
+        share[point.nodes[a]] += point.shares[a] * point.stiffness;
+    }
+  }
+  // A node's row of the layer's stiffness adds up to its share of it.
+  const double most = stiffness.share * std::pow(2 / stable_step, 2);
+  for (std::size_t k = first; k < points_.size(); ++k) {
+    double factor = 1;
+    for (const int node : points_[k].nodes)
+      if (far.lumped_mass()[node] > 0 && !far.is_released_node(node)) {
+        const double rate = share[node] / far.lumped_mass()[node];
+        factor = std::min(factor, most / rate);
+        largest_rate_ = std::max(largest_rate_, std::min(rate, most));
+      }
+    points_[k].stiffness *= factor;
+  }
+}
+
+template <int dim>
+int ContactSurface<dim>::add_broken(const particles::ParticleSolver<dim> &zone)
+{
+  const int before = size();
+  const auto &broken = zone.force->broken_bonds();
+  for (; n_broken_ < broken.size(); ++n_broken_) {
+    const auto &bond = broken[n_broken_];
+    for (const int i : {bond.i, bond.j})
+      add_flank({i, bond.position - get(zone.state.reference, i), bond.normal, bond.area}, plain_,
+                zone.state.global_id[i]);
+  }
+  return before;
+}
+
+template <int dim>
+Vector<dim> ContactSurface<dim>::arm(int k, const particles::Particles<dim> &particles) const
+{
+  const SurfacePoint<dim> &point = points_[k];
+  if (!particles.turns)
+    return point.arm;
+  if constexpr (dim == 2) {
+    const double angle = particles.rotation[0][point.particle];
+    return Eigen::Rotation2Dd(angle) * point.arm;
+  } else {
+    const Vec<4> q = get(particles.rotation, point.particle);
+    return Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * point.arm;
+  }
+}
+
+template <int dim>
+Vector<dim> ContactSurface<dim>::place(int k, const coupling::Bodies<dim> &bodies) const
+{
+  const SurfacePoint<dim> &point = points_[k];
+  if (!point.is_far()) {
+    const auto &state = bodies.zone->state;
+    return get(state.reference, point.particle) + get(state.displacement, point.particle) +
+           arm(k, state);
+  }
+  Vector<dim> x = Vector<dim>::Zero();
+  for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
+    x += point.shares[a] *
+         (bodies.far->mesh().nodes[point.nodes[a]] + get(bodies.far->displacement, point.nodes[a]));
+  return x;
+}
+
+template <int dim>
+Vector<dim> ContactSurface<dim>::velocity(int k, const coupling::Bodies<dim> &bodies) const
+{
+  const SurfacePoint<dim> &point = points_[k];
+  Vector<dim> v = Vector<dim>::Zero();
+  if (point.is_far()) {
+    for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
+      v += point.shares[a] * get(bodies.far->velocity, point.nodes[a]);
+    return v;
+  }
+  const auto &state = bodies.zone->state;
+  v = get(state.velocity, point.particle);
+  if (!state.turns)
+    return v;
+  const Vector<dim> r = arm(k, state);
+  const Spin<dim> w = get(state.spin, point.particle);
+  if constexpr (dim == 2)
+    return v + w[0] * Vector<2>(-r[1], r[0]);
+  else
+    return v + w.cross(r);
+}
+
+template <int dim>
+void ContactSurface<dim>::push_node(int node, const Vector<dim> &force,
+                                    fem::FemSolver<dim> &far) const
+{
+  for (int c = 0; c < dim; ++c)
+    if (!far.is_held(node, c))
+      far.force[c][node] += force[c];
+}
+
+template <int dim>
+void ContactSurface<dim>::push(int k, const Vector<dim> &force, coupling::Bodies<dim> &bodies) const
+{
+  const SurfacePoint<dim> &point = points_[k];
+  if (point.is_far()) {
+    for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a) {
+      const int node = point.nodes[a], h = hanging_[node];
+      const Vector<dim> f = point.shares[a] * force;
+      if (h < 0)
+        push_node(node, f, *bodies.far);
+      else
+        for (const auto &[master, weight] : bodies.far->mesh().hanging[h].masters)
+          push_node(master, weight * f, *bodies.far);
+    }
+    return;
+  }
+  auto &state = bodies.zone->state;
+  add(state.force, point.particle, force);
+  if (!state.turns)
+    return;
+  const Vector<dim> r = arm(k, state);
+  if constexpr (dim == 2)
+    state.torque[0][point.particle] += r[0] * force[1] - r[1] * force[0];
+  else
+    add(state.torque, point.particle, Vector<3>(r.cross(force)));
+}
+
+template <int dim>
+double ContactSurface<dim>::largest_speed(const coupling::Bodies<dim> &bodies) const
+{
+  double largest = 0;
+  for (int k = 0; k < size(); ++k)
+    largest = std::max(largest, velocity(k, bodies).squaredNorm());
+  return std::sqrt(largest);
+}
+
+template struct SurfacePoint<2>;
+template struct SurfacePoint<3>;
+template class ContactSurface<2>;
+template class ContactSurface<3>;
+} // namespace ligament::program
