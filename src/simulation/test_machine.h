@@ -13,7 +13,8 @@ struct Reading
   double strain = 0;       // elongation over the specimen's size
 };
 
-/// Reads the first load that has a component: its largest one is the axis of the test.
+/// Reads the first load that has a component: its largest one is the axis of the test. Without such
+/// a load it reads the first tool that is driven, its force and its way.
 /// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
 /// whole sides.
 template <int dim>
@@ -24,7 +25,7 @@ public:
 
   Reading read(const CoupledBody<dim> &body, double time) const;
 
-  bool has_load() const { return load_ >= 0; }
+  bool has_load() const { return load_ >= 0 || tool_ >= 0; }
   /// The load answers a prescribed motion: it falls when nothing carries it any more.
   bool is_answer() const { return is_answer_; }
   /// Component of the measured force, 0 for x.
@@ -35,7 +36,10 @@ public:
 private:
   double side_displacement(const CoupledBody<dim> &body, int side, double time) const;
 
+  void look_for_tool(const CoupledBody<dim> &body);
+
   int load_ = -1; // index of the load that is read
+  int tool_ = -1; // likewise
   int component_ = 0, axis_ = 0;
   bool is_answer_ = false;
   double sign_ = 1; // tension on the upper side is positive

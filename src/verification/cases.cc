@@ -43,6 +43,7 @@ std::vector<Case> all_cases()
   add(static_run_cases());
   add(lab_gauges_cases());
   add(lab_cases());
+  add(lab_hertz_cases());
   add(random_scene_cases());
   return cases;
 }

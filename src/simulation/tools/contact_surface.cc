@@ -1,5 +1,6 @@
 #include "src/simulation/tools/contact_surface.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -14,11 +15,35 @@ namespace
 // eigenvalue of the layer at a distance of d/2, friction included, for discs and balls.
 constexpr double with_turns = 1.5;
 
-// Gauss points per direction on the face of a cell, where a contact may be narrower than the cell.
-constexpr int n_gauss = 3;
-const std::array<double, n_gauss> gauss_place = {(1 - std::sqrt(0.6)) / 2, 0.5,
-                                                 (1 + std::sqrt(0.6)) / 2},
-                                  gauss_weight = {5. / 18, 8. / 18, 5. / 18};
+/// Places from 0 to 1 and weights of a quadrature along an edge.
+using Rule = std::vector<std::array<double, 2>>;
+
+// Gauss points on the face of a cell: a contact may be narrower than the cell.
+const Rule whole = {
+    {(1 - std::sqrt(0.6)) / 2, 5. / 18}, {0.5, 8. / 18}, {(1 + std::sqrt(0.6)) / 2, 5. / 18}};
+
+/// Many points where particles may take over somewhere on the face.
+Rule even_rule(int n)
+{
+  Rule rule;
+  for (int k = 0; k < n; ++k)
+    rule.push_back({(k + 0.5) / n, 1. / n});
+  return rule;
+}
+constexpr int n_cut = 12;
+
+template <int dim>
+using Tensor = Eigen::Matrix<double, dim, dim>;
+
+/// Of sum A n n^T: the area that a push in the worst direction meets.
+template <int dim>
+double largest_eigenvalue(const Tensor<dim> &symmetric)
+{
+  if (symmetric.isZero(0))
+    return 0;
+  return Eigen::SelfAdjointEigenSolver<Tensor<dim>>(symmetric, Eigen::EigenvaluesOnly)
+      .eigenvalues()[dim - 1];
+}
 
 template <int dim>
 struct Piece
@@ -60,8 +85,7 @@ std::vector<Piece<dim>> pieces_of(const packings::BoundaryFace<dim> &face, doubl
 } // namespace
 
 template <int dim>
-void ContactSurface<dim>::add_flank(const Flank &flank, double stiffness_per_area,
-                                    std::int64_t owner)
+void ContactSurface<dim>::add_flank(const Flank &flank, std::int64_t owner)
 {
   std::vector<Piece<dim>> pieces = {{flank.arm, flank.area}};
   if constexpr (dim == 2)
@@ -73,7 +97,7 @@ void ContactSurface<dim>::add_flank(const Flank &flank, double stiffness_per_are
     point.particle = flank.particle;
     point.arm = piece.arm;
     point.area = piece.area;
-    point.stiffness = stiffness_per_area * piece.area;
+    point.stiffness = per_area_[flank.particle] * piece.area;
     points_.push_back(point);
   }
 }
@@ -84,18 +108,21 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
                                         const ContactStiffness &stiffness, double stable_step)
 {
   thickness_ = dim == 2 ? packing.thickness : 1;
-  plain_ = stiffness.youngs_modulus / packing.spacing;
+  const double plain = stiffness.youngs_modulus / packing.spacing;
   n_of_particle_.assign(packing.size(), 0);
   const double most = stiffness.share * std::pow(2 / stable_step, 2) / with_turns;
-  std::vector<double> outer(packing.size(), 0.);
+  std::vector<Tensor<dim>> outer(packing.size(), Tensor<dim>::Zero());
   for (const auto &face : packing.boundary_faces)
-    outer[face.i] += face.area;
-  per_area_.assign(packing.size(), plain_);
+    outer[face.i] += face.area * face.normal * face.normal.transpose();
+  per_area_.assign(packing.size(), plain);
   for (int i = 0; i < packing.size(); ++i)
-    if (outer[i] > 0 && std::isfinite(particles.mass[i])) {
-      per_area_[i] = std::min(plain_, most * particles.mass[i] / outer[i]);
-      largest_rate_ =
-          std::max(largest_rate_, with_turns * per_area_[i] * outer[i] / particles.mass[i]);
+    if (std::isfinite(particles.mass[i])) {
+      // What of it may be pressed at once: its outer faces, or from any side when it breaks off.
+      const double across =
+          std::pow(packing.volume[i] / thickness_, double(dim - 1) / dim) * thickness_;
+      const double area = largest_eigenvalue<dim>(outer[i]);
+      per_area_[i] = std::min(plain, most * particles.mass[i] / std::max(area, across));
+      largest_rate_ = std::max(largest_rate_, with_turns * per_area_[i] * area / particles.mass[i]);
     }
   for (const auto &face : packing.boundary_faces)
     for (const auto &piece : pieces_of<dim>(face, thickness_)) {
@@ -110,13 +137,14 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
     }
   for (const auto &face : packing.faces)
     if (face.cracked) {
-      add_flank({face.i, face.lever_i, face.normal, face.area}, plain_, packing.global_id[face.i]);
-      add_flank({face.j, face.lever_j, face.normal, face.area}, plain_, packing.global_id[face.j]);
+      add_flank({face.i, face.lever_i, face.normal, face.area}, packing.global_id[face.i]);
+      add_flank({face.j, face.lever_j, face.normal, face.area}, packing.global_id[face.j]);
     }
 }
 
 template <int dim>
-void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far, const core::Names &names,
+void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
+                                    const coupling::Overlap<dim> *overlap, const core::Names &names,
                                     const ContactStiffness &stiffness, double stable_step)
 {
   const auto &mesh = far.mesh();
@@ -125,10 +153,15 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far, const core::
     hanging_[mesh.hanging[k].node] = int(k);
   const double thickness = dim == 2 ? far.body().thickness : 1;
   const std::size_t first = points_.size();
-  std::vector<double> share(mesh.n_nodes(), 0.); // N/m
+  std::vector<Tensor<dim>> share(mesh.n_nodes(), Tensor<dim>::Zero()); // N/m
   std::map<std::int64_t, int> n_of_node;
+  std::vector<char> has_particles(mesh.n_cells(), 0);
+  if (overlap)
+    for (const auto &cell : overlap->cells)
+      has_particles[cell.cell] = cell.layer == 0;
+  const Rule cut = even_rule(n_cut);
   for (const auto &face : mesh.boundary_faces) {
-    if (face.boundary == inner_surface<dim> || !far.is_own_cell(face.cell))
+    if (face.boundary == inner_surface<dim>)
       continue;
     SurfacePoint<dim> point;
     int n = 0;
@@ -138,26 +171,39 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far, const core::
     point.owner = -1 - names.name(point.nodes[0]);
     const double width = mesh.cell_size[face.cell][face.face / 2];
     const auto &x = mesh.nodes;
-    for (int k = 0; k < (dim == 2 ? n_gauss : n_gauss * n_gauss); ++k) {
-      const double s = gauss_place[k % n_gauss], r = gauss_place[k / n_gauss];
-      double weight = gauss_weight[k % n_gauss];
+    const Rule &rule = has_particles[face.cell] ? cut : whole;
+    const int n_along = int(rule.size());
+    for (int k = 0; k < (dim == 2 ? n_along : n_along * n_along); ++k) {
+      const double s = rule[k % n_along][0], r = rule[k / n_along][0];
+      double weight = rule[k % n_along][1];
+      Vector<dim> normal;
       if constexpr (dim == 2) {
         point.shares << 1 - s, s;
-        weight *= (x[point.nodes[1]] - x[point.nodes[0]]).norm() * thickness;
+        const Vector<2> along = x[point.nodes[1]] - x[point.nodes[0]];
+        weight *= along.norm() * thickness;
+        normal = Vector<2>(-along[1], along[0]).normalized();
       } else {
         point.shares << (1 - s) * (1 - r), s * (1 - r), (1 - s) * r, s * r;
         const Vector<3> along = (1 - r) * (x[point.nodes[1]] - x[point.nodes[0]]) +
                                 r * (x[point.nodes[3]] - x[point.nodes[2]]),
                         across = (1 - s) * (x[point.nodes[2]] - x[point.nodes[0]]) +
                                  s * (x[point.nodes[3]] - x[point.nodes[1]]);
-        weight *= gauss_weight[k / n_gauss] * along.cross(across).norm();
+        weight *= rule[k / n_along][1] * along.cross(across).norm();
+        normal = along.cross(across).normalized();
+      }
+      if (has_particles[face.cell]) {
+        Vector<dim> place = Vector<dim>::Zero();
+        for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
+          place += point.shares[a] * x[point.nodes[a]];
+        if (overlap->distance_to_edge(place) > 0)
+          continue;
       }
       point.number = n_of_node[point.owner]++;
       point.area = weight;
       point.stiffness = stiffness.youngs_modulus / width * weight;
       points_.push_back(point);
       for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
-        share[point.nodes[a]] += point.shares[a] * point.stiffness;
+        share[point.nodes[a]] += point.shares[a] * point.stiffness * normal * normal.transpose();
     }
   }
   // A node's row of the layer's stiffness adds up to its share of it.
@@ -166,7 +212,7 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far, const core::
     double factor = 1;
     for (const int node : points_[k].nodes)
       if (far.lumped_mass()[node] > 0 && !far.is_released_node(node)) {
-        const double rate = share[node] / far.lumped_mass()[node];
+        const double rate = largest_eigenvalue<dim>(share[node]) / far.lumped_mass()[node];
         factor = std::min(factor, most / rate);
         largest_rate_ = std::max(largest_rate_, std::min(rate, most));
       }
@@ -182,7 +228,7 @@ int ContactSurface<dim>::add_broken(const particles::ParticleSolver<dim> &zone)
   for (; n_broken_ < broken.size(); ++n_broken_) {
     const auto &bond = broken[n_broken_];
     for (const int i : {bond.i, bond.j})
-      add_flank({i, bond.position - get(zone.state.reference, i), bond.normal, bond.area}, plain_,
+      add_flank({i, bond.position - get(zone.state.reference, i), bond.normal, bond.area},
                 zone.state.global_id[i]);
   }
   return before;

@@ -47,9 +47,10 @@ public:
   void add_particles(const packings::Packing<dim> &packing,
                      const particles::Particles<dim> &particles, const ContactStiffness &stiffness,
                      double stable_step);
-  /// Of the far field's own cells, whatever their shape. `names` of nodes.
-  void add_cells(const fem::FemSolver<dim> &far, const core::Names &names,
-                 const ContactStiffness &stiffness, double stable_step);
+  /// Of the cells of the far field, whatever their shape, but where an overlap has particles (null:
+  /// there is none). `names` of nodes.
+  void add_cells(const fem::FemSolver<dim> &far, const coupling::Overlap<dim> *overlap,
+                 const core::Names &names, const ContactStiffness &stiffness, double stable_step);
   /// Both flanks of the bonds that broke since the last call. Returns how many points there were
   /// before.
   int add_broken(const particles::ParticleSolver<dim> &zone);
@@ -74,16 +75,15 @@ private:
     Vector<dim> arm, normal;
     double area;
   };
-  void add_flank(const Flank &flank, double stiffness_per_area, std::int64_t owner);
+  void add_flank(const Flank &flank, std::int64_t owner);
   Vector<dim> arm(int k, const particles::Particles<dim> &particles) const;
   void push_node(int node, const Vector<dim> &force, fem::FemSolver<dim> &far) const;
 
   std::vector<SurfacePoint<dim>> points_;
   std::vector<int> n_of_particle_; // points that each particle has
-  std::vector<double> per_area_;   // Pa/m, stiffness of each particle's outer faces
+  std::vector<double> per_area_;   // Pa/m, stiffness of each particle's faces
   std::vector<int> hanging_;       // of each node, number in the mesh's list, or -1
   double thickness_ = 1;           // m, 2D
-  double plain_ = 0;               // Pa/m, of flanks
   double largest_rate_ = 0;
   std::size_t n_broken_ = 0; // bonds whose flanks are here
 };

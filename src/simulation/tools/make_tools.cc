@@ -145,7 +145,8 @@ ContactStiffness contact_stiffness_of(const Scene &scene)
 template <int dim>
 void add_cells(const Scene &scene, const CoupledBody<dim> &body, ContactSurface<dim> &surface)
 {
-  surface.add_cells(*body.far, fem::node_names<dim>(body.far->mesh(), body.lower, body.upper),
+  surface.add_cells(*body.far, body.coupler->overlap(),
+                    fem::node_names<dim>(body.far->mesh(), body.lower, body.upper),
                     contact_stiffness_of(scene), body.dt_far);
 }
 

@@ -106,8 +106,18 @@ std::vector<std::array<Vector<dim>, 2>> RigidTools<dim>::edges(int k) const
   auto edges = tool.definition().shape.edges(reach_);
   for (auto &edge : edges)
     for (Vector<dim> &end : edge)
-      end = tool.centre() + tool.rotation() * end;
+      end += tool.definition().place;
   return edges;
+}
+
+template <int dim>
+Vector<dim> RigidTools<dim>::drive(int k) const
+{
+  Vector<dim> way = Vector<dim>::Zero();
+  if (const auto &drive = tools_[k].definition().drive)
+    for (int c = 0; c < dim; ++c)
+      way[c] = drive->value[c].value_or(0);
+  return way;
 }
 
 template <int dim>

@@ -20,6 +20,8 @@ public:
   int size() const override { return int(tools_.size()); }
   const std::string &name(int tool) const override { return tools_[tool].definition().name; }
   ToolReading<dim> read(int tool) const override;
+  Vector<dim> drive(int tool) const override;
+  Vector<dim> place(int tool) const override { return tools_[tool].definition().place; }
   std::vector<std::array<Vector<dim>, 2>> edges(int tool) const override;
   void save(core::State &state) const override;
   void load(const core::State &state, const coupling::Bodies<dim> &bodies) override;

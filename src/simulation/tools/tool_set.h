@@ -46,7 +46,11 @@ public:
   virtual int size() const = 0;
   virtual const std::string &name(int tool) const = 0;
   virtual ToolReading<dim> read(int tool) const = 0;
-  /// Present places of the edges of a tool, two points each, for pictures; empty when it is gone.
+  /// The direction in which a tool is driven, of any length; 0: it isn't.
+  virtual Vector<dim> drive(int tool) const = 0;
+  /// Where a tool is when the run begins, m.
+  virtual Vector<dim> place(int tool) const = 0;
+  /// Its edges there, two points each, for pictures; empty when it is gone.
   virtual std::vector<std::array<Vector<dim>, 2>> edges(int tool) const = 0;
 
   /// Between drift and forces.

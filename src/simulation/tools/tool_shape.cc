@@ -11,7 +11,7 @@ namespace ligament::program
 {
 namespace
 {
-constexpr int n_circle = 64; // sides of a circle in a picture
+constexpr int n_circle = 256; // sides of a circle in a picture
 
 /// The point itself where it has no direction: any way is out.
 template <int dim>
