@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 namespace ligament::program
@@ -44,7 +45,7 @@ struct Contact
 {
   double force = 0;    // N, over the thickness 1 m
   double width = 0;    // m, b or a by the moments of the pressure
-  double pressure = 0; // Pa, largest
+  double pressure = 0; // Pa, mean over the middle third of the width, in 3D of the radius
   double residual = 0; // of the work
 };
 
@@ -72,17 +73,28 @@ Contact press(const Scene &scene)
   }
   const auto &tools = dynamic_cast<const RigidTools<dim> &>(*body.tools);
   double whole = 0, moment = 0;
+  std::vector<std::array<double, 3>> pressed; // distance, pressure, area
   Contact contact;
-  tools.contact(0).for_each_pressed(
-      tools.tool(0), tools.surface(), bodies, [&](int k, double, double pressure) {
-        Vector<dim> x = tools.surface().place(k, bodies);
-        x[1] = 0;
-        whole += pressure * tools.surface()[k].area;
-        moment += pressure * tools.surface()[k].area * x.squaredNorm();
-        contact.pressure = std::max(contact.pressure, pressure);
-      });
+  tools.contact(0).for_each_pressed(tools.tool(0), tools.surface(), bodies,
+                                    [&](int k, double, double pressure) {
+                                      Vector<dim> x = tools.surface().place(k, bodies);
+                                      x[1] = 0;
+                                      const double area = tools.surface()[k].area;
+                                      pressed.push_back({x.norm(), pressure, area});
+                                    });
+  for (const auto &[distance, pressure, area] : pressed) {
+    whole += pressure * area;
+    moment += pressure * area * distance * distance;
+  }
   contact.force = -body.tools->read(0).force[1];
   contact.width = std::sqrt((dim == 2 ? 4 : 2.5) * moment / whole);
+  double inner = 0;
+  for (const auto &[distance, pressure, area] : pressed)
+    if (distance < contact.width / 3) {
+      contact.pressure += pressure * area;
+      inner += area;
+    }
+  contact.pressure /= inner;
   const auto ledger = read_ledger(body, now, damping.energy());
   contact.residual = std::abs(ledger.residual()) / ledger.external_work;
   return contact;
@@ -95,8 +107,12 @@ void add_results(const std::string &start, const Scene &scene, std::vector<Resul
   const double radius = scene.tools[0].radius, softness = 1 - nu * nu; // over E = 1
   const double width = dim == 2 ? std::sqrt(4 * c.force * radius * softness / M_PI)
                                 : std::cbrt(3 * c.force * radius * softness / 4);
+  // Means of p0 sqrt(1 - x^2/b^2) over the third.
+  const double t = 1. / 3;
   const double pressure =
-      dim == 2 ? 2 * c.force / (M_PI * width) : 3 * c.force / (2 * M_PI * width * width);
+      dim == 2 ? 2 * c.force / (M_PI * width) * (std::sqrt(1 - t * t) + std::asin(t) / t) / 2
+               : 3 * c.force / (2 * M_PI * width * width) * 2 / (3 * t * t) *
+                     (1 - std::pow(1 - t * t, 1.5));
   // The force that belongs to the width that was measured.
   const double force = std::pow(c.width / width, dim);
   results.push_back({start + "width", std::abs(c.width / width - 1), 0.03, 0.01});
