@@ -35,6 +35,8 @@ FaceCorners<dim> below(const FaceCorners<dim> &face, const Vector<dim> &normal, 
   return kept;
 }
 
+constexpr int slanted = -1;
+
 /// The axis across the face.
 template <int dim>
 int axis_across(const FaceCorners<dim> &face)
@@ -45,8 +47,24 @@ int axis_across(const FaceCorners<dim> &face)
     most = most.cwiseMax(x);
   }
   int axis = 0;
-  (most - least).minCoeff(&axis);
-  return axis;
+  const double depth = (most - least).minCoeff(&axis);
+  return depth <= 1e-9 * (most - least).maxCoeff() ? axis : slanted;
+}
+
+/// What of a segment lies in the disc.
+FaceCorners<2> inside_circle(const FaceCorners<2> &segment, const Vector<2> &centre, double radius)
+{
+  const Vector<2> along = (segment[1] - segment[0]).normalized();
+  const double length = (segment[1] - segment[0]).norm();
+  const double foot = along.dot(centre - segment[0]);
+  const double apart = (segment[0] + foot * along - centre).norm();
+  if (apart >= radius)
+    return {};
+  const double half = std::sqrt(radius * radius - apart * apart);
+  const double from = std::max(0., foot - half), to = std::min(length, foot + half);
+  if (from >= to)
+    return {};
+  return {segment[0] + from * along, to < length ? Vector<2>(segment[0] + to * along) : segment[1]};
 }
 
 constexpr int disc_sides = 96;
@@ -172,6 +190,8 @@ FaceCorners<dim> Part<dim>::clip(FaceCorners<dim> face) const
   if (shape_ == Shape::whole || face.empty())
     return face;
   const int axis = axis_across<dim>(face);
+  if (axis == slanted)
+    return clip_slanted(std::move(face));
   const double place = face[0][axis];
   if (shape_ == Shape::ball) {
     const double height = place - lower_[axis];
@@ -195,6 +215,24 @@ FaceCorners<dim> Part<dim>::clip(FaceCorners<dim> face) const
         face = below<dim>(face, -Vector<dim>::Unit(c), -lower_[c]);
     }
   return face;
+}
+
+template <int dim>
+FaceCorners<dim> Part<dim>::clip_slanted(FaceCorners<dim> face) const
+{
+  if constexpr (dim == 3)
+    return holds(face_centroid<3>(face), 0) ? face : FaceCorners<3>();
+  else {
+    if (shape_ == Shape::ball)
+      return inside_circle(face, lower_, radius_);
+    for (int c = 0; c < dim; ++c) {
+      if (std::isfinite(upper_[c]))
+        face = below<dim>(face, Vector<dim>::Unit(c), upper_[c]);
+      if (std::isfinite(lower_[c]))
+        face = below<dim>(face, -Vector<dim>::Unit(c), -lower_[c]);
+    }
+    return face;
+  }
 }
 
 template double face_area<2>(const FaceCorners<2> &);

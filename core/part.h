@@ -19,8 +19,8 @@ Vector<dim> face_centroid(const FaceCorners<dim> &corners);
 template <int dim>
 FaceCorners<dim> side_corners(const Vector<dim> &lower, const Vector<dim> &upper, int side);
 
-/// Faces are clipped exactly. A ball meets a side of a 3D specimen in a disc: a regular polygon of
-/// 96 sides and the disc's area takes its place.
+/// Axis-parallel faces, and all in 2D, are clipped exactly. A ball meets a side of a 3D specimen in
+/// a disc: a regular polygon of 96 sides and the disc's area takes its place.
 template <int dim>
 class Part
 {
@@ -34,7 +34,8 @@ public:
   bool is_whole() const { return shape_ == Shape::whole; }
   /// Up to a tolerance in m, which belongs to it.
   bool holds(const Vector<dim> &x, double tolerance) const;
-  /// What of an axis-parallel face lies inside; empty when nothing does.
+  /// What of a face lies inside; empty when nothing does. Faces in 3D that are not axis-parallel
+  /// are not cut: inside are those whose centroid is.
   FaceCorners<dim> clip(FaceCorners<dim> face) const;
 
   friend bool operator==(const Part &a, const Part &b)
@@ -44,6 +45,8 @@ public:
   }
 
 private:
+  FaceCorners<dim> clip_slanted(FaceCorners<dim> face) const;
+
   enum class Shape
   {
     whole,

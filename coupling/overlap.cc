@@ -1,6 +1,7 @@
 #include "coupling/overlap.h"
 
 #include "core/check.h"
+#include "fem/cell_quality.h"
 
 #include <fmt/format.h>
 
@@ -33,6 +34,18 @@ int last_consistent_layer(const fem::Mesh<dim> &mesh, const std::vector<int> &la
       last_before_step = std::max(last_before_step, layer[c]);
   const int last = last_before_step + 2;
   return last_before_step > 0 && 2 * last <= transition_cells ? last : 0;
+}
+
+/// The operators of the overlap and its transition are those of axis-parallel cells.
+template <int dim>
+void require_boxes(const fem::Mesh<dim> &mesh, const std::vector<int> &layer)
+{
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (layer[c] >= 0 && !mesh.is_box(c))
+      throw core::InputError(fmt::format(
+          "the {} reaches the cell of the far field at {}: it follows a curved or inclined side; "
+          "keep the zone away from such sides, or lower /coupling/transition_cells",
+          layer[c] == 0 ? "overlap" : "transition beside the overlap", fem::place_text(mesh, c)));
 }
 } // namespace
 
@@ -225,6 +238,8 @@ void Overlap<dim>::find_cells()
                                       [&](int node) { return before[node] == l - 1; }))
         take(c, l);
   }
+
+  require_boxes(mesh, layer);
 
   std::vector<int> near(mesh.n_nodes(), -1), near_cell(mesh.n_cells(), -1);
   for (int node = 0; node < mesh.n_nodes(); ++node)

@@ -1,5 +1,8 @@
 #include "fem/cell_kernel.h"
 
+#include "fem/cell_classes.h"
+#include "fem/cell_map.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -22,6 +25,9 @@ namespace
 {
 constexpr int lanes = 8;
 constexpr int shortest_run = 6; // below it lanes would idle: better filled up in a batch
+// As many general cells of one shape share a stiffness: below it lanes that idle cost more than
+// reading a stiffness per cell (bench_far_field).
+constexpr int fewest_equal = 4;
 
 using Lanes = double __attribute__((vector_size(64), may_alias));
 using LanesMask = long long __attribute__((vector_size(64)));
@@ -110,6 +116,76 @@ LIGAMENT_INLINE void subtract_batch(const typename CellKernel<dim>::Batch &batch
         f[c][batch.node[a][l]] -= cell_r[a * dim + c][l];
 }
 
+/// r = K u for one cell and one matrix per lane, of which the upper triangle is stored: rows four
+/// at a time, their square on the diagonal first (row by row), then column by column. Each entry is
+/// read once, in the order of memory: that is what takes the time.
+template <int n>
+LIGAMENT_INLINE void multiply_singles(const double (*__restrict k)[lanes],
+                                      const Lanes *__restrict u, Lanes *__restrict r)
+{
+  for (int i = 0; i < n; ++i)
+    r[i] = Lanes{};
+  const auto *entry = reinterpret_cast<const Lanes *>(k);
+  for (int i = 0; i < n; i += 4) {
+    Lanes sum[4] = {r[i], r[i + 1], r[i + 2], r[i + 3]};
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a) {
+      sum[a] += *entry++ * u[i + a];
+#pragma GCC unroll 4
+      for (int b = a + 1; b < 4; ++b) {
+        const Lanes kab = *entry++;
+        sum[a] += kab * u[i + b];
+        sum[b] += kab * u[i + a];
+      }
+    }
+    for (int j = i + 4; j < n; ++j) {
+      Lanes right = r[j];
+#pragma GCC unroll 4
+      for (int a = 0; a < 4; ++a) {
+        const Lanes kaj = *entry++;
+        sum[a] += kaj * u[j];
+        right += kaj * u[i + a];
+      }
+      r[j] = right;
+    }
+    for (int a = 0; a < 4; ++a)
+      r[i + a] = sum[a];
+  }
+}
+
+/// Where entry (i, j), i <= j, of the upper triangle is stored.
+template <int n>
+int triangle_index(int i, int j)
+{
+  const int first = i / 4 * 4;
+  int index = 0;
+  for (int row = 0; row < first; row += 4)
+    index += 10 + 4 * (n - row - 4);
+  if (j >= first + 4)
+    return index + 10 + 4 * (j - first - 4) + i - first;
+  for (int a = 0; a < i - first; ++a)
+    index += 4 - a;
+  return index + j - i;
+}
+
+template <int dim>
+LIGAMENT_INLINE void subtract_singles(const typename CellKernel<dim>::SingleBatch &batch,
+                                      const double *const *u, double *const *f)
+{
+  constexpr int n = CellKernel<dim>::n_dofs;
+  alignas(64) double cell_u[n][lanes], cell_r[n][lanes];
+  for (int a = 0; a < n_cell_nodes<dim>; ++a)
+    for (int c = 0; c < dim; ++c)
+      for (int l = 0; l < lanes; ++l)
+        cell_u[a * dim + c][l] = u[c][batch.node[a][l]];
+  multiply_singles<n>(reinterpret_cast<const double(*)[lanes]>(batch.stiffness.data()),
+                      reinterpret_cast<const Lanes *>(cell_u), reinterpret_cast<Lanes *>(cell_r));
+  for (int a = 0; a < n_cell_nodes<dim>; ++a)
+    for (int c = 0; c < dim; ++c)
+      for (int l = 0; l < batch.n_cells; ++l)
+        f[c][batch.node[a][l]] -= cell_r[a * dim + c][l];
+}
+
 template <int dim>
 LIGAMENT_INLINE void subtract_all(const typename CellKernel<dim>::Run *runs, std::size_t n_runs,
                                   const typename CellKernel<dim>::Batch *batches,
@@ -139,6 +215,22 @@ void subtract_forces_3d(const CellKernel<3>::Run *runs, std::size_t n_runs,
 {
   subtract_all<3>(runs, n_runs, batches, n_batches, stiffness, u, f);
 }
+
+LIGAMENT_DISPATCH
+void subtract_singles_2d(const CellKernel<2>::SingleBatch *batches, std::size_t n_batches,
+                         const double *const *u, double *const *f)
+{
+  for (std::size_t i = 0; i < n_batches; ++i)
+    subtract_singles<2>(batches[i], u, f);
+}
+
+LIGAMENT_DISPATCH
+void subtract_singles_3d(const CellKernel<3>::SingleBatch *batches, std::size_t n_batches,
+                         const double *const *u, double *const *f)
+{
+  for (std::size_t i = 0; i < n_batches; ++i)
+    subtract_singles<3>(batches[i], u, f);
+}
 } // namespace
 
 template <int dim>
@@ -147,7 +239,7 @@ CellKernel<dim>::CellKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, doub
 {
   std::vector<std::vector<int>> cells_of_group;
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-    if (!is_own[cell])
+    if (!is_own[cell] || !mesh.is_box(cell))
       continue;
     const Vector<dim> &h = mesh.cell_size[cell];
     const auto same = std::find_if(size_.begin(), size_.end(), [&](const Vector<dim> &s) {
@@ -161,47 +253,112 @@ CellKernel<dim>::CellKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, doub
       cells_of_group[same - size_.begin()].push_back(cell);
   }
 
-  for (int group = 0; group < n_groups(); ++group) {
-    const auto k = cell_stiffness<dim>(size_[group], c, thickness);
-    stiffness_.emplace_back();
+  for (std::size_t group = 0; group < size_.size(); ++group)
+    add_group(mesh, cell_stiffness<dim>(size_[group], c, thickness), cells_of_group[group]);
+  if (!mesh.general.empty())
+    add_general_cells(mesh, c, thickness, is_own);
+}
+
+template <int dim>
+void CellKernel<dim>::add_group(const Mesh<dim> &mesh, const CellMatrix<dim> &k,
+                                const std::vector<int> &cells)
+{
+  const int group = n_groups();
+  stiffness_.emplace_back();
+  for (int i = 0; i < n_dofs; ++i)
+    for (int j = 0; j < n_dofs; ++j)
+      stiffness_.back()[n_dofs * i + j] = k(i, j);
+
+  const auto nodes = [&](std::size_t i) -> const auto &
+  {
+    return mesh.cells[cells[i]];
+  };
+  const auto is_next = [&](std::size_t i) { // does cell i continue the run of cell i - 1?
+    for (int row = 0; row < n_rows; ++row)
+      if (nodes(i)[2 * row] != nodes(i - 1)[2 * row + 1] ||
+          nodes(i)[2 * row + 1] != nodes(i)[2 * row] + 1 ||
+          nodes(i - 1)[2 * row + 1] != nodes(i - 1)[2 * row] + 1)
+        return false;
+    return true;
+  };
+  std::vector<std::size_t> loose;
+  for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
+    for (end = begin + 1; end < cells.size() && is_next(end);)
+      ++end;
+    if (end - begin >= shortest_run) {
+      Run run{group, int(end - begin), {}};
+      for (int row = 0; row < n_rows; ++row)
+        run.node[row] = nodes(begin)[2 * row];
+      runs_.push_back(run);
+    } else
+      for (std::size_t i = begin; i < end; ++i)
+        loose.push_back(i);
+  }
+  for (std::size_t begin = 0; begin < loose.size(); begin += lanes) {
+    Batch batch{group, int(std::min<std::size_t>(lanes, loose.size() - begin)), {}};
+    for (int a = 0; a < n_cell_nodes<dim>; ++a)
+      for (int l = 0; l < lanes; ++l)
+        batch.node[a][l] = nodes(loose[begin + (l < batch.n_cells ? l : 0)])[a];
+    batches_.push_back(batch);
+  }
+}
+
+template <int dim>
+void CellKernel<dim>::add_general_cells(const Mesh<dim> &mesh, const Stiffness<dim> &c,
+                                        double thickness, const std::vector<char> &is_own)
+{
+  CellClasses<dim> classes;
+  std::vector<std::vector<int>> cells_of_class;
+  for (int cell = 0; cell < mesh.n_cells(); ++cell)
+    if (is_own[cell] && !mesh.is_box(cell)) {
+      const int number = classes.number(cell_corners(mesh, cell));
+      cells_of_class.resize(classes.size());
+      cells_of_class[number].push_back(cell);
+    }
+  for (const std::vector<int> &cells : cells_of_class) {
+    const CellMatrix<dim> k = cell_stiffness(mesh, cells[0], c, thickness);
+    const Vec<n_cell_nodes<dim>> mass = thickness * volume_shares(mesh, cells[0]);
+    CellMatrix<dim> scaled;
     for (int i = 0; i < n_dofs; ++i)
       for (int j = 0; j < n_dofs; ++j)
-        stiffness_.back()[n_dofs * i + j] = k(i, j);
-
-    const std::vector<int> &cells = cells_of_group[group];
-    const auto nodes = [&](std::size_t i) -> const auto &
-    {
-      return mesh.cells[cells[i]];
-    };
-    const auto is_next = [&](std::size_t i) { // does cell i continue the run of cell i - 1?
-      for (int row = 0; row < n_rows; ++row)
-        if (nodes(i)[2 * row] != nodes(i - 1)[2 * row + 1] ||
-            nodes(i)[2 * row + 1] != nodes(i)[2 * row] + 1 ||
-            nodes(i - 1)[2 * row + 1] != nodes(i - 1)[2 * row] + 1)
-          return false;
-      return true;
-    };
-    std::vector<std::size_t> loose;
-    for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
-      for (end = begin + 1; end < cells.size() && is_next(end);)
-        ++end;
-      if (end - begin >= shortest_run) {
-        Run run{group, int(end - begin), {}};
-        for (int row = 0; row < n_rows; ++row)
-          run.node[row] = nodes(begin)[2 * row];
-        runs_.push_back(run);
-      } else
-        for (std::size_t i = begin; i < end; ++i)
-          loose.push_back(i);
-    }
-    for (std::size_t begin = 0; begin < loose.size(); begin += lanes) {
-      Batch batch{group, int(std::min<std::size_t>(lanes, loose.size() - begin)), {}};
-      for (int a = 0; a < n_cell_nodes<dim>; ++a)
-        for (int l = 0; l < lanes; ++l)
-          batch.node[a][l] = nodes(loose[begin + (l < batch.n_cells ? l : 0)])[a];
-      batches_.push_back(batch);
-    }
+        scaled(i, j) = k(i, j) / std::sqrt(mass[i / dim] * mass[j / dim]);
+    stiffest_ = std::max(
+        stiffest_, Eigen::SelfAdjointEigenSolver<CellMatrix<dim>>(scaled, Eigen::EigenvaluesOnly)
+                       .eigenvalues()[n_dofs - 1]);
+    if (int(cells.size()) >= fewest_equal)
+      add_group(mesh, k, cells);
+    else
+      for (const int cell : cells)
+        add_single(mesh.cells[cell], k);
   }
+}
+
+template <int dim>
+void CellKernel<dim>::add_single(const std::array<int, n_cell_nodes<dim>> &nodes,
+                                 const CellMatrix<dim> &k)
+{
+  if (singles_.empty() || singles_.back().n_cells == lanes) {
+    singles_.emplace_back();
+    SingleBatch &batch = singles_.back();
+    batch.n_cells = 0;
+    for (auto &entry : batch.stiffness)
+      entry.fill(0);
+    for (int a = 0; a < n_cell_nodes<dim>; ++a)
+      batch.node[a].fill(nodes[a]); // idle lanes read some node
+  }
+  SingleBatch &batch = singles_.back();
+  const int lane = batch.n_cells++;
+  for (int a = 0; a < n_cell_nodes<dim>; ++a)
+    batch.node[a][lane] = nodes[a];
+  for (int i = 0; i < n_dofs; ++i)
+    for (int j = i; j < n_dofs; ++j)
+      batch.stiffness[triangle_index<n_dofs>(i, j)][lane] = k(i, j);
+}
+
+template <int dim>
+int CellKernel<dim>::n_single_cells() const
+{
+  return singles_.empty() ? 0 : lanes * int(singles_.size() - 1) + singles_.back().n_cells;
 }
 
 template <int dim>
@@ -219,20 +376,26 @@ void CellKernel<dim>::subtract_forces(const Components<dim> &displacement,
     subtract_forces_2d(runs_.data(), runs_.size(), batches_.data(), batches_.size(), k, u, f);
   else
     subtract_forces_3d(runs_.data(), runs_.size(), batches_.data(), batches_.size(), k, u, f);
+  if (singles_.empty())
+    return;
+  if constexpr (dim == 2)
+    subtract_singles_2d(singles_.data(), singles_.size(), u, f);
+  else
+    subtract_singles_3d(singles_.data(), singles_.size(), u, f);
 }
 
 template <int dim>
 double CellKernel<dim>::stable_step(double density, double thickness) const
 {
   double step = std::numeric_limits<double>::infinity();
-  for (int group = 0; group < n_groups(); ++group) {
+  for (std::size_t group = 0; group < size_.size(); ++group) {
     const Eigen::Map<const Eigen::Matrix<double, n_dofs, n_dofs>> k(stiffness_[group].data());
     const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
                                .eigenvalues()[n_dofs - 1];
     const double mass = density * size_[group].prod() * thickness / n_cell_nodes<dim>;
     step = std::min(step, 2 * std::sqrt(mass / largest));
   }
-  return step;
+  return stiffest_ > 0 ? std::min(step, 2 * std::sqrt(density / stiffest_)) : step;
 }
 
 template class CellKernel<2>;

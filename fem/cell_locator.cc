@@ -1,4 +1,4 @@
-#include "fem/mesh.h"
+#include "fem/cell_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ CellLocator<dim>::CellLocator(const Mesh<dim> &mesh) : mesh_(mesh)
 }
 
 template <int dim>
-int CellLocator<dim>::find(const Vector<dim> &p) const
+int CellLocator<dim>::find(const Vector<dim> &p, Vector<dim> *place) const
 {
   int bin = 0;
   for (int k = dim - 1; k >= 0; --k) {
@@ -86,8 +86,19 @@ int CellLocator<dim>::find(const Vector<dim> &p) const
   for (int i = bin_start_[bin]; i < bin_start_[bin + 1]; ++i) {
     const int c = bin_cells_[i];
     const Vector<dim> s = (p - mesh_.cell_lower[c]).cwiseQuotient(mesh_.cell_size[c]);
-    if (s.minCoeff() >= -tolerance && s.maxCoeff() <= 1 + tolerance)
+    if (!(s.minCoeff() >= -tolerance && s.maxCoeff() <= 1 + tolerance))
+      continue;
+    if (mesh_.is_box(c)) {
+      if (place)
+        *place = s;
       return c;
+    }
+    const auto inside = unit_place<dim>(cell_corners(mesh_, c), p);
+    if (inside && inside->minCoeff() >= -tolerance && inside->maxCoeff() <= 1 + tolerance) {
+      if (place)
+        *place = *inside;
+      return c;
+    }
   }
   return -1;
 }

@@ -29,7 +29,10 @@ CondensedCell<dim> CellCondenser<dim>::operator()(int cell) const
   CondensedCell<dim> condensed;
   condensed.nodes = mesh_.cells[cell];
   for (int a = 0; a < nc; ++a)
-    condensed.place.col(a) = corner<dim>(mesh_.cell_size[cell], a);
+    if (mesh_.is_box(cell))
+      condensed.place.col(a) = corner<dim>(mesh_.cell_size[cell], a);
+    else
+      condensed.place.col(a) = mesh_.nodes[mesh_.cells[cell][a]] - mesh_.cell_lower[cell];
   if (!hangs(cell))
     return condensed;
 

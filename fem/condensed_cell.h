@@ -14,7 +14,7 @@ struct CondensedCell
 
   std::array<int, n_cell_nodes<dim>> nodes; // free nodes of the mesh
   Shares shares = Shares::Identity();       // u(corner a) = sum_b shares(a, b) u(nodes[b])
-  Eigen::Matrix<double, dim, n_cell_nodes<dim>> place; // m, of the nodes from the lower corner
+  Eigen::Matrix<double, dim, n_cell_nodes<dim>> place; // m, of the nodes from cell_lower
 
   bool is_free_corner(int a) const { return shares(a, a) == 1; }
   bool hangs() const { return !shares.isIdentity(0); }

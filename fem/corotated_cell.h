@@ -2,16 +2,12 @@
 #pragma once
 
 #include "core/polar_rotation.h"
-#include "fem/mesh.h"
+#include "fem/cell_map.h"
 
 namespace ligament::fem
 {
-/// One column per node.
-template <int dim>
-using CellVectors = Eigen::Matrix<double, dim, n_cell_nodes<dim>>;
-
-/// What the motion of a cell needs of its shape: corners from the centre in m, mean gradients of
-/// the shape functions in 1/m.
+/// What the motion of a cell needs of its shape: corners from the centre in m, gradients of the
+/// shape functions there in 1/m (of a box the mean ones).
 template <int dim>
 struct CellShape
 {
@@ -23,6 +19,12 @@ struct CellShape
   {
     for (int a = 0; a < n_cell_nodes<dim>; ++a)
       corner.col(a) = fem::corner<dim>(size, a) - size / 2;
+  }
+  /// Of any convex cell; its corners in m.
+  explicit CellShape(const CellVectors<dim> &corners)
+      : corner(corners.colwise() - cell_point<dim>(corners, cell_centre<dim>())),
+        gradient(shape_gradients_at<dim>(corners, cell_centre<dim>()))
+  {
   }
 };
 

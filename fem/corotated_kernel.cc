@@ -1,5 +1,7 @@
 #include "fem/corotated_kernel.h"
 
+#include "fem/cell_classes.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim
                                       double thickness, const std::vector<char> &is_own)
 {
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-    if (!is_own[cell])
+    if (!is_own[cell] || !mesh.is_box(cell))
       continue;
     const Vector<dim> &h = mesh.cell_size[cell];
     auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group &g) {
@@ -20,6 +22,22 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim
       group = groups_.insert(groups_.end(),
                              {h, CellShape<dim>(h), cell_stiffness<dim>(h, c, thickness), {}});
     group->cells.push_back(mesh.cells[cell]);
+  }
+  if (mesh.general.empty())
+    return;
+  const int n_box_groups = int(groups_.size());
+  CellClasses<dim> classes;
+  for (int cell = 0; cell < mesh.n_cells(); ++cell) {
+    if (!is_own[cell] || mesh.is_box(cell))
+      continue;
+    const CellVectors<dim> corners = cell_corners(mesh, cell);
+    const int group = n_box_groups + classes.number(corners);
+    if (group == int(groups_.size()))
+      groups_.push_back({mesh.cell_size[cell],
+                         CellShape<dim>(corners),
+                         cell_stiffness<dim>(corners, c, thickness),
+                         {}});
+    groups_[group].cells.push_back(mesh.cells[cell]);
   }
 }
 

@@ -22,9 +22,9 @@ public:
                         Components<dim> &force) const;
 
 private:
-  struct Group // cells of one size
+  struct Group // cells of one shape
   {
-    Vector<dim> size;
+    Vector<dim> size; // m, of the bounding box
     CellShape<dim> shape;
     CellMatrix<dim> stiffness;
     std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes

@@ -2,6 +2,8 @@
 
 #include "core/check.h"
 #include "fem/cell_kernel.h"
+#include "fem/cell_map.h"
+#include "fem/cell_quality.h"
 #include "fem/corotated_kernel.h"
 #include "fem/part_shares.h"
 
@@ -13,21 +15,6 @@
 
 namespace ligament::fem
 {
-namespace
-{
-/// Local numbers of the nodes of a cell's face, in lexicographic order.
-template <int dim>
-std::array<int, n_cell_nodes<dim> / 2> face_nodes(int face)
-{
-  std::array<int, n_cell_nodes<dim> / 2> nodes;
-  int n = 0;
-  for (int a = 0; a < n_cell_nodes<dim>; ++a)
-    if ((a >> (face / 2) & 1) == face % 2)
-      nodes[n++] = a;
-  return nodes;
-}
-} // namespace
-
 template <int dim>
 FemSolver<dim>::FemSolver(Mesh<dim> mesh, const Body<dim> &body,
                           std::vector<core::BoundaryLoad<dim>> loads)
@@ -37,6 +24,7 @@ FemSolver<dim>::FemSolver(Mesh<dim> mesh, const Body<dim> &body,
   core::require(body.density > 0 && body.thickness > 0,
                 fmt::format("far field: density {} kg/m^3 and thickness {} m must be positive",
                             body.density, body.thickness));
+  require_convex(mesh_);
   for (auto *field : {&displacement, &velocity, &force})
     for (auto &component : *field)
       component.assign(mesh_.n_nodes(), 0.);
@@ -86,10 +74,11 @@ void FemSolver<dim>::update_own_cells()
 
   mass_.assign(mesh_.n_nodes(), 0.);
   for (int cell = 0; cell < mesh_.n_cells(); ++cell)
-    if (is_own_cell_[cell])
-      for (const int node : mesh_.cells[cell])
-        mass_[node] +=
-            body_.density * body_.thickness * mesh_.cell_size[cell].prod() / n_cell_nodes<dim>;
+    if (is_own_cell_[cell]) {
+      const auto shares = volume_shares(mesh_, cell);
+      for (int a = 0; a < n_cell_nodes<dim>; ++a)
+        mass_[mesh_.cells[cell][a]] += body_.density * body_.thickness * shares[a];
+    }
   hand_to_masters(mass_);
   inverse_mass_.resize(mesh_.n_nodes());
   for (int i = 0; i < mesh_.n_nodes(); ++i)
@@ -148,10 +137,17 @@ std::vector<double> FemSolver<dim>::side_areas(int boundary, bool times_depth) c
   for (const CellFace<dim> &face : mesh_.boundary_faces)
     if (face.boundary == boundary && is_own_cell_[face.cell]) {
       const Vector<dim> &h = mesh_.cell_size[face.cell];
-      const double share = h.prod() / (times_depth ? 1 : h[face.face / 2]) * body_.thickness /
-                           (n_cell_nodes<dim> / 2);
+      Vec<n_cell_nodes<dim>> shares;
+      if (mesh_.is_box(face.cell))
+        shares.setConstant(h.prod() / (times_depth ? 1 : h[face.face / 2]) * body_.thickness /
+                           (n_cell_nodes<dim> / 2));
+      else {
+        shares = face_shares<dim>(cell_corners(mesh_, face.cell), face.face) * body_.thickness;
+        if (times_depth) // the mean one
+          shares *= cell_volume(mesh_, face.cell) * body_.thickness / shares.sum();
+      }
       for (const int a : face_nodes<dim>(face.face))
-        area[mesh_.cells[face.cell][a]] += share;
+        area[mesh_.cells[face.cell][a]] += shares[a];
     }
   hand_to_masters(area);
   return area;
@@ -165,8 +161,7 @@ std::vector<double> FemSolver<dim>::loaded_areas(const core::BoundaryLoad<dim> &
   std::vector<double> area(mesh_.n_nodes(), 0.);
   for (const CellFace<dim> &face : mesh_.boundary_faces)
     if (face.boundary == load.boundary && is_own_cell_[face.cell]) {
-      const auto shares = part_shares<dim>(load.part, mesh_.cell_lower[face.cell],
-                                           mesh_.cell_size[face.cell], face.face);
+      const auto shares = part_shares<dim>(load.part, mesh_, face);
       for (const int a : face_nodes<dim>(face.face))
         area[mesh_.cells[face.cell][a]] += body_.thickness * shares[a];
     }
@@ -203,6 +198,8 @@ void FemSolver<dim>::find_dashpots()
   for (const auto &load : loads_) {
     if (!load.absorbing)
       continue;
+    core::require(load.boundary < inner_surface<dim>,
+                  "only sides of the specimen's bounding box absorb waves; give another side");
     const int axis = load.boundary / 2;
     const auto area = side_areas(load.boundary);
     if (std::none_of(area.begin(), area.end(), [](double a) { return a > 0; }))
@@ -247,9 +244,7 @@ void FemSolver<dim>::release_cells(const std::vector<int> &cells)
     for (const auto &load : loads_)
       core::require(is_own_cell_[face.cell] || face.boundary != load.boundary ||
                         load.kind != core::BoundaryLoad<dim>::Kind::traction ||
-                        part_shares<dim>(load.part, mesh_.cell_lower[face.cell],
-                                         mesh_.cell_size[face.cell], face.face)
-                                .sum() <= 0 ||
+                        part_shares<dim>(load.part, mesh_, face).sum() <= 0 ||
                         std::none_of(load.value.begin(), load.value.end(),
                                      [](const auto &v) { return bool(v); }),
                     "the overlap or its transition reaches a side of the specimen with a traction; "
@@ -274,10 +269,10 @@ typename FemSolver<dim>::Motion FemSolver<dim>::largest_motion() const
   for (int cell = 0; cell < mesh_.n_cells(); ++cell) {
     if (!is_own_cell_[cell])
       continue;
-    const CellShape<dim> shape(mesh_.cell_size[cell]);
+    const CellVectors<dim> gradient = centre_gradients(mesh_, cell);
     Matrix f = Matrix::Identity();
     for (int a = 0; a < n_cell_nodes<dim>; ++a)
-      f += get(displacement, mesh_.cells[cell][a]) * shape.gradient.col(a).transpose();
+      f += get(displacement, mesh_.cells[cell][a]) * gradient.col(a).transpose();
     const core::PolarRotation<dim> polar(f);
     largest.rotation = std::max(largest.rotation, polar.angle());
     largest.strain =

@@ -1,4 +1,6 @@
 #include "core/check.h"
+#include "fem/cell_quality.h"
+#include "fem/fit_outline.h"
 #include "fem/mesh.h"
 #include "fem/sectioned_axis.h"
 
@@ -12,7 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
 namespace ligament::fem
 {
@@ -135,10 +139,34 @@ void check_sections(const Grid<dim> &grid, const MeshParameters<dim> &p, double 
                              "smaller or do without far field");
 }
 
+/// Adds the sides of the outline that lie well apart from all other lines; returns them.
 template <int dim>
-Grid<dim> make_grid(const MeshParameters<dim> &p, int levels)
+std::vector<double> add_outline_cuts(const MeshParameters<dim> &p, int axis, double base_size,
+                                     std::vector<double> &cuts)
 {
-  const double base_size = std::ldexp(p.cell_size, levels);
+  if (!p.outline || axis == 2)
+    return {};
+  const double tolerance = 1e-9 * (p.upper[axis] - p.lower[axis]);
+  std::vector<double> lines = {p.lower[axis], p.upper[axis]}, taken;
+  lines.insert(lines.end(), cuts.begin(), cuts.end());
+  for (const double place : straight_sides(*p.outline, axis, 0.75 * p.cell_size)) {
+    double nearest = 1e300;
+    for (const double line : lines)
+      nearest = std::min(nearest, std::abs(place - line));
+    if (nearest > tolerance && nearest < 0.75 * base_size)
+      continue;
+    taken.push_back(place);
+    if (nearest > tolerance)
+      lines.push_back(place), cuts.push_back(place);
+  }
+  return taken;
+}
+
+/// `lines`: those sides of the outline that became lines of the grid, by axis.
+template <int dim>
+Grid<dim> make_grid(const MeshParameters<dim> &p, int levels, double base_size,
+                    std::array<std::vector<double>, 2> &lines)
+{
   const auto boxes = inner_boxes(p);
   Grid<dim> grid;
   double n_base = 1;
@@ -159,6 +187,9 @@ Grid<dim> make_grid(const MeshParameters<dim> &p, int levels)
       cuts.push_back(box.upper[k]);
       growth.covered.emplace_back(box.lower[k], box.upper[k]);
     }
+    const auto taken = add_outline_cuts(p, k, base_size, cuts);
+    if (k < 2)
+      lines[k] = taken;
     grid.axes.emplace_back(p.lower[k], p.upper[k], cuts, base_size, levels, growth);
   }
   for (const auto &box : boxes) {
@@ -227,22 +258,34 @@ Lattice<dim> lattice_point(const Grid<dim> &grid, const dealii::Point<dim> &p)
 }
 
 /// Refines what is nearer to an inner box than its size allows. The first distance has one cell
-/// more than asked for: hanging nodes then lie beyond the fine region, not on its border.
+/// more than asked for: hanging nodes then lie beyond the fine region, not on its border. Cells of
+/// `extra` levels below those beside the boxes lie along the outline, three of them.
 template <int dim>
-void refine(const Grid<dim> &grid, const MeshParameters<dim> &p, int levels,
-            dealii::Triangulation<dim> &triangulation)
+void refine(const Grid<dim> &grid, const MeshParameters<dim> &p, int levels, int extra,
+            const SlantedSides *sides, int outline_level, dealii::Triangulation<dim> &triangulation)
 {
+  const double finest = std::ldexp(p.cell_size, -extra);
   for (int level = levels; level > 0; --level) {
-    Index required = p.fine_cells + 1;
-    for (int l = 1; l < level; ++l)
-      required += p.cells_per_level * (Index(1) << l);
+    Index required = (p.fine_cells + 1) * (Index(1) << extra);
+    Index along = 3 * (Index(1) << outline_level);
+    for (int l = 1; l < level; ++l) {
+      if (l > extra)
+        required += p.cells_per_level * (Index(1) << l);
+      if (l > outline_level)
+        along += p.cells_per_level * (Index(1) << l);
+    }
     const Index size = Index(1) << level;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->level() == levels - level) {
         const Lattice<dim> lower = lattice_point<dim>(grid, cell->vertex(0));
         for (const auto &part : grid.inner)
-          if (grid.distance(part, lower, size) < required)
+          if (level > extra && grid.distance(part, lower, size) < required)
             cell->set_refine_flag();
+        if (!sides || level <= outline_level)
+          continue;
+        const auto &a = cell->vertex(0), &b = cell->vertex((1 << dim) - 1);
+        if (sides->come_near({a[0], a[1]}, {b[0], b[1]}, double(along) * finest))
+          cell->set_refine_flag();
       }
     triangulation.execute_coarsening_and_refinement();
   }
@@ -334,20 +377,36 @@ void add_hanging_nodes(const dealii::DoFHandler<dim> &dofs, const std::vector<in
   std::sort(mesh.hanging.begin(), mesh.hanging.end(),
             [](const HangingNode &a, const HangingNode &b) { return a.node < b.node; });
 }
-} // namespace
 
+/// A mesh of boxes around inner boxes, and the lines of the outline in it.
 template <int dim>
-Mesh<dim> make_mesh(const MeshParameters<dim> &parameters)
+Mesh<dim> make_boxes(const MeshParameters<dim> &p, bool keeps_inner,
+                     std::array<std::vector<double>, 2> &lines)
 {
-  check_parameters(parameters);
-  const bool refines = parameters.growth == 1 && !inner_boxes(parameters).empty();
-  const int levels = refines ? parameters.levels : 0;
-  const Grid<dim> grid = make_grid(parameters, levels);
+  const bool refines = p.growth == 1 && (!inner_boxes(p).empty() || p.outline);
+  // Levels of cells below those beside inner boxes, and the level of those along the outline.
+  int extra = 0, outline_level = 0;
+  if (p.outline && p.outline_cell_size > 0 && refines) {
+    const double ratio = std::log2(p.outline_cell_size / p.cell_size);
+    extra = std::max(0, int(std::ceil(-ratio - 0.01)));
+    outline_level = ratio > 0 ? std::min(p.levels, int(std::floor(ratio + 0.01))) : 0;
+  }
+  const int levels = refines ? p.levels + extra : 0;
+  Grid<dim> grid = make_grid(p, levels, std::ldexp(p.cell_size, levels - extra), lines);
+  const auto inner = grid.inner;
+  if (keeps_inner)
+    grid.inner.clear();
 
   dealii::Triangulation<dim> triangulation(
       dealii::Triangulation<dim>::limit_level_difference_at_vertices);
   make_base_mesh(grid, Index(1) << levels, triangulation);
-  refine(grid, parameters, levels, triangulation);
+  std::optional<SlantedSides> sides;
+  if (p.outline)
+    sides.emplace(*p.outline, lines);
+  grid.inner = inner;
+  refine(grid, p, levels, extra, sides ? &*sides : nullptr, outline_level, triangulation);
+  if (keeps_inner)
+    grid.inner.clear();
 
   const dealii::FE_Q<dim> element(1);
   dealii::DoFHandler<dim> dofs(triangulation);
@@ -362,6 +421,125 @@ Mesh<dim> make_mesh(const MeshParameters<dim> &parameters)
   add_cells(grid, levels, dofs, mesh, node_of_dof);
   add_hanging_nodes(dofs, node_of_dof, mesh);
   return mesh;
+}
+
+/// The plane mesh in layers along z, less inner boxes.
+Mesh<3> extrude(const Mesh<2> &plane, const SectionedAxis &axis, const MeshParameters<3> &p)
+{
+  Mesh<3> mesh;
+  const int n_plane = plane.n_nodes();
+  const auto n_layers = int(axis.n());
+  std::vector<char> used(std::size_t(n_plane) * (n_layers + 1), 0);
+  const auto is_inner = [&](int c, int layer) {
+    Vector<3> x;
+    x << (plane.nodes[plane.cells[c][0]] + plane.nodes[plane.cells[c][3]]) / 2,
+        (axis.position(layer) + axis.position(layer + 1)) / 2;
+    return std::any_of(p.inner.begin(), p.inner.end(), [&](const auto &box) {
+      return ((x - box.lower).array() > 0).all() && ((box.upper - x).array() > 0).all();
+    });
+  };
+  std::vector<int> cell_number(std::size_t(plane.n_cells()) * n_layers, -1);
+  for (int layer = 0; layer < n_layers; ++layer)
+    for (int c = 0; c < plane.n_cells(); ++c) {
+      if (is_inner(c, layer))
+        continue;
+      cell_number[std::size_t(layer) * plane.n_cells() + c] = mesh.n_cells();
+      auto &cell = mesh.cells.emplace_back();
+      for (int a = 0; a < 8; ++a) {
+        cell[a] = (layer + a / 4) * n_plane + plane.cells[c][a % 4];
+        used[cell[a]] = 1;
+      }
+      mesh.cell_level.push_back(plane.cell_level[c]);
+    }
+  std::vector<int> number(used.size(), -1);
+  for (int layer = 0; layer <= n_layers; ++layer)
+    for (int i = 0; i < n_plane; ++i)
+      if (const std::size_t k = std::size_t(layer) * n_plane + i; used[k]) {
+        number[k] = mesh.n_nodes();
+        mesh.nodes.emplace_back(plane.nodes[i][0], plane.nodes[i][1], axis.position(layer));
+      }
+  for (auto &cell : mesh.cells)
+    for (int &node : cell)
+      node = number[node];
+  for (int layer = 0; layer <= n_layers; ++layer)
+    for (const HangingNode &old : plane.hanging) {
+      HangingNode hanging{number[layer * n_plane + old.node], {}};
+      bool is_there = hanging.node >= 0;
+      for (const auto &[master, weight] : old.masters) {
+        hanging.masters.emplace_back(number[layer * n_plane + master], weight);
+        is_there = is_there && hanging.masters.back().first >= 0;
+      }
+      if (is_there)
+        mesh.hanging.push_back(std::move(hanging));
+    }
+  // Around: the plane's faces; at the ends the box's sides; towards inner boxes free.
+  std::map<std::pair<int, int>, int> around;
+  for (const auto &face : plane.boundary_faces)
+    around[{face.cell, face.face}] = face.boundary;
+  const CellLocator<2> locator(plane);
+  for (int layer = 0; layer < n_layers; ++layer)
+    for (int c = 0; c < plane.n_cells(); ++c) {
+      const int cell = cell_number[std::size_t(layer) * plane.n_cells() + c];
+      if (cell < 0)
+        continue;
+      for (int f = 0; f < 4; ++f) {
+        if (const auto face = around.find({c, f}); face != around.end()) {
+          const bool is_free = face->second == inner_surface<2>;
+          mesh.boundary_faces.push_back({cell, f, is_free ? inner_surface<3> : face->second});
+          continue;
+        }
+        static constexpr int ends[4][2] = {{2, 0}, {1, 3}, {0, 1}, {3, 2}};
+        const Vector<2> &a = plane.nodes[plane.cells[c][ends[f][0]]],
+                        &b = plane.nodes[plane.cells[c][ends[f][1]]], way = b - a;
+        const int beside = locator.find((a + b) / 2 + 1e-3 * Vector<2>(way[1], -way[0]));
+        if (beside >= 0 && cell_number[std::size_t(layer) * plane.n_cells() + beside] < 0)
+          mesh.boundary_faces.push_back({cell, f, inner_surface<3>});
+      }
+      for (const int up : {0, 1}) {
+        const int next = layer + (up ? 1 : -1);
+        if (next < 0 || next == n_layers)
+          mesh.boundary_faces.push_back({cell, 4 + up, 4 + up});
+        else if (cell_number[std::size_t(next) * plane.n_cells() + c] < 0)
+          mesh.boundary_faces.push_back({cell, 4 + up, inner_surface<3>});
+      }
+    }
+  find_cell_shapes(mesh);
+  return mesh;
+}
+} // namespace
+
+template <int dim>
+Mesh<dim> make_mesh(const MeshParameters<dim> &p)
+{
+  check_parameters(p);
+  std::array<std::vector<double>, 2> lines;
+  if (!p.outline)
+    return make_boxes(p, false, lines);
+  if constexpr (dim == 2)
+    return fit_outline(make_boxes(p, false, lines), *p.outline, lines);
+  else {
+    MeshParameters<2> plane;
+    plane.lower = p.lower.template head<2>();
+    plane.upper = p.upper.template head<2>();
+    plane.cell_size = p.cell_size;
+    plane.levels = p.levels;
+    plane.fine_cells = p.fine_cells;
+    plane.cells_per_level = p.cells_per_level;
+    plane.growth = p.growth;
+    plane.outline = p.outline;
+    plane.outline_cell_size = p.outline_cell_size;
+    std::vector<double> cuts;
+    SectionedAxis::Growth growth = {
+        p.growth, std::max(1, p.fine_cells), std::ldexp(p.cell_size, p.levels), {}};
+    for (const auto &box : p.inner) {
+      plane.inner.push_back({box.lower.template head<2>(), box.upper.template head<2>()});
+      cuts.push_back(box.lower[2]);
+      cuts.push_back(box.upper[2]);
+      growth.covered.emplace_back(box.lower[2], box.upper[2]);
+    }
+    const SectionedAxis axis(p.lower[2], p.upper[2], cuts, p.cell_size, 0, growth);
+    return extrude(fit_outline(make_boxes(plane, true, lines), *p.outline, lines), axis, p);
+  }
 }
 
 template Mesh<2> make_mesh<2>(const MeshParameters<2> &);

@@ -1,8 +1,11 @@
-// The far-field mesh as plain arrays: axis-parallel Q1 cells, hanging nodes, boundary faces.
+// The far-field mesh as plain arrays: Q1 cells, axis-parallel or of any convex shape, hanging
+// nodes, boundary faces.
 #pragma once
 
 #include "core/box_union.h"
+#include "core/solid.h"
 
+#include <memory>
 #include <vector>
 
 namespace ligament::fem
@@ -20,13 +23,17 @@ struct HangingNode
 template <int dim>
 using CellMatrix = Eigen::Matrix<double, dim * n_cell_nodes<dim>, dim * n_cell_nodes<dim>>;
 
+/// One column per node of a cell.
+template <int dim>
+using CellVectors = Eigen::Matrix<double, dim, n_cell_nodes<dim>>;
+
 template <int dim>
 struct CellFace
 {
   int cell;
-  int face;     // 2 * axis + (0 lower, 1 upper)
-  int boundary; // side of the specimen, or inner_surface<dim> for the edge towards the discrete
-                // zone
+  int face;     // 2 * axis + (0 lower, 1 upper), axes of the unit cell (fem/cell_map.h)
+  int boundary; // side of the specimen; inner_surface<dim>: towards the discrete zone, or free;
+                // larger: other named sides
 };
 
 template <int dim>
@@ -44,6 +51,10 @@ struct MeshParameters
   int fine_cells = 0;               // cells of size h on every path out of the inner box
   int cells_per_level = 4;          // then as many cells on each coarser level
   double growth = 1; // above 1: cells grow to that size one by one by this factor, none hangs
+  /// The body in the plane, within lower and upper, holes left out; 3D: of a prism along z. Null:
+  /// the box.
+  std::shared_ptr<const core::Solid<2>> outline;
+  double outline_cell_size = 0; // m, along its sides that are no lines of the mesh; 0: h
 };
 
 template <int dim>
@@ -51,12 +62,16 @@ struct Mesh
 {
   std::vector<Vector<dim>> nodes;                        // m
   std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes in lexicographic order, x fastest
-  std::vector<Vector<dim>> cell_lower;                   // m, lower corner
-  std::vector<Vector<dim>> cell_size;                    // m
+  std::vector<Vector<dim>> cell_lower;                   // m, lower corner of the bounding box
+  std::vector<Vector<dim>> cell_size;                    // m, of the bounding box
   std::vector<int> cell_level;                           // 0: finest
   std::vector<HangingNode> hanging;
   std::vector<CellFace<dim>> boundary_faces;
+  /// Per cell whether it is not its bounding box; empty where all are boxes. find_cell_shapes()
+  /// fills it (fem/cell_quality.h).
+  std::vector<char> general;
 
+  bool is_box(int cell) const { return general.empty() || !general[cell]; }
   int n_nodes() const { return int(nodes.size()); }
   int n_cells() const { return int(cells.size()); }
 };
@@ -69,6 +84,10 @@ struct Mesh
 /// all cells have size h. Cells and nodes are numbered in rows, x fastest. Throws core::InputError
 /// with reason and remedy when a section of the far field is thinner than 3/4 of its largest cells,
 /// when the inner box fills the specimen or lies outside, or when parameters are out of range.
+///
+/// With an outline its long sides along x and y become lines of the mesh where the cells between
+/// are not squeezed by that; along all others cells of outline_cell_size follow it
+/// (fem/fit_outline.h). A prism gets the same cells all along z.
 template <int dim>
 Mesh<dim> make_mesh(const MeshParameters<dim> &parameters);
 
@@ -78,8 +97,8 @@ class CellLocator
 {
 public:
   explicit CellLocator(const Mesh<dim> &mesh);
-  /// Cell that contains p (within 1e-10 of its size), or -1.
-  int find(const Vector<dim> &p) const;
+  /// Cell that contains p (within 1e-10 of its size), or -1. `place`: where in the unit cell.
+  int find(const Vector<dim> &p, Vector<dim> *place = nullptr) const;
 
 private:
   const Mesh<dim> &mesh_;
@@ -117,9 +136,9 @@ strain_matrix(const Eigen::Matrix<double, dim, n_cell_nodes<dim>> &gradients);
 template <int dim>
 inline constexpr int n_cell_modes = dim == 2 ? 4 : 12;
 
-/// Stiffness of a cell of the given size, times the thickness: int (B u + G a).C (B u + G a) at the
-/// a that make it least, 2-point Gauss in each direction (theory.md eq. (F8)). Bends without shear
-/// and at any Poisson's ratio; uniform strain is exact.
+/// Stiffness of an axis-parallel cell of the given size, times the thickness: int (B u + G a).C (B
+/// u + G a) at the a that make it least, 2-point Gauss in each direction (theory.md eq. (F8)).
+/// Bends without shear and at any Poisson's ratio; uniform strain is exact.
 template <int dim>
 CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness);
 } // namespace ligament::fem

@@ -11,4 +11,11 @@ namespace ligament::fem
 template <int dim>
 Vec<n_cell_nodes<dim>> part_shares(const core::Part<dim> &part, const Vector<dim> &lower,
                                    const Vector<dim> &size, int face);
+
+/// The same of a face of a mesh. On faces of general cells: exact in 2D and where the part holds
+/// the whole face; a face in 3D that is cut has its area exactly, and two-point accuracy in its
+/// shares.
+template <int dim>
+Vec<n_cell_nodes<dim>> part_shares(const core::Part<dim> &part, const Mesh<dim> &mesh,
+                                   const CellFace<dim> &face);
 } // namespace ligament::fem

@@ -25,6 +25,30 @@ constexpr bool is_side(int id)
   return id <= first_side_plane && id > first_void_plane;
 }
 
+constexpr bool is_facet(int id)
+{
+  return id <= first_facet;
+}
+
+/// What of a convex cell around x belongs to the solid.
+template <int dim>
+SolidPiece<dim> in_solid(const VoronoiCell<dim> &convex, const SpecimenShape<dim> &shape,
+                         const Vector<dim> &x, double spacing)
+{
+  SolidPiece<dim> piece = shape.pieces->around(x);
+  for (const auto &face : convex.faces())
+    piece.clip(face.normal, face.distance, face.id, 1e-13 * spacing);
+  return piece;
+}
+
+template <int dim>
+bool is_near_solid(const VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape,
+                   const Vector<dim> &x)
+{
+  const double reach = 4 * shape.spacing;
+  return shape.solid && shape.solid->distance(x, reach) < std::min(reach, cell.max_radius());
+}
+
 /// The Voronoi cell of all kept lattice points and the flat sides of the specimen.
 template <int dim>
 VoronoiCell<dim> voronoi_cell(const Lattice<dim> &lattice, const SpecimenShape<dim> &shape,
@@ -86,9 +110,17 @@ std::pair<double, Vector<dim>> clipped_volume(const VoronoiCell<dim> &cell,
                                               double spacing)
 {
   std::pair<double, Vector<dim>> sum{0, Vector<dim>::Zero()};
+  const bool near_solid = is_near_solid(cell, shape, x);
   for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &part, double sign) {
-    sum.first += sign * part.volume();
-    sum.second += sign * part.moment();
+    if (!near_solid) {
+      sum.first += sign * part.volume();
+      sum.second += sign * part.moment();
+      return;
+    }
+    for (const auto &face : in_solid(part, shape, x, spacing).faces()) {
+      sum.first += sign * face.area * face.distance / dim;
+      sum.second += sign * face.distance / (dim + 1) * face.moment;
+    }
   });
   return sum;
 }
@@ -98,23 +130,36 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
                               const Vector<dim> &x, double spacing)
 {
   std::vector<PartSum<dim>> sums;
+  const bool near_solid = is_near_solid(cell, shape, x);
+  const auto add = [&](int id, const Vector<dim> &normal, double distance, double area,
+                       const Vector<dim> &moment) {
+    auto sum = std::find_if(sums.begin(), sums.end(), [&](const auto &s) { return s.id == id; });
+    const bool is_first = sum == sums.end();
+    if (is_first)
+      sum = sums.insert(sum, {id, normal, distance, 0, Vector<dim>::Zero(), {}});
+    sum->area += area;
+    sum->moment += moment;
+    volume += area * distance / dim;
+    return std::pair(sum, is_first);
+  };
   for_each_convex_part(cell, shape, x, spacing, [&](const VoronoiCell<dim> &convex, double sign) {
-    const auto faces = convex.faces();
-    for (std::size_t k = 0; k < faces.size(); ++k) {
-      const auto &face = faces[k];
-      auto sum =
-          std::find_if(sums.begin(), sums.end(), [&](const auto &s) { return s.id == face.id; });
-      const bool is_first = sum == sums.end();
-      if (is_first)
-        sum = sums.insert(sum, {face.id, face.normal, face.distance, 0, Vector<dim>::Zero(), {}});
-      if (dim == 3 && is_side(face.id))
-        sum->corners = is_first && sign > 0 ? convex.corners(k) : std::vector<Vector<dim>>();
-      sum->area += sign * face.area;
-      sum->moment += sign * face.area * face.centroid;
-      volume += sign * face.area * face.distance / dim;
+    SolidPiece<dim> piece;
+    if (near_solid) {
+      piece = in_solid(convex, shape, x, spacing);
+      for (const auto &face : piece.faces())
+        add(face.id, face.normal, face.distance, sign * face.area, sign * face.moment);
+    } else {
+      const auto faces = convex.faces();
+      for (std::size_t k = 0; k < faces.size(); ++k) {
+        const auto &face = faces[k];
+        const auto [sum, is_first] = add(face.id, face.normal, face.distance, sign * face.area,
+                                         sign * face.area * face.centroid);
+        if (dim == 3 && is_side(face.id))
+          sum->corners = is_first && sign > 0 ? convex.corners(k) : std::vector<Vector<dim>>();
+      }
     }
     // Corners inside a void bound nothing.
-    for (const Vector<dim> &corner : convex.vertices())
+    for (const Vector<dim> &corner : near_solid ? piece.vertices() : convex.vertices())
       if (std::none_of(shape.voids.begin(), shape.voids.end(),
                        [&](const auto &v) { return v.contains(x + corner, 1e-9 * spacing); }))
       {
@@ -128,8 +173,11 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
       continue;
     if (sum.id >= 0)
       parts.push_back({sum.id, -1, sum.normal, sum.distance, sum.area, sum.moment});
-    else if (sum.id == start_plane)
+    else if (sum.id == start_plane || sum.id == border_of_piece)
       is_open = true;
+    else if (is_facet(sum.id)) // its plane may be the one of a neighbour's facet, but not its name
+      parts.push_back({-1, shape.solid->facets()[first_facet - sum.id].boundary, sum.normal,
+                       sum.distance, sum.area, sum.moment});
     else if (sum.id > first_void_plane)
       parts.push_back({-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area,
                        sum.moment, std::move(sum.corners)});
@@ -143,10 +191,14 @@ bool ClippedCell<dim>::reaches_through(const SpecimenShape<dim> &shape, const Ve
                                        double spacing) const
 {
   // Round a corner the line of sight dips less deep into a void, which is at least d wide.
-  for (const Part &part : parts)
+  for (const Part &part : parts) {
+    const Vector<dim> there = x + part.moment / part.area;
     for (const Void<dim> &v : shape.voids)
-      if (v.hides(x, x + part.moment / part.area, 0.45 * spacing))
+      if (v.hides(x, there, 0.45 * spacing))
         return true;
+    if (shape.leaves_solid(x, there, 0.45 * spacing))
+      return true;
+  }
   return is_open;
 }
 

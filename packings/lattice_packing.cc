@@ -124,6 +124,8 @@ void Packer<dim>::place_particles()
       if (!whole && has_all_neighbours(k)) {
         whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
                 ((shape_.upper - x - extent).array() > -1e-12 * d).all();
+        if (shape_.solid)
+          whole = whole && shape_.solid->distance(x, 4 * d) > lattice_.cell_radius;
         for (const Void<dim> &v : shape_.voids)
           whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
       }

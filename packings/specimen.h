@@ -1,8 +1,10 @@
-// What a packing fills: a box with holes, notches and cracks, or a zone of it.
+// What a packing fills: a box or a solid with holes, notches and cracks, or a zone of it.
 #pragma once
 
 #include "core/box_union.h"
+#include "core/solid.h"
 
+#include <memory>
 #include <vector>
 
 namespace ligament::packings
@@ -34,6 +36,8 @@ struct SpecimenParameters
   double thickness = 1;                    // m, 2D only
   Vector<dim> lower = Vector<dim>::Zero(); // m, specimen
   Vector<dim> upper = Vector<dim>::Zero();
+  /// The body between them, which lies in this box and touches its sides; null: the box itself.
+  std::shared_ptr<const core::Solid<dim>> solid;
   std::vector<DiscHole<dim>> holes;
   std::vector<BoxNotch<dim>> notches;
   std::vector<CrackPoints<dim>> cracks;

@@ -137,9 +137,10 @@ int first_crossed(const std::vector<CrackPlane<dim>> &cracks, const Vector<dim> 
 }
 
 template <int dim>
-SpecimenShape<dim>::SpecimenShape(const SpecimenParameters<dim> &p) : lower(p.lower), upper(p.upper)
+SpecimenShape<dim>::SpecimenShape(const SpecimenParameters<dim> &p)
+    : lower(p.lower), upper(p.upper), spacing(p.spacing), solid(p.solid)
 {
-  const double d = p.spacing;
+  const double d = spacing;
   core::require(d > 0 && std::isfinite(d), "the spacing of a packing must be positive");
   core::require(p.thickness > 0, "the thickness of a packing must be positive");
   for (int a = 0; a < dim; ++a)
@@ -167,15 +168,33 @@ SpecimenShape<dim>::SpecimenShape(const SpecimenParameters<dim> &p) : lower(p.lo
   }
   for (const CrackPoints<dim> &points : p.cracks)
     cracks.emplace_back(points, 1e-9 * d);
+  if (solid)
+    pieces = std::make_shared<SolidPieces<dim>>(*solid, first_facet, 4 * d);
 }
 
 template <int dim>
 double SpecimenShape<dim>::distance(const Vector<dim> &x) const
 {
-  double nearest = std::min((x - lower).minCoeff(), (upper - x).minCoeff());
+  double nearest = solid ? solid->distance(x, 4 * spacing)
+                         : std::min((x - lower).minCoeff(), (upper - x).minCoeff());
   for (const Void<dim> &v : voids)
     nearest = std::min(nearest, v.distance(x));
   return nearest;
+}
+
+template <int dim>
+bool SpecimenShape<dim>::leaves_solid(const Vector<dim> &a, const Vector<dim> &b,
+                                      double depth) const
+{
+  // The distance changes by at most the way between two places.
+  const double length = (b - a).norm();
+  for (double at = 0; solid && at < length;) {
+    const double inside = solid->distance(a + at / length * (b - a), 4 * spacing);
+    if (inside < -depth)
+      return true;
+    at += std::max(0.02 * spacing, inside + depth);
+  }
+  return false;
 }
 
 template class Void<2>;

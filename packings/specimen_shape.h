@@ -1,6 +1,7 @@
-// The shape of a specimen for a packing: a box, the voids cut out of it, and cracks.
+// The shape of a specimen for a packing: a box or a solid, the voids cut out of it, and cracks.
 #pragma once
 
+#include "packings/solid_piece.h"
 #include "packings/specimen.h"
 
 namespace ligament::packings
@@ -68,16 +69,25 @@ template <int dim>
 int first_crossed(const std::vector<CrackPlane<dim>> &cracks, const Vector<dim> &a,
                   const Vector<dim> &b);
 
+/// The k-th facet of the solid has the number first_facet - k among the planes that bound a cell.
+inline constexpr int first_facet = -1000000;
+
 template <int dim>
 struct SpecimenShape
 {
   /// Checks the parameters; throws core::InputError with reason and remedy.
   explicit SpecimenShape(const SpecimenParameters<dim> &parameters);
 
-  /// From x to the nearest surface; negative outside the material.
+  /// From x to the nearest surface; negative outside the material. Surfaces of a solid count up to
+  /// four spacings away.
   double distance(const Vector<dim> &x) const;
+  /// Does the segment a - b leave the solid by more than `depth`?
+  bool leaves_solid(const Vector<dim> &a, const Vector<dim> &b, double depth) const;
 
   Vector<dim> lower, upper;
+  double spacing;
+  std::shared_ptr<const core::Solid<dim>> solid;  // null: the box
+  std::shared_ptr<const SolidPieces<dim>> pieces; // of it
   std::vector<Void<dim>> voids;
   std::vector<CrackPlane<dim>> cracks;
 };

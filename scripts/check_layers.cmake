@@ -30,7 +30,7 @@ set(may_use_dem ${vocabulary} Highway)
 set(may_use_md ${vocabulary} Highway)
 set(may_use_fem ${vocabulary} MPI deal.II p4est Trilinos)
 set(may_use_coupling ${vocabulary} MPI deal.II Trilinos Highway)
-set(may_use_src ${vocabulary} MPI nlohmann-json zlib xxhash POSIX deal.II p4est Trilinos Zoltan
+set(may_use_src ${vocabulary} Assimp MPI nlohmann-json zlib xxhash POSIX deal.II p4est Trilinos Zoltan
   CLI11 Cairo Boost)
 
 # Whose header <...> is; empty when nobody's.
@@ -56,6 +56,8 @@ function(third_party header result)
     set(party CLI11)
   elseif(header MATCHES "^hwy/")
     set(party Highway)
+  elseif(header MATCHES "^assimp/")
+    set(party Assimp)
   elseif(header MATCHES "^boost/")
     set(party Boost)
   elseif(header MATCHES "^voro\\+\\+/")

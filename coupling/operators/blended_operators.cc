@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "coupling/algebra/nodal_matrix.h"
+#include "fem/cell_map.h"
 #include "fem/cell_modes.h"
 
 #include <Eigen/Eigenvalues>
@@ -290,11 +291,11 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
     near[overlap.near_nodes[i]] = i;
   for (const auto &face : overlap.mesh.boundary_faces)
     if (face.boundary < inner_surface<dim>) {
-      const int axis = face.face / 2, side = face.face % 2;
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-        if (((a >> axis) & 1) == side)
-          if (const int node = near[overlap.mesh.cells[face.cell][a]]; node >= 0)
-            add_normal<dim>(normals[node], (side ? 1. : -1.) * Vector<dim>::Unit(axis));
+      const auto local = fem::face_nodes<dim>(face.face); // in axes of the cell's own
+      const int axis = face.boundary / 2, side = face.boundary % 2;
+      for (const int a : local)
+        if (const int node = near[overlap.mesh.cells[face.cell][a]]; node >= 0)
+          add_normal<dim>(normals[node], (side ? 1. : -1.) * Vector<dim>::Unit(axis));
     }
   return normals;
 }

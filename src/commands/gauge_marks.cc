@@ -42,8 +42,8 @@ public:
     const auto at = [&](int corner) {
       Point p = {0, 0, 0};
       for (int c = 0; c < scene_.dimension; ++c) {
-        const double half = scene_.specimen.size[c] / 2;
-        p[c] = std::clamp(corner >> c & 1 ? upper[c] : lower[c], -half, half);
+        const Specimen &s = scene_.specimen;
+        p[c] = std::clamp(corner >> c & 1 ? upper[c] : lower[c], s.lower(c), s.upper(c));
       }
       return p;
     };

@@ -3,9 +3,11 @@
 #include "src/commands/gauge_marks.h"
 #include "src/drawing/field_view.h"
 #include "src/output/format.h"
+#include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/body_fields.h"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,41 +106,81 @@ void add_parts(const BodyState &state, Picture &picture)
   picture.scatters.push_back(std::move(inclusions));
 }
 
-/// A side of the specimen's box.
-template <int dim>
-struct Side
+/// A point of the surface, and the way out of the body there.
+struct Place
 {
-  Vector<dim> lower, upper; // m, of the specimen
-  int axis;
-  bool is_upper;
-
-  double size() const { return (upper - lower).maxCoeff(); }
-  /// The point at these shares of the tangential edges, `outside` m off the side.
-  std::array<double, 3> place(const std::array<double, 2> &share, double outside) const
-  {
-    std::array<double, 3> point = {};
-    int tangent = 0;
-    for (int c = 0; c < dim; ++c)
-      point[c] = c == axis ? (is_upper ? upper[c] + outside : lower[c] - outside)
-                           : lower[c] + share[tangent++] * (upper[c] - lower[c]);
-    return point;
-  }
-  /// Points spread over the side, about `density` along the specimen's longest edge, at least three
-  /// along each.
-  std::vector<std::array<double, 3>> places(int density, double outside = 0) const
-  {
-    std::array<int, 2> n = {1, 1};
-    int tangent = 0;
-    for (int c = 0; c < dim; ++c)
-      if (c != axis)
-        n[tangent++] = std::max(3, int(std::lround(density * (upper[c] - lower[c]) / size())));
-    std::vector<std::array<double, 3>> all;
-    for (int a = 0; a < n[0]; ++a)
-      for (int b = 0; b < n[1]; ++b)
-        all.push_back(place({(a + 0.5) / n[0], (b + 0.5) / n[1]}, outside));
-    return all;
-  }
+  std::array<double, 3> point, outward;
 };
+
+template <int dim>
+std::array<double, 3> to_point(const Vector<dim> &x)
+{
+  std::array<double, 3> point = {};
+  std::copy(x.data(), x.data() + dim, point.begin());
+  return point;
+}
+
+/// Unit, out of the body.
+template <int dim>
+Vector<dim> outward(const core::FaceCorners<dim> &face, int boundary)
+{
+  if (boundary < 2 * dim)
+    return (boundary % 2 ? 1 : -1) * Vector<dim>::Unit(boundary / 2);
+  if constexpr (dim == 2) {
+    const Vector<2> along = face[1] - face[0];
+    return Vector<2>(along[1], -along[0]).normalized();
+  } else
+    return (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+}
+
+/// Points spread over what the load acts on, about `density` along the specimen's longest edge; at
+/// least one.
+template <int dim>
+std::vector<Place> loaded_places(const Scene &scene, const LoadParameters &load, int density)
+{
+  const auto part = part_of<dim>(load);
+  const auto &size = scene.specimen.size;
+  const double step = *std::max_element(size.begin(), size.begin() + dim) / density;
+  std::vector<Place> places, middles;
+  double rest = step / 2; // of a way along the faces, until the next place
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary)) {
+    auto piece = part.clip(face);
+    if (piece.empty() && core::face_area<dim>(face) > 0 && load.kind == LoadKind::force)
+      piece = {Vector<dim>(core::face_centroid<dim>(face))};
+    if (piece.empty())
+      continue;
+    const auto out = to_point<dim>(outward<dim>(face, load.boundary));
+    if constexpr (dim == 2) {
+      const double length = piece.size() > 1 ? (piece[1] - piece[0]).norm() : 0;
+      middles.push_back({to_point<dim>((piece.front() + piece.back()) / 2), out});
+      for (; rest < length; rest += step)
+        places.push_back({to_point<dim>(piece[0] + rest / length * (piece[1] - piece[0])), out});
+      rest -= length;
+    } else {
+      // A grid over the box around the face, of which the points on it count.
+      middles.push_back({to_point<dim>(core::face_centroid<dim>(piece)), out});
+      const Vector<dim> n(out.data());
+      Vector<dim> lower = piece[0], upper = piece[0];
+      for (const auto &x : piece) {
+        lower = lower.cwiseMin(x);
+        upper = upper.cwiseMax(x);
+      }
+      Eigen::Matrix<int, dim, 1> count;
+      for (int c = 0; c < dim; ++c)
+        count[c] = std::max(std::abs(n[c]) > 0.999 ? 1 : 3, int((upper - lower)[c] / step));
+      for (int k = 0; k < count.prod(); ++k) {
+        Vector<dim> x;
+        for (int c = 0, left = k; c < dim; left /= count[c++])
+          x[c] = lower[c] + (left % count[c] + 0.5) / count[c] * (upper - lower)[c];
+        if (std::abs(n.dot(x - piece[0])) < 1e-9 * step && part.holds(x, 1e-9 * step))
+          places.push_back({to_point<dim>(x), out});
+      }
+    }
+  }
+  if (places.empty() && !middles.empty())
+    places.push_back(middles[middles.size() / 2]);
+  return places;
+}
 
 void append(Segments &segments, const std::array<double, 3> &a, const std::array<double, 3> &b)
 {
@@ -147,65 +189,40 @@ void append(Segments &segments, const std::array<double, 3> &a, const std::array
       segments.points.push_back(x);
 }
 
-/// The outline of the side, `inside` m within the specimen.
+/// The edges of the loaded faces, `inside` m within the specimen.
 template <int dim>
-Segments outline(const Side<dim> &side, double inside, Color color, double width, bool dashed)
+Segments outline(const Scene &scene, const LoadParameters &load, double inside, Color color,
+                 double width, bool dashed)
 {
   Segments lines;
   lines.color = color;
   lines.width = width;
   lines.dashed = dashed;
-  if (dim == 2)
-    append(lines, side.place({0, 0}, -inside), side.place({1, 0}, -inside));
-  else
-    for (int k = 0; k < 4; ++k) {
-      static constexpr std::array<double, 2> ring[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-      append(lines, side.place(ring[k], -inside), side.place(ring[(k + 1) % 4], -inside));
-    }
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary)) {
+    const Vector<dim> shift = -inside * outward<dim>(face, load.boundary);
+    const auto piece = part_of<dim>(load).clip(face);
+    for (std::size_t k = 0; k + (dim == 2 ? 1 : 0) < piece.size(); ++k)
+      append(lines, to_point<dim>(piece[k] + shift),
+             to_point<dim>(piece[(k + 1) % piece.size()] + shift));
+  }
   return lines;
-}
-
-/// Those of the places that the load acts on; the middle of its part where none is.
-template <int dim>
-std::vector<std::array<double, 3>> loaded_places(const LoadParameters &load, const Side<dim> &side,
-                                                 int density)
-{
-  auto places = side.places(density);
-  const auto part = part_of<dim>(load);
-  places.erase(std::remove_if(places.begin(), places.end(),
-                              [&](const auto &place) {
-                                return !part.holds(Vector<dim>(place.data()), 1e-9 * side.size());
-                              }),
-               places.end());
-  if (!places.empty())
-    return places;
-  std::array<double, 3> middle = {};
-  const auto piece =
-      part.clip(core::side_corners<dim>(side.lower, side.upper, 2 * side.axis + side.is_upper));
-  for (int c = 0; c < dim && !piece.empty(); ++c)
-    middle[c] = core::face_centroid<dim>(piece)[c];
-  for (int c = 0; c < dim && piece.empty(); ++c) // a point
-    middle[c] = c == side.axis ? (side.is_upper ? side.upper : side.lower)[c]
-                : load.from    ? *load.from
-                               : std::max(load.within.lower[c], side.lower[c]);
-  return {middle};
 }
 
 /// Short slanted lines on the outer side of a held side.
 template <int dim>
-Segments hatching(const LoadParameters &load, const Side<dim> &side)
+Segments hatching(const Scene &scene, const LoadParameters &load)
 {
-  Segments lines;
-  if (part_of<dim>(load).is_whole())
-    lines = outline(side, 0, held_color, 2, false);
-  lines.color = held_color;
-  lines.width = 2;
-  const double depth = 0.02 * side.size();
-  for (const auto &place : loaded_places(load, side, 40)) {
-    auto outer = place;
-    outer[side.axis] += side.is_upper ? depth : -depth;
-    outer[side.axis == 0 ? 1 : 0] -= depth;
-    append(lines, place, outer);
+  Segments lines = outline<dim>(scene, load, 0, held_color, 2, false);
+  const auto &size = scene.specimen.size;
+  const double depth = 0.02 * *std::max_element(size.begin(), size.begin() + dim);
+  for (const auto &[point, out] : loaded_places<dim>(scene, load, 40)) {
+    auto outer = point;
+    for (int c = 0; c < dim; ++c)
+      outer[c] += depth * out[c];
+    // Slanted: along the side, towards its lower end.
+    const int along = std::abs(out[0]) > std::abs(out[1]) ? 1 : 0;
+    outer[along] -= depth;
+    append(lines, point, outer);
   }
   return lines;
 }
@@ -224,10 +241,9 @@ std::string component_text(const PartialPoint &value, const std::string &unit, b
 }
 
 template <int dim>
-void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture &picture)
+void add_load(const Scene &scene, const LoadParameters &load, Picture &picture)
 {
-  const Side<dim> side{body.lower, body.upper, load.boundary / 2, load.boundary % 2 == 1};
-  const std::string &name = side_names[load.boundary];
+  const std::string &name = load.side;
   const bool is_traction = load.kind == LoadKind::traction || load.kind == LoadKind::force;
   const std::string unit = load.kind == LoadKind::velocity ? "m/s"
                            : load.kind == LoadKind::force  ? "N"
@@ -238,23 +254,25 @@ void add_load(const LoadParameters &load, const CoupledBody<dim> &body, Picture 
   std::array<double, 3> direction = {};
   for (int c = 0; c < dim; ++c)
     direction[c] = load.value[c].value_or(0);
-  const double outward = direction[side.axis] * (side.is_upper ? 1 : -1);
   if (direction != std::array<double, 3>{}) {
-    for (const auto &place : loaded_places(load, side, dim == 2 ? 12 : 6))
-      picture.arrows.push_back({place, direction, outward < 0, color});
+    for (const auto &[point, out] : loaded_places<dim>(scene, load, dim == 2 ? 12 : 6)) {
+      const double outward = direction[0] * out[0] + direction[1] * out[1] + direction[2] * out[2];
+      picture.arrows.push_back({point, direction, outward < 0, color});
+    }
     picture.legend.push_back(
         {name + ": " + word_of(load.kind) + component_text(load.value, unit, false), color,
          Mark::arrow});
   }
   if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction)
   {
-    picture.segments.push_back(hatching(load, side));
+    picture.segments.push_back(hatching<dim>(scene, load));
     picture.legend.push_back({name + ": held in" + held, held_color, Mark::line});
   }
   if (load.absorbing) {
-    picture.segments.push_back(outline(side, 0, absorbing_color, 6, false));
+    picture.segments.push_back(outline<dim>(scene, load, 0, absorbing_color, 6, false));
     if (load.absorbing_layer > 0)
-      picture.segments.push_back(outline(side, load.absorbing_layer, absorbing_color, 2, true));
+      picture.segments.push_back(
+          outline<dim>(scene, load, load.absorbing_layer, absorbing_color, 2, true));
     picture.legend.push_back({name + ": absorbing", absorbing_color, Mark::line});
   }
 }
@@ -338,7 +356,7 @@ Picture scene_picture(const CoupledBody<dim> &body, const Scene &scene)
   add_zone_boxes(scene, body, picture);
   add_cracks(scene, picture);
   for (const auto &load : scene.loads)
-    add_load(load, body, picture);
+    add_load<dim>(scene, load, picture);
   add_gauges(scene, picture);
   add_tools(body, picture);
   std::string size;

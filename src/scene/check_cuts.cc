@@ -57,7 +57,7 @@ public:
       inside.lower[c] = std::max(inside.lower[c], specimen_.lower[c]);
       inside.upper[c] = std::min(inside.upper[c], specimen_.upper[c]);
     }
-    in_zone(inside, "the notch " + key, key);
+    off_overlap(inside, "the notch " + key, key);
   }
 
   void hole(const Hole &hole, const std::string &key)
@@ -82,19 +82,23 @@ public:
           fmt::format("\"radius\" in {} is {} m, less than two spacings", key, hole.radius),
           fmt::format("the particles cannot show it: \"spacing\" is {} m", spacing_),
           fmt::format("give at least {:.4g} m, or a smaller spacing", 2 * spacing_));
-    in_zone(box, "the hole " + key, key);
+    off_overlap(box, "the hole " + key, key);
   }
 
   void crack(const Crack &crack, const std::string &key)
   {
     const std::string points = key + "/points";
     const std::size_t n = crack.points.size();
-    if (scene_.dimension == 2 ? n != 2 : n < 3)
-      return f_.error(
-          points, fmt::format("\"points\" in {} has {} points", key, n),
-          scene_.dimension == 2 ? "a crack in 2D is a segment" : "a crack in 3D is a polygon",
-          scene_.dimension == 2 ? "give its two ends; several segments are several cracks"
-                                : "give three corners or more");
+    if (scene_.dimension == 2 ? n < 2 : n < 3)
+      return f_.error(points, fmt::format("\"points\" in {} has {} points", key, n),
+                      scene_.dimension == 2 ? "a crack in 2D is a line"
+                                            : "a crack in 3D is a polygon",
+                      scene_.dimension == 2 ? "give its two ends, and its corners between"
+                                            : "give three corners or more");
+    for (std::size_t k = 1; k < n && scene_.dimension == 2; ++k)
+      if (crack.points[k] == crack.points[k - 1] && n > 2)
+        return f_.error(points, fmt::format("\"points\" in {} has the same point twice", key),
+                        "the crack has no direction there", "remove one of them");
     if (diameter(crack.points) == 0)
       return f_.error(points, fmt::format("\"points\" in {} are all the same", key),
                       "the crack has no length", "give different points");
@@ -104,10 +108,17 @@ public:
     if (scene_.dimension == 3 && !is_convex(crack.points))
       return f_.error(points, fmt::format("\"points\" in {} are no convex polygon", key),
                       "a crack is a convex polygon", "order them along its edge, or split it");
-    const std::vector<Point> inside = clip(crack.points, specimen_, scene_.dimension);
-    const double length = inside.empty()          ? 0
-                          : scene_.dimension == 2 ? diameter(inside)
-                                                  : std::sqrt(polygon_area(inside));
+    std::vector<Point> inside;
+    double length = 0;
+    if (scene_.dimension == 3) {
+      inside = clip(crack.points, specimen_, 3);
+      length = inside.empty() ? 0 : std::sqrt(polygon_area(inside));
+    }
+    for (std::size_t k = 1; k < n && scene_.dimension == 2; ++k) {
+      const auto part = clip({crack.points[k - 1], crack.points[k]}, specimen_, 2);
+      length += part.empty() ? 0 : diameter(part);
+      inside.insert(inside.end(), part.begin(), part.end());
+    }
     if (length == 0)
       return outside("the crack " + key, points);
     if (length < 2 * spacing_ * (1 - 1e-9))
@@ -135,6 +146,22 @@ private:
   {
     if (layout_)
       check_inside_zone(cut, name, key, *layout_, f_);
+  }
+
+  /// In 2D the mesh follows holes and notches, too: they may also lie beside the zone and the cells
+  /// that the coupler has. Where a notch crosses the overlap, the mesh decides.
+  void off_overlap(const Box &cut, const std::string &name, const std::string &key)
+  {
+    if (!layout_ || !layout_->coupled)
+      return;
+    const double margin = (scene_.coupling.transition_cells + 1) * layout_->cell_size;
+    Vector<3> lower(cut.lower.data()), upper(cut.upper.data());
+    const Vector<3> all = Vector<3>::Constant(margin);
+    const auto zone = zone_shape<3>(scene_);
+    const bool is_beside = !zone.meets(lower - all, upper + all, 0);
+    const bool is_hole = name.compare(0, 8, "the hole") == 0;
+    if (scene_.dimension == 3 || (is_hole && !is_beside))
+      in_zone(cut, name, key);
   }
 
   const Scene &scene_;
@@ -213,9 +240,12 @@ void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, F
           distance(s.holes[j].centre, s.holes[k].centre) < s.holes[j].radius + s.holes[k].radius)
         f.error(key("holes", k), fmt::format("the holes {} and {} overlap", j, k),
                 "each hole has an edge of its own", "move one of them, or join them");
-  if (scene.zone.extent == DiscreteZone::Extent::none &&
-      !(s.notches.empty() && s.cracks.empty() && s.holes.empty()))
-    f.warning("/specimen", "pure finite elements: notches, holes and cracks are left out",
-              "the mesh is the whole box", "");
+  if (scene.zone.extent == DiscreteZone::Extent::none && !s.cracks.empty())
+    f.error("/specimen/cracks", "a mesh without particles has no cracks",
+            "cells are whole", "remove the cracks, or add a discrete zone around them");
+  if (scene.zone.extent == DiscreteZone::Extent::none && scene.dimension == 3 && !s.notches.empty())
+    f.error("/specimen/notches", "a mesh in 3D has no notches of its own",
+            "it fills boxes and prisms along z",
+            "give \"slots\", which go through along z, or add a discrete zone around them");
 }
 } // namespace ligament::program

@@ -1,3 +1,4 @@
+#include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 
 #include "core/parameters/spelling.h"
@@ -101,10 +102,10 @@ private:
                         fmt::format("a point of {} is outside the specimen in {}", key_, "xyz"[c]),
                         fmt::format("it is at {} m, the specimen goes from {} m to {} m", p[c],
                                     specimen_.lower[c], specimen_.upper[c]),
-                        "move it inside; the specimen is centred at the origin");
+                        "move it inside");
     if (!has_particles())
       return;
-    if (is_cut_out(scene_.specimen, p, scene_.dimension))
+    if (!BodyTest(scene_.specimen, scene_.dimension).contains(p))
       return f_.error(key, fmt::format("a point of {} is in a hole or notch", key_),
                       "there is no material to move", "move it to the edge or into the body");
     for (std::size_t k = 0; k < scene_.specimen.cracks.size(); ++k)
@@ -166,41 +167,22 @@ private:
                "there is no material in it", "move it into the body");
   }
 
-  /// One hole or notch takes in the whole box.
+  /// No point of the body lies in the box.
   bool is_swallowed() const
   {
-    const int n_corners = 1 << scene_.dimension;
-    const auto corner = [&](int a) {
+    const BodyTest body(scene_.specimen, scene_.dimension);
+    constexpr int n = 21;
+    for (int k = 0; k < (scene_.dimension == 2 ? n * n : n * n * n); ++k) {
       Point p = {0, 0, 0};
-      for (int c = 0; c < scene_.dimension; ++c)
-        p[c] = a >> c & 1 ? std::min(g_.upper[c], specimen_.upper[c])
-                          : std::max(g_.lower[c], specimen_.lower[c]);
-      return p;
-    };
-    const auto swallows = [&](const Specimen &one) {
-      for (int a = 0; a < n_corners; ++a)
-        if (!is_cut_out(one, corner(a), scene_.dimension))
-          return false;
-      return true;
-    };
-    Specimen one;
-    for (const Hole &hole : scene_.specimen.holes) {
-      one.holes = {hole};
-      if (swallows(one))
-        return true;
-    }
-    one.holes.clear();
-    for (const Notch &notch : scene_.specimen.notches) {
-      one.notches = {notch};
-      // Corners on its faces belong to it here.
-      for (int c = 0; c < 3; ++c) {
-        one.notches[0].lower[c] -= tolerance(c);
-        one.notches[0].upper[c] += tolerance(c);
+      for (int c = 0, rest = k; c < scene_.dimension; ++c, rest /= n) {
+        const double lower = std::max(g_.lower[c], specimen_.lower[c]),
+                     upper = std::min(g_.upper[c], specimen_.upper[c]);
+        p[c] = lower + (rest % n + 0.5) / n * (upper - lower);
       }
-      if (swallows(one))
-        return true;
+      if (body.contains(p))
+        return false;
     }
-    return false;
+    return true;
   }
 
   void force()
@@ -221,7 +203,7 @@ private:
                                     [&](const auto &l) { return l.boundary == g_.side; });
     if (side && !loaded && f_.sound({"/loads"}))
       f_.error(key_ + "/side",
-               fmt::format("\"side\" in {} is \"{}\", which is free", key_, side_names[*g_.side]),
+               fmt::format("\"side\" in {} is \"{}\", which is free", key_, g_.side_name),
                "no load acts on it, so its force is 0", "choose a loaded side, or load this one");
   }
 
@@ -242,7 +224,8 @@ private:
   {
     if (n_points(1, "it is where the crack starts"))
       for (int c = 0; c < scene_.dimension; ++c)
-        if (std::abs(g_.points[0][c]) > specimen_.upper[c] + tolerance(c))
+        if (g_.points[0][c] < specimen_.lower[c] - tolerance(c) ||
+            g_.points[0][c] > specimen_.upper[c] + tolerance(c))
           return f_.error(key_ + "/points",
                           fmt::format("the point of {} is outside the specimen", key_),
                           "a crack starts in it or on its surface", "move it");

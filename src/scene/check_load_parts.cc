@@ -1,4 +1,5 @@
 // The parts of sides on which loads act, and the loads' course in time.
+#include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 
 #include <fmt/format.h>
@@ -9,26 +10,18 @@ namespace ligament::program
 {
 namespace
 {
-/// Corners of the whole side.
-template <int dim>
-core::FaceCorners<dim> side_of(const Scene &scene, int side)
-{
-  const Vector<dim> half = Vector<dim>(scene.specimen.size.data()) / 2;
-  return core::side_corners<dim>(-half, half, side);
-}
-
 /// The part; where it has no width, a little of one.
 template <int dim>
 core::Part<dim> part_with_area(const Scene &scene, LoadParameters load)
 {
   constexpr double little = 1e-6;
-  const int along = load.boundary / 2 == 0 ? 1 : 0;
+  const int along = axis_across(load, dim) == 0 ? 1 : 0;
   if (load.from && load.to && *load.from == *load.to) {
     *load.from -= little * scene.specimen.size[along];
     *load.to += little * scene.specimen.size[along];
   }
   for (int c = 0; c < dim; ++c)
-    if (c != load.boundary / 2 && load.within.lower[c] == load.within.upper[c]) {
+    if (c != axis_across(load, dim) && load.within.lower[c] == load.within.upper[c]) {
       load.within.lower[c] -= little * scene.specimen.size[c];
       load.within.upper[c] += little * scene.specimen.size[c];
     }
@@ -38,26 +31,44 @@ core::Part<dim> part_with_area(const Scene &scene, LoadParameters load)
 template <int dim>
 bool share_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b)
 {
-  const auto side = side_of<dim>(scene, a.boundary);
-  const auto both = part_with_area<dim>(scene, b).clip(part_with_area<dim>(scene, a).clip(side));
-  return core::face_area<dim>(both) > 1e-12 * core::face_area<dim>(side);
+  const auto part_a = part_with_area<dim>(scene, a), part_b = part_with_area<dim>(scene, b);
+  double common = 0, all = 0;
+  for (const auto &face : faces_of<dim>(scene.specimen, a.boundary)) {
+    all += core::face_area<dim>(face);
+    common += core::face_area<dim>(part_b.clip(part_a.clip(face)));
+  }
+  return common > 1e-12 * all;
 }
 
 /// Smallest box around the loaded part of the side; nothing where there is none.
 template <int dim>
 std::optional<Box> box_of(const Scene &scene, const LoadParameters &load)
 {
-  const auto part = part_with_area<dim>(scene, load).clip(side_of<dim>(scene, load.boundary));
-  if (part.empty())
-    return {};
+  const auto part = part_with_area<dim>(scene, load);
   std::vector<Point> points;
-  for (const auto &x : part) {
-    Point p = {0, 0, 0};
-    for (int c = 0; c < dim; ++c)
-      p[c] = x[c];
-    points.push_back(p);
-  }
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary))
+    for (const auto &x : part.clip(face)) {
+      Point p = {0, 0, 0};
+      for (int c = 0; c < dim; ++c)
+        p[c] = x[c];
+      points.push_back(p);
+    }
+  if (points.empty())
+    return {};
   return bounding_box(points);
+}
+
+template <int dim>
+std::vector<Point> corners_of(const Scene &scene, const LoadParameters &load)
+{
+  std::vector<Point> points;
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary))
+    for (const auto &x : face) {
+      Point p = {0, 0, 0};
+      std::copy(x.data(), x.data() + dim, p.begin());
+      points.push_back(p);
+    }
+  return points;
 }
 
 std::optional<Box> box_of(const Scene &scene, const LoadParameters &load)
@@ -83,7 +94,7 @@ double largest(double most, Holds &&holds)
 
 bool is_point_like(const LoadParameters &load, int dim)
 {
-  const int axis = load.boundary / 2;
+  const int axis = axis_across(load, dim);
   if (load.from && load.to && *load.from == *load.to)
     return true;
   for (int c = 0; c < dim; ++c)
@@ -101,6 +112,11 @@ void check_part_keys(const Scene &scene, const LoadParameters &load, const std::
   if (has_range && !w.is_everything())
     f.error(key + "/within", fmt::format("both \"within\" and \"from\" or \"to\" in {}", key),
             "they are two ways to say on which part of the side the load acts", "keep one of them");
+  if (has_range && axis_across(load, scene.dimension) < 0)
+    f.error(key + "/from",
+            fmt::format("\"from\" or \"to\" in {}, on the side \"{}\"", key, load.side),
+            "only sides of the box around the specimen have one coordinate along them",
+            "give \"within\"");
   if (load.from && load.to && *load.from > *load.to)
     f.error(key + "/to", fmt::format("\"to\" in {} is below \"from\"", key),
             fmt::format("the part would go from {} m to {} m", *load.from, *load.to), "swap them");
@@ -176,7 +192,7 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
 void check_part(const Scene &scene, const LoadParameters &load, const std::string &key, Findings &f)
 {
   check_part_keys(scene, load, key, f);
-  if (!f.sound({key, "/specimen/size"}))
+  if (!f.sound({key, "/specimen"}))
     return;
   const std::string part = load.from || load.to ? key + "/from" : key + "/within";
   const bool has_force =
@@ -187,15 +203,19 @@ void check_part(const Scene &scene, const LoadParameters &load, const std::strin
                    "give a \"force\", or the part a width");
   if (box_of(scene, load))
     return;
-  const int axis = load.boundary / 2;
   std::string where;
+  const auto faces = scene.dimension == 2 ? corners_of<2>(scene, load) : corners_of<3>(scene, load);
+  if (faces.empty())
+    return f.error(key + "/boundary",
+                   fmt::format("nothing of the specimen lies on its side \"{}\"", load.side),
+                   "its outline touches that side of the box around it at a point or not at all",
+                   "name a side of the outline, and load that");
+  const Box side = bounding_box(faces);
   for (int c = 0; c < scene.dimension; ++c)
-    where += fmt::format("{}{} {:.6g} m{}", where.empty() ? "" : ", ", "xyz"[c],
-                         c == axis ? (load.boundary % 2 ? 0.5 : -0.5) * scene.specimen.size[c]
-                                   : -scene.specimen.size[c] / 2,
-                         c == axis ? "" : fmt::format(" to {:.6g} m", scene.specimen.size[c] / 2));
-  f.error(part,
-          fmt::format("{} acts on no part of the side \"{}\"", key, side_names[load.boundary]),
+    where += fmt::format(
+        "{}{} {:.6g} m{}", where.empty() ? "" : ", ", "xyz"[c], side.lower[c],
+        side.lower[c] == side.upper[c] ? "" : fmt::format(" to {:.6g} m", side.upper[c]));
+  f.error(part, fmt::format("{} acts on no part of the side \"{}\"", key, load.side),
           "the side lies at " + where, "move the part onto the side");
 }
 
@@ -203,9 +223,9 @@ void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &f)
 {
   const auto part = box_of(scene, load);
-  if (!part || !layout.coupled || layout.coupled_side[load.boundary])
+  const int axis = axis_across(load, scene.dimension);
+  if (!part || !layout.coupled || (axis >= 0 && layout.coupled_side[load.boundary]))
     return;
-  const int axis = load.boundary / 2;
   const Vector<3> lower(part->lower.data()), upper(part->upper.data());
   const auto zone = zone_shape<3>(scene);
   const double tolerance = 1e-9 * layout.cell_size;
@@ -218,7 +238,8 @@ void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
   });
   const double beside = largest(margin_beside, [&](double margin) {
     Vector<3> far = Vector<3>::Constant(margin);
-    far[axis] = 0;
+    if (axis >= 0)
+      far[axis] = 0;
     return !zone.meets(lower - far, upper + far, tolerance);
   });
   if (inside == margin_inside || beside == margin_beside)
@@ -227,7 +248,7 @@ void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
   f.error(key + "/boundary",
           fmt::format("\"boundary\" in {}: the loaded part of the side \"{}\" is too near to the "
                       "end of the overlap there",
-                      key, side_names[load.boundary]),
+                      key, load.side),
           missing < infinity
               ? fmt::format("{:.4g} m are missing: within the zone it keeps {:.4g} m from the "
                             "zone's edge (the overlap and two spacings), beside it {:.4g} m (the "

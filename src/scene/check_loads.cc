@@ -42,6 +42,10 @@ void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, 
             fmt::format("\"absorbing_layer\" in {}, whose side does not absorb", key),
             "the layer belongs to an absorbing side", "set \"absorbing\" to true, or remove it");
   const bool holds = has_components(load.velocity) || has_components(load.displacement);
+  if (load.absorbing && !scene.specimen.is_plain())
+    f.error(key + "/absorbing", fmt::format("\"absorbing\" in {}", key),
+            "only bodies that are boxes let waves out",
+            "remove it, or give the specimen a \"size\"");
   if (load.absorbing && holds)
     f.error(key + "/absorbing", fmt::format("\"absorbing\" in {}, which prescribes a motion", key),
             "an absorbing side moves as the waves ask; it can only carry a traction",
@@ -58,7 +62,7 @@ void check_absorbing(const Scene &scene, std::size_t k, const std::string &key, 
           key + "/boundary",
           fmt::format("\"boundary\" in {}: side \"{}\" absorbs waves and has another load "
                       "that {}",
-                      key, side_names[load.boundary],
+                      key, load.side,
                       load.absorbing && other.absorbing ? "absorbs them, too"
                                                         : "prescribes its motion"),
           fmt::format("/loads/{} acts on it already", j), "keep one of the two");
@@ -76,7 +80,7 @@ void check_twice(const Scene &scene, std::size_t k, const std::string &key, Find
         return f.error(
             key + "/boundary",
             fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice", key,
-                        "xyz"[c], side_names[load.boundary]),
+                        "xyz"[c], load.side),
             fmt::format("/loads/{} acts on it already", j),
             "keep one of the two, set the component to null in one, or let them act on parts of "
             "the "
@@ -127,17 +131,17 @@ void check_layer(const Scene &scene, const LoadParameters &load, const std::stri
 void check_against_overlap(const Scene &scene, const LoadParameters &load, const std::string &key,
                            const Layout &layout, Findings &f)
 {
-  const int side = load.boundary, axis = side / 2;
-  if (!layout.coupled || layout.coupled_side[side])
+  const int side = load.boundary, axis = axis_across(load, layout.dim);
+  if (!layout.coupled || (axis >= 0 && layout.coupled_side[side]))
     return;
-  if (load.from || load.to || !load.within.is_everything())
+  if (axis < 0 || load.from || load.to || !load.within.is_everything())
     return check_part_against_overlap(scene, load, key, layout, f);
   if (!layout.boxes.boxes.empty()) {
     if (!cover_side(layout, side, 0))
       f.error(
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
-                      key, side_names[load.boundary]),
+                      key, load.side),
           "the union of /discrete_zone/boxes reaches this side and covers a part of it; an "
           "overlap may end only at free sides",
           "end the boxes before this side, let them cover it, or load other sides");
@@ -149,10 +153,10 @@ void check_against_overlap(const Scene &scene, const LoadParameters &load, const
       f.error(
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
-                      key, side_names[load.boundary]),
+                      key, load.side),
           fmt::format("/discrete_zone/region reaches this side and is coupled along \"{}\"; an "
                       "overlap may end only at free sides",
-                      side_names[other]),
+                      box_sides[other]),
           "end the region before this side, or load other sides");
       return;
     }
@@ -166,13 +170,8 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     const std::string key = "/loads/" + std::to_string(k);
     if (!f.sound({key}))
       continue;
-    if (load.boundary >= 2 * scene.dimension) {
-      f.error(key + "/boundary",
-              fmt::format("\"boundary\" in {} is \"{}\", a side that 2D scenes do not have", key,
-                          side_names[load.boundary]),
-              "/dimension is 2", "choose \"left\", \"right\", \"bottom\" or \"top\"");
+    if (load.boundary < 0) // was told
       continue;
-    }
     const std::vector<std::string> kinds = kinds_of(load);
     if (kinds.empty() && !load.absorbing)
       f.error(
@@ -200,7 +199,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
                 "the load will not reach its value", "");
   }
   if (scene.loads.empty() && !scene.body_force.is_any() && scene.initial_motion.empty() &&
-      !scene.time.has_phases() && f.sound({"/loads"}))
+      scene.tools.empty() && !scene.time.has_phases() && f.sound({"/loads"}))
     f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
 }
 } // namespace ligament::program

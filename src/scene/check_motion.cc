@@ -23,16 +23,16 @@ void check_region(const Scene &scene, const Region &within, const std::string &k
                    fmt::format("\"within\" in {} has one of \"centre\" and \"radius\"", key),
                    "a ball needs both", "give both, or \"lower\" and \"upper\" of a box");
   for (int c = 0; c < scene.dimension && f.sound({"/specimen/size"}); ++c) {
-    const double half = scene.specimen.size[c] / 2;
+    const double least = scene.specimen.lower(c), most = scene.specimen.upper(c);
     const double lower = within.is_ball() ? within.centre[c].value_or(0) - within.radius
                                           : within.lower[c],
                  upper = within.is_ball() ? within.centre[c].value_or(0) + within.radius
                                           : within.upper[c];
-    if (lower >= half || upper <= -half || lower >= upper)
+    if (lower >= most || upper <= least || lower >= upper)
       return f.error(region, fmt::format("nothing of the body lies within the region of {}", key),
                      fmt::format("in {} it goes from {:.6g} m to {:.6g} m, the specimen from "
                                  "{:.6g} m to {:.6g} m",
-                                 "xyz"[c], lower, upper, -half, half),
+                                 "xyz"[c], lower, upper, least, most),
                      "move the region into the specimen");
   }
 }

@@ -37,7 +37,9 @@ Vector<3> normal_of(const Crack &crack, int dim)
 {
   const auto point = [&](std::size_t k) { return Vector<3>(crack.points[k].data()); };
   if (dim == 2)
-    return Vector<3>::UnitZ().cross(point(1) - point(0)).normalized();
+    return Vector<3>::UnitZ()
+        .cross(point(crack.points.size() - 1) - point(crack.points.size() - 2))
+        .normalized();
   Vector<3> area = Vector<3>::Zero();
   for (std::size_t k = 2; k < crack.points.size(); ++k)
     area += (point(k - 1) - point(0)).cross(point(k) - point(0));

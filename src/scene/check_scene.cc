@@ -14,15 +14,14 @@ namespace
 using Extent = DiscreteZone::Extent;
 
 const std::string zone_key = "/discrete_zone", far_key = "/far_field",
-                  region_key = "/discrete_zone/region", boxes_key = "/discrete_zone/boxes",
-                  size_key = "/specimen/size";
+                  region_key = "/discrete_zone/region", boxes_key = "/discrete_zone/boxes";
 
 Box box_of(const Specimen &specimen)
 {
   Box box;
   for (int c = 0; c < 3; ++c) {
-    box.lower[c] = -specimen.size[c] / 2;
-    box.upper[c] = specimen.size[c] / 2;
+    box.lower[c] = specimen.lower(c);
+    box.upper[c] = specimen.upper(c);
   }
   return box;
 }
@@ -175,8 +174,10 @@ void check_scene(const Scene &scene, Findings &f)
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;
+  check_shape(scene, f);
   std::optional<Layout> layout;
-  if (f.sound({size_key})) {
+  const double *size = scene.specimen.size.data();
+  if (f.sound({"/specimen"}) && *std::min_element(size, size + scene.dimension) > 0) {
     const Box specimen = box_of(scene.specimen);
     layout = check_layout(scene, specimen, f);
     check_cuts(scene, specimen, layout ? &*layout : nullptr, f);

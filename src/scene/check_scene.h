@@ -38,6 +38,12 @@ void check_scales(const Scene &scene, Findings &findings);
 /// Sizes of the far field's cells.
 void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 
+/// What the specimen is, and whether it bounds a body.
+void check_shape(const Scene &scene, Findings &findings);
+/// Finds the numbers of the sides that loads and gauges name; without findings unknown ones go
+/// unsaid.
+void resolve_sides(Scene &scene, Findings *findings);
+
 /// Notches, holes and cracks. `layout` is null when zone or far field are wrong themselves.
 void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, Findings &findings);
 

@@ -20,6 +20,14 @@ enum class PackingKind
   file
 };
 
+/// How a slot ends.
+enum class SlotTip
+{
+  flat,
+  round,
+  v
+};
+
 /// What breaks a bond.
 enum class Criterion
 {
@@ -110,6 +118,11 @@ inline const std::vector<std::string> &words(PackingKind)
   return list;
 }
 
+inline const std::vector<std::string> &words(SlotTip)
+{
+  static const std::vector<std::string> all = {"flat", "round", "v"};
+  return all;
+}
 inline const std::vector<std::string> &words(Criterion)
 {
   static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};

@@ -38,7 +38,7 @@ void declare_gauge(core::ParameterSection &s, GaugeParameters &g)
   s.add("inner_lower", g.inner_lower, "j_integral: the same corner of the inner rectangle, which holds the tip").in("m").usually(0, 1e4, "mm um");
   s.add("inner_upper", g.inner_upper, "j_integral: its other corner").in("m").usually(0, 1e4, "mm um");
   s.add("angle", g.angle, "strain, stress: of the gauge's x against that of the specimen, about z").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000);
-  s.add("side", g.side, "force: all loads on this side of the specimen together", side_names);
+  s.add("side", g.side_name, "force: all loads on this side of the specimen together");
   s.add("load", g.load, "force: one load, by its number in /loads from 0; -1: none").at_least(-1);
   s.add("tool", g.tool, "force: of this tool, by its name");
   s.add("smoothing", g.smoothing, "crack_tip: the speed is the mean one over this time before; 0: a fiftieth of the duration").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);

@@ -40,11 +40,12 @@ struct GaugeParameters
   Point upper = {infinity, infinity, infinity};           // m
   Point inner_lower = {0, 0, 0}, inner_upper = {0, 0, 0}; // m
   double angle = 0;                                       // rad
-  std::optional<int> side;                                // see side_names
-  int load = -1;                                          // index into Scene::loads; -1: none
-  std::string tool;                                       // name of one
-  double smoothing = 0;                                   // s
-  double mass = 0;                                        // kg
+  std::string side_name;
+  std::optional<int> side; // its number, see side_names_of
+  int load = -1;           // index into Scene::loads; -1: none
+  std::string tool;        // name of one
+  double smoothing = 0;    // s
+  double mass = 0;         // kg
 };
 
 /// The keys that this kind reads, besides name and kind.

@@ -82,6 +82,12 @@ std::vector<Point> clip(const std::vector<Point> &corners, const Box &box, int d
 bool crosses(const Crack &crack, const Point &a, const Point &b, int dim)
 {
   const std::vector<Point> &p = crack.points;
+  if (dim == 2 && p.size() > 2) {
+    bool any = false;
+    for (std::size_t k = 1; k < p.size(); ++k)
+      any = any || crosses(Crack{{p[k - 1], p[k]}}, a, b, dim);
+    return any;
+  }
   // In 2D the segment reaches across the plane: its normal lies in it.
   const Point along = difference(p[1], p[0]);
   const Point n = dim == 2 ? Point{-along[1], along[0], 0} : area_vector(p);
@@ -101,21 +107,6 @@ bool crosses(const Crack &crack, const Point &a, const Point &b, int dim)
       return false;
   }
   return true;
-}
-
-bool is_cut_out(const Specimen &specimen, const Point &p, int dim)
-{
-  for (const Hole &hole : specimen.holes)
-    if (dim == 2 && std::hypot(p[0] - hole.centre[0], p[1] - hole.centre[1]) < hole.radius)
-      return true;
-  for (const Notch &notch : specimen.notches) {
-    bool inside = true;
-    for (int c = 0; c < dim; ++c)
-      inside = inside && p[c] > notch.lower[c] && p[c] < notch.upper[c];
-    if (inside)
-      return true;
-  }
-  return false;
 }
 
 Box bounding_box(const std::vector<Point> &points)

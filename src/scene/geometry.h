@@ -23,13 +23,20 @@ core::BoxUnion<dim> zone_shape(const Scene &scene)
   for (const ZoneBox &box : boxes) {
     auto &part = shape.boxes.emplace_back();
     for (int c = 0; c < dim; ++c) {
-      const double half = scene.specimen.size[c] / 2, tolerance = 1e-9 * scene.specimen.size[c];
+      const Specimen &s = scene.specimen;
+      const double tolerance = 1e-9 * s.size[c];
       const bool outside = c >= scene.dimension;
-      part.lower[c] = outside || box.lower[c] <= -half + tolerance ? -infinity : box.lower[c];
-      part.upper[c] = outside || box.upper[c] >= half - tolerance ? infinity : box.upper[c];
+      part.lower[c] = outside || box.lower[c] <= s.lower(c) + tolerance ? -infinity : box.lower[c];
+      part.upper[c] = outside || box.upper[c] >= s.upper(c) - tolerance ? infinity : box.upper[c];
     }
   }
   return shape;
+}
+
+/// The direction across the side of the box that is loaded; -1: the side has a name of its own.
+inline int axis_across(const LoadParameters &load, int dim)
+{
+  return load.boundary < 2 * dim ? load.boundary / 2 : -1;
 }
 
 /// What of its side the load acts on.
@@ -44,7 +51,7 @@ core::Part<dim> part_of(const LoadParameters &load)
     return core::Part<dim>::ball(centre, load.within.radius);
   }
   Vector<dim> lower = vector(load.within.lower), upper = vector(load.within.upper);
-  const int along = load.boundary / 2 == 0 ? 1 : 0;
+  const int along = axis_across(load, dim) == 0 ? 1 : 0;
   lower[along] = load.from.value_or(lower[along]);
   upper[along] = load.to.value_or(upper[along]);
   const bool is_whole = (lower.array() == -infinity).all() && (upper.array() == infinity).all();
@@ -61,9 +68,6 @@ std::vector<Point> clip(const std::vector<Point> &corners, const Box &box, int d
 
 /// Whether the way from a to b crosses the crack or touches it.
 bool crosses(const Crack &crack, const Point &a, const Point &b, int dim);
-
-/// Whether a point of the specimen is in one of its holes or notches.
-bool is_cut_out(const Specimen &specimen, const Point &p, int dim);
 
 /// Smallest box around the points; at least one is needed.
 Box bounding_box(const std::vector<Point> &points);

@@ -3,9 +3,11 @@
 #include "core/check.h"
 #include "core/input_file.h"
 #include "core/json.h"
+#include "core/keyed_error.h"
 #include "core/parameters/describe_parameters.h"
 #include "core/parameters/override.h"
 #include "core/parameters/read_parameters.h"
+#include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 #include "src/scene/scene_parameters.h"
 
@@ -108,16 +110,28 @@ void leave_out_unused(const ToolParameters &tool, nlohmann::ordered_json &json)
   keep_for("points", {ToolKind::wedge});
 }
 
+/// Relative paths in a scene start in its folder; in one that came through a pipe where we are.
+void locate_files(const std::string &name, Scene &scene)
+{
+  if (name == scene_name("-"))
+    return;
+  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.surface_file})
+    if (!path->empty())
+      *path = (std::filesystem::path(name).parent_path() / *path).string();
+}
+
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
+  enclose_body(scene.specimen, scene.dimension);
   enclose_boxes(scene.zone);
+  resolve_sides(scene, nullptr);
   for (int c = 0; c < 3; ++c) {
-    const double size = scene.specimen.size[c];
+    const double size = scene.specimen.size[c], centre = scene.specimen.centre[c];
     if (scene.zone.extent == DiscreteZone::Extent::all || std::isinf(scene.zone.lower[c]))
-      scene.zone.lower[c] = -size;
+      scene.zone.lower[c] = centre - size;
     if (scene.zone.extent == DiscreteZone::Extent::all || std::isinf(scene.zone.upper[c]))
-      scene.zone.upper[c] = size;
+      scene.zone.upper[c] = centre + size;
   }
   if (scene.zone.extent == DiscreteZone::Extent::all)
     scene.far_field.reset();
@@ -158,6 +172,15 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     check_choice_of_zone(scene.zone, dimension, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
     enclose_boxes(enclosed.zone);
+    locate_files(name, enclosed);
+    try {
+      if (findings.sound({"/specimen", "/dimension"}))
+        enclose_body(enclosed.specimen, dimension);
+    } catch (const core::KeyedError &error) {
+      findings.error(error.key, error.message, error.reason, error.remedy);
+    }
+    if (findings.sound({"/dimension"}))
+      resolve_sides(enclosed, &findings);
     check_scene(enclosed, findings);
   }
   core::sort_by_place(result.errors);
@@ -170,6 +193,11 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     leave_out_unused(scene.gauges[k], result.resolved["gauges"][k]);
   for (std::size_t k = 0; k < scene.tools.size(); ++k)
     leave_out_unused(scene.tools[k], result.resolved["tools"][k]);
+  if (scene.specimen.has_own_box())
+    result.resolved["specimen"].erase("size");
+  if (scene.dimension == 3 && scene.specimen.outline.empty())
+    result.resolved["specimen"].erase("thickness");
+  locate_files(name, scene);
   complete(scene);
   result.scene = std::move(scene);
   return result;
@@ -181,14 +209,6 @@ ReadResult refused(const std::string &file, const std::string &reason, const std
   result.errors.push_back(
       {core::Place{scene_name(file)}, "", "cannot read the scene", reason, remedy});
   return result;
-}
-
-/// Relative paths in a scene start in its folder; in one that came through a pipe where we are.
-void locate_files(const std::string &file, Scene &scene)
-{
-  std::string &packing = scene.zone.packing_file;
-  if (!packing.empty() && core::is_named_file(file))
-    packing = (std::filesystem::path(file).parent_path() / packing).string();
 }
 
 template <typename Overrides>
@@ -205,8 +225,6 @@ ReadResult read(const std::string &file, const Overrides &overrides)
                    "write a scene into it; examples/cracked_plate/scene.json is one");
   ReadResult result = parse(text, scene_name(file), overrides);
   result.text = std::move(text);
-  if (result.scene)
-    locate_files(file, *result.scene);
   return result;
 }
 } // namespace

@@ -6,12 +6,13 @@
 #include "src/scene/choices.h"
 #include "src/scene/gauge_parameters.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace ligament::program
 {
-/// A cut without width: 2D a segment (two points), 3D a convex plane polygon (three or more).
+/// A cut without width: 2D a line of two or more points, 3D a convex plane polygon (three or more).
 struct Crack
 {
   std::vector<Point> points; // m
@@ -30,13 +31,62 @@ struct Notch
   Point lower, upper; // m
 };
 
+/// A corner of a closed curve in the plane of x and y, and the way to it from the one before.
+struct OutlineCorner
+{
+  Point at = {0, 0, 0};   // m
+  PartialPoint centre;    // m, of an arc; none: straight
+  bool clockwise = false; // an arc's way about its centre
+  std::string side;       // name of what lies between; none: the side of the box, or nothing
+};
+
+/// An opening of any outline.
+struct Cutout
+{
+  std::vector<OutlineCorner> outline;
+  std::string side; // name of its rim
+};
+
+/// A notch with parallel flanks, at any angle.
+struct Slot
+{
+  Point from = {0, 0, 0}, to = {0, 0, 0}; // m, middle of its mouth and its tip
+  double width = 0;                       // m
+  SlotTip tip = SlotTip::flat;
+  double tip_angle = M_PI / 3; // rad, for tip v
+  std::string side;            // name of its flanks and tip
+};
+
+struct Ball
+{
+  double radius = 0; // m, about the origin
+};
+
 struct Specimen
 {
-  Point size;           // m, a box centred at the origin
-  double thickness = 1; // m, 2D only
+  Point size = {0, 0, 0};             // m, of the smallest box around it
+  Point centre = {0, 0, 0};           // m, of that box: the origin unless there is an outline
+  double thickness = 1;               // m, 2D; 3D: of an outline, along z
+  std::vector<OutlineCorner> outline; // empty: the box
+  std::vector<Cutout> cutouts;
+  std::vector<Slot> slots;
+  std::optional<Ball> ball; // 3D
+  std::string surface_file; // 3D: triangles; relative to the scene until it is read
   std::vector<Crack> cracks;
   std::vector<Hole> holes;
   std::vector<Notch> notches;
+
+  double lower(int c) const { return centre[c] - size[c] / 2; }
+  double upper(int c) const { return centre[c] + size[c] / 2; }
+  Point lower() const { return {lower(0), lower(1), lower(2)}; }
+  Point upper() const { return {upper(0), upper(1), upper(2)}; }
+  /// A box, perhaps with boxes and discs cut out of it.
+  bool is_plain() const
+  {
+    return outline.empty() && cutouts.empty() && slots.empty() && !ball && surface_file.empty();
+  }
+  /// Its box follows from something else.
+  bool has_own_box() const { return !outline.empty() || ball || !surface_file.empty(); }
 };
 
 struct FractureParameters
@@ -106,6 +156,7 @@ struct FarField
   int cells_per_level = 4; // cells between two steps of the mesh size
   double growth = 1;       // above 1: from cell to cell, in place of refinement
   int fine_cells = 0;      // cells of size h, from the inner end of the overlap on; 0: automatic
+  double outline_cell_size = 0; // m, along curved and slanted sides; 0: cell_size
 };
 
 struct CouplingParameters
@@ -139,9 +190,10 @@ struct Damping
   bool kinetic = false;
 };
 
-/// By number: twice the axis, and one more for the upper side.
-inline const std::vector<std::string> side_names = {"left", "right", "bottom",
-                                                    "top",  "back",  "front"};
+/// Of the smallest box around the specimen, by number: twice the axis, and one more for the upper
+/// side. Further ones have names of their own: side_names_of().
+inline const std::vector<std::string> box_sides = {"left", "right", "bottom",
+                                                   "top",  "back",  "front"};
 
 /// A part of the body: a box, or a ball (in 2D a disc) where there is a radius.
 struct Region
@@ -182,7 +234,8 @@ struct History
 
 struct LoadParameters
 {
-  int boundary = 0;                                     // number of the side, see side_names
+  std::string side;                                     // its name
+  int boundary = 0;                                     // number of the side, see side_names_of
   PartialPoint velocity, displacement, traction, force; // m/s, m, Pa, N; one has components
   double ramp = 0;                                      // s
   History history;

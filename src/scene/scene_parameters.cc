@@ -11,7 +11,7 @@ using Section = core::ParameterSection;
 // clang-format off
 void declare_crack(Section &s, Crack &c)
 {
-  s.add("points", c.points, "the two ends (2D), or the corners of a convex plane polygon (3D)").in("m").usually(0, 1e4, "mm um").required();
+  s.add("points", c.points, "the two ends, or all corners of a bent crack (2D); the corners of a convex plane polygon (3D)").in("m").usually(0, 1e4, "mm um").required();
 }
 
 void declare_hole(Section &s, Hole &h)
@@ -26,10 +26,44 @@ void declare_notch(Section &s, Notch &n)
   s.add("upper", n.upper, "corner of the box with the largest coordinates").in("m").usually(0, 1e4, "mm um").required();
 }
 
+void declare_corner(Section &s, OutlineCorner &c)
+{
+  s.add("at", c.at, "place of the corner (x and y; in 3D z counts nothing)").in("m").usually(0, 1e4, "mm um").required();
+  s.add("centre", c.centre, "the way to it from the corner before is an arc about this point; not given: it is straight; a single corner with a centre is a whole circle").in("m").usually(0, 1e4, "mm um");
+  s.add("clockwise", c.clockwise, "the arc runs clockwise about its centre");
+  s.add("side", c.side, "name of the side between the two, for loads; not given: left, right, bottom or top where it lies on the box around the specimen");
+}
+
+void declare_cutout(Section &s, Cutout &c)
+{
+  s.list("outline", c.outline, "its corners in turn, either way round", declare_corner).required();
+  s.add("side", c.side, "name of its rim, for loads; sides of the outline may have their own");
+}
+
+void declare_slot(Section &s, Slot &n)
+{
+  s.add("from", n.from, "middle of its mouth on the surface; it goes on outward by its width").in("m").usually(0, 1e4, "mm um").required();
+  s.add("to", n.to, "its tip").in("m").usually(0, 1e4, "mm um").required();
+  s.add("width", n.width, "between its flanks").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.add("tip", n.tip, "flat; round: half a circle; v: a wedge, whose flanks are straight from its tip to the full width", words(SlotTip()));
+  s.add("tip_angle", n.tip_angle, "between the flanks of a tip v").in("rad").usually(0.05, 3.1, "deg mrad").above(0).below(3.14);
+  s.add("side", n.side, "name of its flanks and tip, for loads");
+}
+
+void declare_specimen_ball(Section &s, Ball &b)
+{
+  s.add("radius", b.radius, "of the ball").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+}
+
 void declare_specimen(Section &s, Specimen &p)
 {
-  s.add("size", p.size, "edge lengths of the box, which is centred at the origin").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required();
-  s.add("thickness", p.thickness, "extent across the plane").in("m").usually(1e-8, 1e4, "mm um nm").above(0).only_in(2);
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or surface_file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a surface_file");
+  s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-8, 1e4, "mm um nm").above(0);
+  s.list("outline", p.outline, "in place of size: the corners of the body's outline in turn, either way round; in 3D that of a prism along z", declare_corner);
+  s.list("cutouts", p.cutouts, "openings of any outline; what reaches out of the specimen opens its side; in 3D they go through along z", declare_cutout);
+  s.list("slots", p.slots, "notches with parallel flanks at any angle; in 3D they go through along z", declare_slot);
+  s.section("ball", p.ball, "none", "in place of size: a ball about the origin", declare_specimen_ball).only_in(3);
+  s.add("surface_file", p.surface_file, "in place of size: file of a closed surface of triangles (STL) in m, relative to the scene").only_in(3);
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
@@ -94,6 +128,7 @@ void declare_far_field(Section &s, FarField &f)
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
   s.add("fine_cells", f.fine_cells, "cells of size h between the inner end of the overlap and the first larger ones; 0: overlap, transition and two more").at_least(0).at_most(1000);
+  s.add("outline_cell_size", f.outline_cell_size, "size of the cells along curved and slanted sides, holes and notches, cell_size times a power of 2; 0: cell_size; not with growth").in("m").usually(1e-9, 1e3, "mm um nm").at_least(0);
 }
 
 void declare_coupling(Section &s, CouplingParameters &c)
@@ -153,7 +188,7 @@ void declare_history(Section &s, History &h)
 
 void declare_load(Section &s, LoadParameters &l)
 {
-  s.add("boundary", l.boundary, "side of the specimen", side_names).required();
+  s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required();
   s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");

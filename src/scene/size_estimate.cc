@@ -1,5 +1,6 @@
 #include "src/scene/size_estimate.h"
 
+#include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 
 #include <algorithm>
@@ -21,24 +22,9 @@ Point spread_point(const Scene &scene, int k)
   for (int c = 0; c < scene.dimension; ++c) {
     step /= root;
     const double share = std::fmod(0.5 + step * (k + 1), 1.);
-    x[c] = (share - 0.5) * scene.specimen.size[c];
+    x[c] = scene.specimen.lower(c) + share * scene.specimen.size[c];
   }
   return x;
-}
-
-bool is_material(const Specimen &specimen, const Point &x, int dim)
-{
-  for (const Hole &hole : specimen.holes)
-    if (std::hypot(x[0] - hole.centre[0], x[1] - hole.centre[1]) < hole.radius)
-      return false;
-  for (const Notch &notch : specimen.notches) {
-    bool inside = true;
-    for (int c = 0; c < dim; ++c)
-      inside = inside && x[c] > notch.lower[c] && x[c] < notch.upper[c];
-    if (inside)
-      return false;
-  }
-  return true;
 }
 
 /// Edge of the cell at this distance, in m, from the inner end of the overlap; see fem::make_mesh.
@@ -70,19 +56,21 @@ SizeEstimate estimate_size(const Scene &scene, double cell_volume)
     point_area *= scene.specimen.size[c];
   const double particles_per_point =
       none ? 0 : point_area * (dim == 2 ? scene.specimen.thickness : 1) / cell_volume;
+  const BodyTest body(scene.specimen, dim);
   SizeEstimate size;
   for (int k = 0; k < n_points; ++k) {
     const Point x = spread_point(scene, k);
     const double inside = all    ? infinity
                           : none ? -infinity
                                  : zone.distance(Vector<3>(x[0], x[1], x[2]));
-    const double in_material = is_material(scene.specimen, x, dim) ? particles_per_point : 0;
+    const bool is_material = body.contains(x);
+    const double in_material = is_material ? particles_per_point : 0;
     size.equivalent_particles += in_material;
     if (inside >= 0)
       size.particles += in_material;
     if (inside >= 0 && inside < overlap)
       size.overlap_particles += in_material;
-    if (!all && inside < overlap)
+    if (!all && inside < overlap && is_material)
       size.cells += point_area / std::pow(cell_size_at(scene, overlap - inside), dim);
   }
   return size;

@@ -1,6 +1,7 @@
 #include "src/simulation/body_fields.h"
 
 #include "core/sums.h"
+#include "fem/cell_map.h"
 #include "src/simulation/kept_tables.h"
 
 #include <fmt/format.h>
@@ -74,9 +75,7 @@ CellFields cell_fields(const CoupledBody<dim> &body)
       fields.reference[3 * i + c] = mesh.nodes[i][c];
   std::vector<double> tensor(6 * mesh.n_nodes(), 0.), count(mesh.n_nodes(), 0.);
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-    const Vector<dim> &lower = mesh.cell_lower[cell], &size = mesh.cell_size[cell];
-    const auto b =
-        fem::strain_matrix<dim>(fem::shape_gradients<dim>(lower, size, lower + size / 2));
+    const auto b = fem::strain_matrix<dim>(fem::centre_gradients(mesh, cell));
     Vec<dim * nc> u;
     for (int a = 0; a < nc; ++a) {
       fields.connectivity.push_back(mesh.cells[cell][ring[a]]);

@@ -4,6 +4,7 @@
 #include "core/keyed_error.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
+#include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_loads.h"
 #include "src/simulation/make_zone.h"
@@ -23,16 +24,23 @@ using core::require;
 /// Volume of the specimen without its holes and notches, in m^3.
 double material_volume(const Scene &scene)
 {
+  const Specimen &specimen = scene.specimen;
   double volume = 1;
-  for (int c = 0; c < scene.dimension; ++c)
-    volume *= scene.specimen.size[c];
+  const double side = scene.zone.spacing / 2;
+  if (const auto flat = scene.dimension == 2 ? solid_of<2>(specimen, side) : nullptr)
+    return flat->volume() * specimen.thickness;
+  if (const auto solid = scene.dimension == 3 ? solid_of<3>(specimen, side) : nullptr)
+    volume = solid->volume();
+  else
+    for (int c = 0; c < scene.dimension; ++c)
+      volume *= specimen.size[c];
   for (const auto &hole : scene.specimen.holes)
     volume -= M_PI * hole.radius * hole.radius;
   for (const auto &notch : scene.specimen.notches) {
     double box = 1;
     for (int c = 0; c < scene.dimension; ++c)
-      box *= std::max(0., std::min(notch.upper[c], scene.specimen.size[c] / 2) -
-                              std::max(notch.lower[c], -scene.specimen.size[c] / 2));
+      box *= std::max(0., std::min(notch.upper[c], specimen.upper(c)) -
+                              std::max(notch.lower[c], specimen.lower(c)));
     volume -= box;
   }
   return volume * (scene.dimension == 2 ? scene.specimen.thickness : 1);
@@ -55,6 +63,9 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
     require(!p.inner.empty(), "the discrete zone is nowhere wider than its two overlaps; widen it "
                               "or lower /coupling/overlap_cells");
   }
+  p.outline_cell_size = scene.far_field->outline_cell_size;
+  const double along = p.outline_cell_size > 0 ? p.outline_cell_size : p.cell_size;
+  p.outline = mesh_outline_of<dim>(scene.specimen, along / 20, core::BoxUnion<dim>{p.inner});
   const auto constants = elastic_constants_of<dim>(scene);
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
@@ -242,8 +253,8 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
                            Reference &reference, const ForceMaker<dim> &make_force)
 {
   CoupledBody<dim> body;
-  body.upper = to_vector<dim>(scene.specimen.size) / 2;
-  body.lower = -body.upper;
+  body.lower = to_vector<dim>(scene.specimen.lower());
+  body.upper = to_vector<dim>(scene.specimen.upper());
   body.thickness = dim == 2 ? scene.specimen.thickness : 1;
   body.plane = scene.plane;
   body.poissons_ratio = scene.material.poissons_ratio;

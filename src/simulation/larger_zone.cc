@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/polar_rotation.h"
+#include "fem/cell_map.h"
 #include "particles/orientation.h"
 #include "src/simulation/body_names.h"
 #include "src/simulation/energy_ledger.h"
@@ -28,6 +29,8 @@ void require_free_side(const CoupledBody<dim> &body, const Vector<dim> &x)
   for (const core::BoundaryLoad<dim> &load : body.loads) {
     if (load.boundary < 0)
       continue;
+    require(load.boundary < inner_surface<dim>,
+            "a zone of a body with loads on sides with names of their own cannot grow");
     const int axis = load.boundary / 2;
     const double distance =
         load.boundary % 2 ? body.upper[axis] - x[axis] : x[axis] - body.lower[axis];
@@ -86,9 +89,8 @@ public:
     require(cell >= 0, fmt::format("particle {} of the larger zone lies where the old body had "
                                    "neither particle nor cell",
                                    p.global_id[i]));
-    const Vector<dim> &lower = mesh_.cell_lower[cell], &size = mesh_.cell_size[cell];
-    const auto share = fem::shape_values<dim>(lower, size, x);
-    const auto gradient = fem::shape_gradients<dim>(lower, size, x);
+    const auto share = fem::shape_values(mesh_, cell, x);
+    const auto gradient = fem::shape_gradients(mesh_, cell, x);
     Vector<dim> u = Vector<dim>::Zero(), v = u;
     Eigen::Matrix<double, dim, dim> f = Eigen::Matrix<double, dim, dim>::Identity();
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {

@@ -1,5 +1,6 @@
 #include "src/simulation/make_loads.h"
 
+#include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 
 #include <algorithm>
@@ -8,12 +9,6 @@ namespace ligament::program
 {
 namespace
 {
-template <int dim>
-Vector<dim> half_size(const Scene &scene)
-{
-  return Vector<dim>(scene.specimen.size.data()) / 2;
-}
-
 /// Wider than nothing along the side, so that a point has an area.
 template <int dim>
 core::Part<dim> widened(const Scene &scene, LoadParameters load)
@@ -29,7 +24,7 @@ core::Part<dim> widened(const Scene &scene, LoadParameters load)
     *load.to += width / 2;
   }
   for (int c = 0; c < dim; ++c)
-    if (c != load.boundary / 2 && load.within.lower[c] == load.within.upper[c]) {
+    if (c != axis_across(load, dim) && load.within.lower[c] == load.within.upper[c]) {
       load.within.lower[c] -= width / 2;
       load.within.upper[c] += width / 2;
     }
@@ -58,9 +53,10 @@ core::TimeFunction time_function_of(const History &history, double ramp)
 template <int dim>
 double loaded_area(const Scene &scene, const core::BoundaryLoad<dim> &load)
 {
-  const Vector<dim> half = half_size<dim>(scene);
-  const auto side = core::side_corners<dim>(-half, half, load.boundary);
-  return core::face_area<dim>(load.part.clip(side)) * (dim == 2 ? scene.specimen.thickness : 1);
+  double area = 0;
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary))
+    area += core::face_area<dim>(load.part.clip(face));
+  return area * (dim == 2 ? scene.specimen.thickness : 1);
 }
 
 template <int dim>

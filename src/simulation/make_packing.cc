@@ -4,6 +4,7 @@
 #include "core/keyed_error.h"
 #include "core/sums.h"
 #include "packings/packing_file.h"
+#include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 
 #include <fmt/format.h>
@@ -22,16 +23,29 @@ void set_specimen(const Scene &scene, packings::SpecimenParameters<dim> &p)
 {
   p.spacing = scene.zone.spacing;
   p.thickness = scene.specimen.thickness;
-  p.upper = to_vector<dim>(scene.specimen.size) / 2;
-  p.lower = -p.upper;
-  for (const auto &hole : scene.specimen.holes)
-    p.holes.push_back({to_vector<dim>(hole.centre), hole.radius});
-  for (const auto &notch : scene.specimen.notches)
-    p.notches.push_back({to_vector<dim>(notch.lower), to_vector<dim>(notch.upper)});
-  for (const auto &crack : scene.specimen.cracks) {
-    auto &points = p.cracks.emplace_back();
+  const Specimen &specimen = scene.specimen;
+  p.lower = to_vector<dim>(specimen.lower());
+  p.upper = to_vector<dim>(specimen.upper());
+  p.solid = solid_of<dim>(specimen, p.spacing / 2);
+  if (p.solid) { // whose straight sides in place of arcs reach out of the box a little
+    p.lower = p.solid->lower();
+    p.upper = p.solid->upper();
+  }
+  if (!p.solid)
+    for (const auto &hole : specimen.holes)
+      p.holes.push_back({to_vector<dim>(hole.centre), hole.radius});
+  if (!p.solid || dim == 3)
+    for (const auto &notch : specimen.notches)
+      p.notches.push_back({to_vector<dim>(notch.lower), to_vector<dim>(notch.upper)});
+  for (const auto &crack : specimen.cracks) {
+    std::vector<Vector<dim>> points;
     for (const auto &point : crack.points)
       points.push_back(to_vector<dim>(point));
+    if (dim == 3)
+      p.cracks.push_back(points);
+    else // one straight cut after the other
+      for (std::size_t k = 1; k < points.size(); ++k)
+        p.cracks.push_back({points[k - 1], points[k]});
   }
   if (scene.zone.extent != DiscreteZone::Extent::box)
     return;

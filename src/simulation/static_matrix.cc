@@ -1,5 +1,6 @@
 // The matrix that a static solver is preconditioned with, theory.md eq. (Q3).
 #include "coupling/operators/blended_operators.h"
+#include "fem/cell_map.h"
 #include "fem/condensed_cell.h"
 #include "src/simulation/static_system.h"
 
@@ -165,21 +166,29 @@ void for_each_own_cell(const fem::FemSolver<dim> &far, Visit &&visit)
 {
   const auto &mesh = far.mesh();
   const fem::CellCondenser<dim> condense(mesh);
+  const auto make = [&](int cell) {
+    return fem::cell_stiffness(mesh, cell, far.body().stiffness, far.body().thickness);
+  };
   std::map<std::array<double, dim>, fem::CellMatrix<dim>> of_size;
-  for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-    if (!far.is_own_cell(cell))
-      continue;
+  const auto of_box = [&](int cell) -> const fem::CellMatrix<dim> & {
     std::array<double, dim> key;
     for (int c = 0; c < dim; ++c)
       key[c] = mesh.cell_size[cell][c];
     auto found = of_size.find(key);
     if (found == of_size.end())
-      found = of_size
-                  .emplace(key, fem::cell_stiffness<dim>(mesh.cell_size[cell], far.body().stiffness,
-                                                         far.body().thickness))
-                  .first;
+      found = of_size.emplace(key, make(cell)).first;
+    return found->second;
+  };
+  fem::CellMatrix<dim> general;
+  const auto of_general = [&](int cell) -> const fem::CellMatrix<dim> & {
+    return general = make(cell);
+  };
+  for (int cell = 0; cell < mesh.n_cells(); ++cell) {
+    if (!far.is_own_cell(cell))
+      continue;
+    const auto &k = mesh.is_box(cell) ? of_box(cell) : of_general(cell);
     if (!condense.hangs(cell)) {
-      visit(mesh.cells[cell], found->second);
+      visit(mesh.cells[cell], k);
       continue;
     }
     const auto condensed = condense(cell);
@@ -188,7 +197,7 @@ void for_each_own_cell(const fem::FemSolver<dim> &far, Visit &&visit)
       for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
         for (int c = 0; c < dim; ++c)
           shares(dim * a + c, dim * b + c) = condensed.shares(a, b);
-    visit(condensed.nodes, fem::CellMatrix<dim>(shares.transpose() * found->second * shares));
+    visit(condensed.nodes, fem::CellMatrix<dim>(shares.transpose() * k * shares));
   }
 }
 } // namespace

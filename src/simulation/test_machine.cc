@@ -1,6 +1,7 @@
 #include "src/simulation/test_machine.h"
 
 #include "core/exact_sum.h"
+#include "fem/cell_map.h"
 
 #include <Eigen/Cholesky>
 
@@ -140,6 +141,13 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
   const auto &mesh = body.far->mesh();
   for (const auto &face : mesh.boundary_faces)
     if (face.boundary == boundary) {
+      if (!mesh.is_box(face.cell)) {
+        const auto shares = fem::face_shares<dim>(fem::cell_corners(mesh, face.cell), face.face);
+        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+          sum += shares[a] * body.far->displacement[component][mesh.cells[face.cell][a]];
+        area += shares.sum();
+        continue;
+      }
       const Vector<dim> &h = mesh.cell_size[face.cell];
       const double share = h.prod() / h[axis];
       area += share;

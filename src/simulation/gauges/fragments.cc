@@ -2,6 +2,7 @@
 
 #include "core/exact_sum.h"
 #include "core/files.h"
+#include "fem/cell_map.h"
 #include "src/output/format.h"
 #include "src/simulation/disjoint_sets.h"
 
@@ -75,12 +76,14 @@ void FragmentGauge<dim>::find_pieces(const CoupledBody<dim> &body)
       sets.join(m.particle, n_particles + overlap->near_nodes[m.nodes[0]]);
   if (body.far) {
     const auto &mesh = body.far->mesh();
-    for (int cell = 0; cell < mesh.n_cells(); ++cell)
-      for (const int node : mesh.cells[cell]) {
+    for (int cell = 0; cell < mesh.n_cells(); ++cell) {
+      const auto shares = fem::volume_shares(mesh, cell);
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
+        const int node = mesh.cells[cell][a];
         sets.join(n_particles + node, n_particles + mesh.cells[cell][0]);
-        mass[n_particles + node] +=
-            density_[0] * body.thickness * mesh.cell_size[cell].prod() / fem::n_cell_nodes<dim>;
+        mass[n_particles + node] += density_[0] * body.thickness * shares[a];
       }
+    }
     for (const auto &hanging : mesh.hanging)
       for (const auto &master : hanging.masters)
         sets.join(n_particles + hanging.node, n_particles + master.first);

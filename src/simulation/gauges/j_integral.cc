@@ -102,17 +102,22 @@ void JIntegral<dim>::add_cells(const CoupledBody<dim> &body)
     for (const auto &cell : overlap->cells)
       is_shared[cell.cell] = cell.layer == 0;
   for_each_cell_part<dim>(mesh, lower_, upper_, [&](int cell, const auto &, const auto &) {
+    const auto add = [&](const Vector<dim> &x, double volume) {
+      const double share = overlap ? 1 - overlap->weight(x) : 1;
+      if (share > 0 && !slope(x).isZero(0))
+        add_sample(x, share * volume * body.thickness, interpolate(mesh, cell, x), -1);
+    };
+    if (!mesh.is_box(cell)) { // never of the overlap
+      for_each_gauss_point(mesh, cell, 1, add);
+      return;
+    }
     const int n = is_shared[cell] ? parts_per_axis : 1;
     const Vector<dim> size = mesh.cell_size[cell] / n;
     for (int part = 0; part < std::lround(std::pow(n, dim)); ++part) {
       Vector<dim> from = mesh.cell_lower[cell];
       for (int c = 0, rest = part; c < dim; ++c, rest /= n)
         from[c] += rest % n * size[c];
-      for_each_gauss_point<dim>(from, from + size, [&](const Vector<dim> &x, double volume) {
-        const double share = overlap ? 1 - overlap->weight(x) : 1;
-        if (share > 0 && !slope(x).isZero(0))
-          add_sample(x, share * volume * body.thickness, interpolate(mesh, cell, x), -1);
-      });
+      for_each_gauss_point<dim>(from, from + size, add);
     }
   });
 }

@@ -34,7 +34,7 @@ void add_interpolated(const fem::Mesh<dim> &mesh, int cell, const Vector<dim> &p
                       const Vector<dim> &gradient, std::vector<double> &values,
                       std::vector<Vector<dim>> &gradients)
 {
-  const auto shape = fem::shape_values<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], place);
+  const auto shape = fem::shape_values(mesh, cell, place);
   for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
     values[mesh.cells[cell][a]] += shape[a] * value;
     gradients[mesh.cells[cell][a]] += shape[a] * gradient;
@@ -164,9 +164,8 @@ MotionReading<dim> fit_particles(const CoupledBody<dim> &body, const std::vector
 template <int dim>
 MotionReading<dim> interpolate(const fem::Mesh<dim> &mesh, int cell, const Vector<dim> &place)
 {
-  const auto shape = fem::shape_values<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], place);
-  const auto gradients =
-      fem::shape_gradients<dim>(mesh.cell_lower[cell], mesh.cell_size[cell], place);
+  const auto shape = fem::shape_values(mesh, cell, place);
+  const auto gradients = fem::shape_gradients(mesh, cell, place);
   MotionReading<dim> reading;
   for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
     reading.nodes.push_back({mesh.cells[cell][a], shape[a], gradients.col(a)});
@@ -240,9 +239,24 @@ MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lo
   if (body.far)
     for_each_cell_part<dim>(
         body.far->mesh(), lower, upper, [&](int cell, const auto &from, const auto &to) {
-          for_each_gauss_point<dim>(from, to, [&](const Vector<dim> &place, double volume) {
+          const auto add = [&](const Vector<dim> &place, double volume) {
             samples.push_back({-1, cell, place, volume * body.thickness});
-          });
+          };
+          const auto &mesh = body.far->mesh();
+          if (mesh.is_box(cell)) {
+            for_each_gauss_point<dim>(from, to, add);
+            return;
+          }
+          // A cell that the box cuts counts by its points inside; affine motion stays exact.
+          const bool is_cut =
+              (mesh.cell_lower[cell].array() < lower.array()).any() ||
+              ((mesh.cell_lower[cell] + mesh.cell_size[cell]).array() > upper.array()).any();
+          for_each_gauss_point(mesh, cell, is_cut ? 4 : 1,
+                               [&](const Vector<dim> &place, double volume) {
+                                 if ((place.array() >= lower.array()).all() &&
+                                     (place.array() <= upper.array()).all())
+                                   add(place, volume);
+                               });
         });
   if (body.zone) {
     const auto &state = body.zone->state;

@@ -2,6 +2,7 @@
 // nodes: exact for every motion that is affine in the place.
 #pragma once
 
+#include "fem/cell_map.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/coupled_body.h"
 
@@ -91,7 +92,8 @@ template <int dim>
 MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lower,
                            const Vector<dim> &upper);
 
-/// visit(cell, part_lower, part_upper) for the cells of the mesh that reach into the box.
+/// visit(cell, part_lower, part_upper) for the cells of the mesh that reach into the box, general
+/// cells by their own bounding boxes.
 template <int dim, typename Visit>
 void for_each_cell_part(const fem::Mesh<dim> &mesh, const Vector<dim> &lower,
                         const Vector<dim> &upper, Visit &&visit)
@@ -115,6 +117,23 @@ void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &upper, Vi
     for (int c = 0; c < dim; ++c)
       place[c] += (k >> c & 1 ? 1 : -1) * half[c] / std::sqrt(3.);
     visit(place, half.prod());
+  }
+}
+
+/// The same for a cell of a mesh, cut into so many parts per axis of its own.
+template <int dim, typename Visit>
+void for_each_gauss_point(const fem::Mesh<dim> &mesh, int cell, int parts, Visit &&visit)
+{
+  const auto corners = fem::cell_corners(mesh, cell);
+  const Vector<dim> size = Vector<dim>::Constant(1. / parts);
+  for (int part = 0; part < std::lround(std::pow(parts, dim)); ++part) {
+    Vector<dim> from;
+    for (int c = 0, rest = part; c < dim; ++c, rest /= parts)
+      from[c] = rest % parts * size[c];
+    for_each_gauss_point<dim>(from, from + size, [&](const Vector<dim> &s, double share) {
+      visit(fem::cell_point<dim>(corners, s),
+            share * fem::cell_jacobian<dim>(corners, s).determinant());
+    });
   }
 }
 

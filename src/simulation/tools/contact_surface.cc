@@ -161,8 +161,6 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
       has_particles[cell.cell] = cell.layer == 0;
   const Rule cut = even_rule(n_cut);
   for (const auto &face : mesh.boundary_faces) {
-    if (face.boundary == inner_surface<dim>)
-      continue;
     SurfacePoint<dim> point;
     int n = 0;
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)

@@ -28,6 +28,29 @@ TEST(Part, ClipsSegments)
   EXPECT_TRUE(Part<2>::ball({0, 0}, 1).clip(face).empty());
 }
 
+TEST(Part, ClipsInclinedSegments)
+{
+  const FaceCorners<2> face = {{0, 0}, {4, 3}}; // length 5
+  EXPECT_EQ(Part<2>().clip(face), face);
+  const auto box = Part<2>::box({0.8, -inf}, {inf, 1.5}).clip(face);
+  EXPECT_NEAR(face_area<2>(box), 1.5, 1e-15); // from (0.8, 0.6) to (2, 1.5)
+  EXPECT_NEAR((face_centroid<2>(box) - Vector<2>(1.4, 1.05)).norm(), 0, 1e-15);
+  EXPECT_TRUE(Part<2>::box({3, -inf}, {inf, 2}).clip(face).empty());
+  const auto disc = Part<2>::ball({4. - 0.6, 3. + 0.8}, std::sqrt(2.)); // 1 off the end
+  EXPECT_NEAR(face_area<2>(disc.clip(face)), 1, 1e-14) << "from 1 before the end on";
+  EXPECT_NEAR((disc.clip(face)[1] - face[1]).norm(), 0, 0) << "the end itself, not its neighbour";
+  EXPECT_NEAR(face_area<2>(Part<2>::ball({2, 1.5}, 0.5).clip(face)), 1, 1e-14);
+  EXPECT_TRUE(Part<2>::ball({0, 3}, 2.3).clip(face).empty()) << "2.4 away";
+}
+
+TEST(Part, TakesInclinedFacesByTheirCentroid)
+{
+  const FaceCorners<3> face = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
+  EXPECT_EQ(Part<3>::box({-inf, -inf, 0.4}, {inf, inf, inf}).clip(face), face);
+  EXPECT_TRUE(Part<3>::box({-inf, -inf, 0.6}, {inf, inf, inf}).clip(face).empty());
+  EXPECT_EQ(Part<3>::ball({0.5, 0.5, 0.5}, 0.1).clip(face), face);
+}
+
 TEST(Part, ClipsPolygons)
 {
   const FaceCorners<3> face = {{0, 0, 5}, {4, 0, 5}, {4, 2, 5}, {0, 2, 5}};

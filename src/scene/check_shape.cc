@@ -1,0 +1,142 @@
+// The shape of the specimen: one description of it, and one that bounds a body.
+#include "core/keyed_error.h"
+#include "core/parameters/spelling.h"
+#include "src/scene/body_shape.h"
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+const std::string section = "/specimen";
+
+/// The ways to say what the specimen is, and which of them are used.
+void check_choice(const Scene &scene, Findings &f)
+{
+  std::vector<std::string> given;
+  for (const std::string key : {"size", "outline", "ball", "surface_file"})
+    if (f.given(section + "/" + key))
+      given.push_back(key);
+  if (given.empty() && f.sound({section}))
+    return f.error(section + "/size", "missing key \"size\" in /specimen",
+                   "it says how large the body is",
+                   scene.dimension == 2 ? "add \"size\": [.., ..], or an \"outline\""
+                                        : "add \"size\", an \"outline\", \"ball\" or "
+                                          "\"surface_file\"");
+  if (given.size() > 1)
+    return f.error(section + "/" + given[1],
+                   fmt::format("both \"{}\" and \"{}\" in /specimen", given[0], given[1]),
+                   "each of them says what the body is", "remove one of them");
+  const bool is_prism = given == std::vector<std::string>{"outline"};
+  if (scene.dimension == 3 && f.given(section + "/thickness") && !is_prism)
+    f.error(section + "/thickness", "\"thickness\" in /specimen has no meaning here",
+            "in 3D it is the extent of an \"outline\" along z", "remove it");
+  if (scene.dimension == 3 && is_prism && !f.given(section + "/thickness") &&
+      f.sound({section + "/thickness"}))
+    f.error(section + "/thickness", "missing key \"thickness\" in /specimen",
+            "an outline in 3D is that of a prism along z", "add \"thickness\"");
+  if (scene.specimen.ball || !scene.specimen.surface_file.empty())
+    for (const std::string key : {"cutouts", "slots"})
+      if (f.given(section + "/" + key))
+        f.error(section + "/" + key,
+                fmt::format("\"{}\" in /specimen beside \"{}\"", key, given[0]),
+                "they cut boxes and prisms only", "remove them, or give \"notches\"");
+}
+
+/// Sides that a scene names itself.
+void check_names(const Scene &scene, Findings &f)
+{
+  const auto check = [&](const std::string &name, const std::string &key) {
+    if (std::find(box_sides.begin(), box_sides.end(), name) != box_sides.end())
+      f.error(key + "/side", fmt::format("\"side\" in {} is \"{}\"", key, name),
+              "what lies on that side of the box around the specimen has this name by itself",
+              "give another name, or none");
+  };
+  const Specimen &s = scene.specimen;
+  for (std::size_t k = 0; k < s.outline.size(); ++k)
+    check(s.outline[k].side, fmt::format("{}/outline/{}", section, k));
+  for (std::size_t k = 0; k < s.cutouts.size(); ++k) {
+    const std::string key = fmt::format("{}/cutouts/{}", section, k);
+    check(s.cutouts[k].side, key);
+    for (std::size_t j = 0; j < s.cutouts[k].outline.size(); ++j)
+      check(s.cutouts[k].outline[j].side, fmt::format("{}/outline/{}", key, j));
+  }
+  for (std::size_t k = 0; k < s.slots.size(); ++k)
+    check(s.slots[k].side, fmt::format("{}/slots/{}", section, k));
+}
+
+void check_slot(const Slot &slot, const std::string &key, double spacing, Findings &f)
+{
+  const double length = std::hypot(slot.to[0] - slot.from[0], slot.to[1] - slot.from[1]);
+  const double tip = slot.tip == SlotTip::flat    ? 0
+                     : slot.tip == SlotTip::round ? slot.width / 2
+                                                  : slot.width / 2 / std::tan(slot.tip_angle / 2);
+  if (length < tip * (1 - 1e-9) || length == 0)
+    return f.error(key + "/to", fmt::format("the slot {} is shorter than its tip", key),
+                   fmt::format("it is {:.4g} m long, its tip {:.4g} m", length, tip),
+                   "make it longer, or its width smaller");
+  if (slot.width < spacing * (1 - 1e-9))
+    f.error(key + "/width",
+            fmt::format("\"width\" in {} is {} m, less than a spacing", key, slot.width),
+            fmt::format("the particles cannot show it: \"spacing\" is {} m", spacing),
+            "widen it, make the spacing smaller, or give a crack");
+}
+} // namespace
+
+void check_shape(const Scene &scene, Findings &f)
+{
+  check_choice(scene, f);
+  check_names(scene, f);
+  const Specimen &s = scene.specimen;
+  const bool particles = scene.zone.extent != DiscreteZone::Extent::none &&
+                         f.sound_and_given({"/discrete_zone/spacing"});
+  for (std::size_t k = 0; k < s.slots.size(); ++k)
+    if (const auto key = fmt::format("{}/slots/{}", section, k); f.sound({key}))
+      check_slot(s.slots[k], key, particles ? scene.zone.spacing : 0, f);
+  if (!f.sound({section}) || s.is_plain() || s.ball || !s.surface_file.empty())
+    return;
+  try {
+    const auto polygons =
+        outline_of(s, scene.dimension, std::max(s.size[0], s.size[1]) / 400, scene.dimension == 2);
+    const auto n_pieces = std::count_if(polygons.begin(), polygons.end(), [](const auto &polygon) {
+      return core::signed_area(polygon) > 0;
+    });
+    if (n_pieces > 1)
+      f.warning(section, fmt::format("the specimen is in {} pieces", n_pieces),
+                "cutouts and slots part it", "");
+  } catch (const core::KeyedError &error) {
+    f.error(error.key, error.message, error.reason, error.remedy);
+  }
+}
+
+void resolve_sides(Scene &scene, Findings *f)
+{
+  const auto names = side_names_of(scene.specimen, scene.dimension);
+  const auto number = [&](const std::string &name, const std::string &key) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (!name.empty() && found != names.end())
+      return int(found - names.begin());
+    std::vector<std::string> known;
+    for (const std::string &one : names)
+      if (!one.empty())
+        known.push_back(one);
+    if (f && f->sound_and_given({key}))
+      f->error(key, fmt::format("the specimen has no side \"{}\"", name),
+               "it has " + core::listed(known),
+               "use one of them, or name a side of its outline so");
+    return -1;
+  };
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    scene.loads[k].boundary = number(scene.loads[k].side, fmt::format("/loads/{}/boundary", k));
+  for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
+    GaugeParameters &gauge = scene.gauges[k];
+    gauge.side.reset();
+    if (!gauge.side_name.empty())
+      gauge.side = number(gauge.side_name, fmt::format("/gauges/{}/side", k));
+  }
+}
+} // namespace ligament::program
