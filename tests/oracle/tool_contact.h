@@ -38,9 +38,9 @@ struct DiscContact
       const double k = std::min(youngs_modulus / spacing, soft);
       const double half = face.area / thickness / 2;
       const double angle = state.rotation[0][i];
-      for (const double sign : {-1., 1.}) {
-        const double px = face.centroid[0] - sign * half / std::sqrt(3.) * face.normal[1],
-                     py = face.centroid[1] + sign * half / std::sqrt(3.) * face.normal[0];
+      for (const double sign : {-1., 0., 1.}) {
+        const double px = face.centroid[0] - sign * half * face.normal[1],
+                     py = face.centroid[1] + sign * half * face.normal[0];
         const double rx = px - state.reference[0][i], ry = py - state.reference[1][i];
         const double ax = std::cos(angle) * rx - std::sin(angle) * ry,
                      ay = std::sin(angle) * rx + std::cos(angle) * ry;
@@ -49,7 +49,7 @@ struct DiscContact
         const double r = std::hypot(x, y), g = radius - r;
         if (g <= 0)
           continue;
-        const double f = k * face.area / 2 * g;
+        const double f = k * face.area * (sign == 0 ? 4 : 1) / 6 * g;
         energy += f * g / 2;
         auto &sum = force.try_emplace(i, Vector<2>(0, 0)).first->second;
         sum += Vector<2>(f * x / r, f * y / r);

@@ -18,9 +18,11 @@ constexpr double with_turns = 1.5;
 /// Places from 0 to 1 and weights of a quadrature along an edge.
 using Rule = std::vector<std::array<double, 2>>;
 
-// Gauss points on the face of a cell: a contact may be narrower than the cell.
-const Rule whole = {
-    {(1 - std::sqrt(0.6)) / 2, 5. / 18}, {0.5, 8. / 18}, {(1 + std::sqrt(0.6)) / 2, 5. / 18}};
+// Lobatto's points on the face of a cell: a contact may be narrower than the cell.
+const Rule whole = {{0, 1. / 12},
+                    {(1 - std::sqrt(0.2)) / 2, 5. / 12},
+                    {(1 + std::sqrt(0.2)) / 2, 5. / 12},
+                    {1, 1. / 12}};
 
 /// Many points where particles may take over somewhere on the face.
 Rule even_rule(int n)
@@ -52,12 +54,14 @@ struct Piece
   double area;
 };
 
-/// Two Gauss points of a segment, m and m^2.
+// All rules have points at edges and corners: what is sharp is touched there first.
+
+/// Simpson's rule on a segment, m and m^2.
 std::vector<Piece<2>> pieces_of_segment(const Vector<2> &middle, const Vector<2> &normal,
                                         double area, double thickness)
 {
-  const Vector<2> half = area / thickness / 2 / std::sqrt(3.) * Vector<2>(-normal[1], normal[0]);
-  return {{middle - half, area / 2}, {middle + half, area / 2}};
+  const Vector<2> half = area / thickness / 2 * Vector<2>(-normal[1], normal[0]);
+  return {{middle - half, area / 6}, {middle, area * 2 / 3}, {middle + half, area / 6}};
 }
 
 template <int dim>
@@ -69,10 +73,17 @@ std::vector<Piece<dim>> pieces_of(const packings::BoundaryFace<dim> &face, doubl
     std::vector<Piece<3>> pieces;
     const std::size_t n = face.corners.size();
     double sum = 0;
+    for (const Vector<3> &corner : face.corners)
+      pieces.push_back({corner, 0});
+    pieces.push_back({face.lever, 0});
+    // Of each triangle between the centroid and an edge: 3/4 in its middle and 1/12 at its corners
+    // are exact for quadratic functions.
     for (std::size_t k = 0; k < n; ++k) {
       const Vector<3> a = face.corners[k] - face.lever, b = face.corners[(k + 1) % n] - face.lever;
       const double area = a.cross(b).norm() / 2;
-      pieces.push_back({face.lever + (a + b) / 3, area});
+      pieces.push_back({face.lever + (a + b) / 3, area * 3 / 4});
+      for (const std::size_t at : {k, (k + 1) % n, n})
+        pieces[at].area += area / 12;
       sum += area;
     }
     if (sum <= 0)
@@ -96,6 +107,7 @@ void ContactSurface<dim>::add_flank(const Flank &flank, std::int64_t owner)
     point.number = n_of_particle_[flank.particle]++;
     point.particle = flank.particle;
     point.arm = piece.arm;
+    point.normal = flank.normal;
     point.area = piece.area;
     point.stiffness = per_area_[flank.particle] * piece.area;
     points_.push_back(point);
@@ -131,6 +143,7 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
       point.number = n_of_particle_[face.i]++;
       point.particle = face.i;
       point.arm = piece.arm;
+      point.normal = face.normal;
       point.area = piece.area;
       point.stiffness = per_area_[face.i] * piece.area;
       points_.push_back(point);
@@ -138,7 +151,7 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
   for (const auto &face : packing.faces)
     if (face.cracked) {
       add_flank({face.i, face.lever_i, face.normal, face.area}, packing.global_id[face.i]);
-      add_flank({face.j, face.lever_j, face.normal, face.area}, packing.global_id[face.j]);
+      add_flank({face.j, face.lever_j, -face.normal, face.area}, packing.global_id[face.j]);
     }
 }
 
@@ -167,6 +180,10 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
       if ((a >> (face.face / 2) & 1) == face.face % 2)
         point.nodes[n++] = mesh.cells[face.cell][a];
     point.owner = -1 - names.name(point.nodes[0]);
+    Vector<dim> outward = Vector<dim>::Zero(); // more or less
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+      outward += ((a >> (face.face / 2) & 1) == face.face % 2 ? 1 : -1) *
+                 mesh.nodes[mesh.cells[face.cell][a]];
     const double width = mesh.cell_size[face.cell][face.face / 2];
     const auto &x = mesh.nodes;
     const Rule &rule = has_particles[face.cell] ? cut : whole;
@@ -197,6 +214,7 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
           continue;
       }
       point.number = n_of_node[point.owner]++;
+      point.normal = normal.dot(outward) < 0 ? Vector<dim>(-normal) : normal;
       point.area = weight;
       point.stiffness = stiffness.youngs_modulus / width * weight;
       points_.push_back(point);
@@ -226,25 +244,50 @@ int ContactSurface<dim>::add_broken(const particles::ParticleSolver<dim> &zone)
   for (; n_broken_ < broken.size(); ++n_broken_) {
     const auto &bond = broken[n_broken_];
     for (const int i : {bond.i, bond.j})
-      add_flank({i, bond.position - get(zone.state.reference, i), bond.normal, bond.area},
+      add_flank({i, bond.position - get(zone.state.reference, i),
+                 i == bond.i ? bond.normal : Vector<dim>(-bond.normal), bond.area},
                 zone.state.global_id[i]);
   }
   return before;
 }
 
 template <int dim>
-Vector<dim> ContactSurface<dim>::arm(int k, const particles::Particles<dim> &particles) const
+Vector<dim> ContactSurface<dim>::turned(const Vector<dim> &arm, int particle,
+                                        const particles::Particles<dim> &particles)
+{
+  if (!particles.turns)
+    return arm;
+  if constexpr (dim == 2)
+    return Eigen::Rotation2Dd(particles.rotation[0][particle]) * arm;
+  else {
+    const Vec<4> q = get(particles.rotation, particle);
+    return Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * arm;
+  }
+}
+
+/// Of a straight edge, or the mean one of a quadrilateral; which of the two ways is left open.
+Vector<2> normal_of(const std::array<Vector<2>, 2> &x)
+{
+  return Vector<2>(x[0][1] - x[1][1], x[1][0] - x[0][0]).normalized();
+}
+Vector<3> normal_of(const std::array<Vector<3>, 4> &x)
+{
+  return (x[3] - x[0]).cross(x[2] - x[1]).normalized();
+}
+
+template <int dim>
+Vector<dim> ContactSurface<dim>::normal(int k, const coupling::Bodies<dim> &bodies) const
 {
   const SurfacePoint<dim> &point = points_[k];
-  if (!particles.turns)
-    return point.arm;
-  if constexpr (dim == 2) {
-    const double angle = particles.rotation[0][point.particle];
-    return Eigen::Rotation2Dd(angle) * point.arm;
-  } else {
-    const Vec<4> q = get(particles.rotation, point.particle);
-    return Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * point.arm;
+  if (!point.is_far())
+    return turned(point.normal, point.particle, bodies.zone->state);
+  std::array<Vector<dim>, SurfacePoint<dim>::n_nodes> then, now;
+  for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a) {
+    then[a] = bodies.far->mesh().nodes[point.nodes[a]];
+    now[a] = then[a] + get(bodies.far->displacement, point.nodes[a]);
   }
+  const Vector<dim> n = normal_of(now);
+  return normal_of(then).dot(point.normal) < 0 ? Vector<dim>(-n) : n;
 }
 
 template <int dim>

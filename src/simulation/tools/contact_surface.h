@@ -5,6 +5,7 @@
 #include "coupling/coupler.h"
 #include "packings/packing.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,15 @@ struct ContactStiffness
   double share = 0.25;
 };
 
+/// Which share of a face presses against a tool whose way out is `out`: faces that look along the
+/// surface of the tool have points at their edges that lie in it, and touch nothing.
+template <int dim>
+double facing_share(const Vector<dim> &face_normal, const Vector<dim> &out)
+{
+  constexpr double all = 0.2; // from here on, the cosine
+  return std::min(1., std::max(0., -face_normal.dot(out) / all));
+}
+
 /// A point of quadrature. It moves with one particle, or between the nodes of a cell's face.
 template <int dim>
 struct SurfacePoint
@@ -28,7 +38,8 @@ struct SurfacePoint
   std::int64_t owner; // name of its particle; of a cell's face -1 - the name of its first node
   int number;         // among those of the owner
   int particle = -1;  // -1: it lies on a cell
-  Vector<dim> arm = Vector<dim>::Zero(); // m, from the particle's centre in the reference
+  Vector<dim> arm = Vector<dim>::Zero();    // m, from the particle's centre in the reference
+  Vector<dim> normal = Vector<dim>::Zero(); // unit, out of the body in the reference
   std::array<int, n_nodes> nodes = {};
   Vec<n_nodes> shares = Vec<n_nodes>::Zero(); // of the nodes
   double area = 0;                            // m^2
@@ -59,6 +70,8 @@ public:
   const SurfacePoint<dim> &operator[](int k) const { return points_[k]; }
 
   Vector<dim> place(int k, const coupling::Bodies<dim> &bodies) const;
+  /// Unit, out of the body.
+  Vector<dim> normal(int k, const coupling::Bodies<dim> &bodies) const;
   Vector<dim> velocity(int k, const coupling::Bodies<dim> &bodies) const;
   /// To the forces of the body, in N; what acts on supports is not the body's.
   void push(int k, const Vector<dim> &force, coupling::Bodies<dim> &bodies) const;
@@ -76,7 +89,12 @@ private:
     double area;
   };
   void add_flank(const Flank &flank, std::int64_t owner);
-  Vector<dim> arm(int k, const particles::Particles<dim> &particles) const;
+  Vector<dim> arm(int k, const particles::Particles<dim> &particles) const
+  {
+    return turned(points_[k].arm, points_[k].particle, particles);
+  }
+  static Vector<dim> turned(const Vector<dim> &arm, int particle,
+                            const particles::Particles<dim> &particles);
   void push_node(int node, const Vector<dim> &force, fem::FemSolver<dim> &far) const;
 
   std::vector<SurfacePoint<dim>> points_;

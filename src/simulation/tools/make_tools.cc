@@ -72,9 +72,9 @@ ToolShape<dim> shape_of(const ToolParameters &p)
   const bool is_round = p.shape == ToolKind::roller || p.shape == ToolKind::ball;
   if constexpr (dim == 3)
     if (p.shape == ToolKind::roller)
-      return Cylinder<3>{p.radius, rotation.col(2), p.length / 2};
+      return CylinderTool<3>{p.radius, rotation.col(2), p.length / 2};
   if (is_round)
-    return Ball<dim>{p.radius};
+    return BallTool<dim>{p.radius};
   return make_prism<dim>(corners_of(p), p.shape == ToolKind::plate ? p.size[2] : p.length,
                          rotation);
 }

@@ -94,7 +94,8 @@ auto ToolContact<dim>::act(const RigidTool<dim> &tool, const ContactSurface<dim>
     const Vector<dim> y = tool.rotation().transpose() * arm;
     const Touch<dim> touch = tool.definition().shape.touch(y);
     const double depth = depth_of(k, touch);
-    if (depth <= 0) {
+    const double share = depth > 0 ? share_of(k, touch, tool, surface, bodies) : 0;
+    if (share == 0) {
       if (friction_ > 0 && memory_[k].is_touched) { // the last of the spring is heat
         friction_force(memory_[k], y, touch, 0, point.stiffness, zone_);
         memory_[k].is_touched = false;
@@ -102,13 +103,14 @@ auto ToolContact<dim>::act(const RigidTool<dim> &tool, const ContactSurface<dim>
       continue;
     }
     Sums &sums = point.is_far() ? far_ : zone_;
-    Vector<dim> force = point.stiffness * depth * touch.normal;
-    sums.energy += point.stiffness / 2 * depth * depth;
-    sums.area += point.area;
+    const double stiffness = share * point.stiffness;
+    Vector<dim> force = stiffness * depth * touch.normal;
+    sums.energy += stiffness / 2 * depth * depth;
+    sums.area += share * point.area;
     if (friction_ > 0)
-      force += friction_force(memory_[k], y, touch, depth, point.stiffness, sums);
+      force += friction_force(memory_[k], y, touch, depth, stiffness, sums);
     force = tool.rotation() * force;
-    answer.stiffness += point.stiffness;
+    answer.stiffness += stiffness;
     Wrench<dim> &wrench = point.is_far() ? answer.far : answer.zone;
     wrench.force -= force;
     if constexpr (dim == 2)

@@ -72,6 +72,11 @@ private:
   void look_around(const RigidTool<dim> &tool, const ContactSurface<dim> &surface,
                    const coupling::Bodies<dim> &bodies, double dt);
   double depth_of(int k, const Touch<dim> &touch);
+  static double share_of(int k, const Touch<dim> &touch, const RigidTool<dim> &tool,
+                         const ContactSurface<dim> &surface, const coupling::Bodies<dim> &bodies)
+  {
+    return facing_share<dim>(surface.normal(k, bodies), tool.rotation() * touch.normal);
+  }
   Vector<dim> friction_force(Memory &memory, const Vector<dim> &y, const Touch<dim> &touch,
                              double depth, double stiffness, Sums &sums);
 
@@ -95,10 +100,11 @@ void ToolContact<dim>::for_each_pressed(const RigidTool<dim> &tool,
   for (const int k : near_) {
     const Vector<dim> y = tool.rotation().transpose() * (surface.place(k, bodies) - tool.centre());
     const auto offset = offset_.find(k);
-    const double depth =
-        tool.definition().shape.touch(y).depth - (offset == offset_.end() ? 0 : offset->second);
-    if (depth > 0)
-      visit(k, depth, surface[k].stiffness / surface[k].area * depth);
+    const Touch<dim> touch = tool.definition().shape.touch(y);
+    const double depth = touch.depth - (offset == offset_.end() ? 0 : offset->second);
+    const double share = depth > 0 ? share_of(k, touch, tool, surface, bodies) : 0;
+    if (share > 0)
+      visit(k, depth, share * surface[k].stiffness / surface[k].area * depth);
   }
 }
 } // namespace ligament::program

@@ -33,7 +33,7 @@ void add_circle(const Vector<dim> &centre, const Vector<dim> &a, const Vector<di
 }
 
 template <int dim>
-void add_edges(const Ball<dim> &ball, double, std::vector<std::array<Vector<dim>, 2>> &edges)
+void add_edges(const BallTool<dim> &ball, double, std::vector<std::array<Vector<dim>, 2>> &edges)
 {
   for (int c = 0; c < dim; ++c)
     for (int d = c + 1; d < dim; ++d)
@@ -42,7 +42,7 @@ void add_edges(const Ball<dim> &ball, double, std::vector<std::array<Vector<dim>
 }
 
 template <int dim>
-void add_edges(const Cylinder<dim> &cylinder, double reach,
+void add_edges(const CylinderTool<dim> &cylinder, double reach,
                std::vector<std::array<Vector<dim>, 2>> &edges)
 {
   if constexpr (dim == 3) {
@@ -60,7 +60,7 @@ void add_edges(const Cylinder<dim> &cylinder, double reach,
 
 /// Ends far away come nearer along the edge.
 template <int dim>
-void add_edges(const Convex<dim> &convex, double reach,
+void add_edges(const ConvexTool<dim> &convex, double reach,
                std::vector<std::array<Vector<dim>, 2>> &edges)
 {
   for (auto edge : convex.edges) {
@@ -73,14 +73,14 @@ void add_edges(const Convex<dim> &convex, double reach,
 } // namespace
 
 template <int dim>
-Touch<dim> Ball<dim>::touch(const Vector<dim> &y) const
+Touch<dim> BallTool<dim>::touch(const Vector<dim> &y) const
 {
   const double length = y.norm();
   return {radius - length, direction<dim>(y, length)};
 }
 
 template <int dim>
-Touch<dim> Cylinder<dim>::touch(const Vector<dim> &y) const
+Touch<dim> CylinderTool<dim>::touch(const Vector<dim> &y) const
 {
   const double along = y.dot(axis);
   const Vector<dim> across = y - along * axis;
@@ -91,7 +91,7 @@ Touch<dim> Cylinder<dim>::touch(const Vector<dim> &y) const
 }
 
 template <int dim>
-Touch<dim> Convex<dim>::touch(const Vector<dim> &y) const
+Touch<dim> ConvexTool<dim>::touch(const Vector<dim> &y) const
 {
   const Plane *nearest = nullptr;
   double depth = std::numeric_limits<double>::infinity();
@@ -114,10 +114,10 @@ std::vector<std::array<Vector<dim>, 2>> ToolShape<dim>::edges(double reach) cons
 }
 
 template <int dim>
-Convex<dim> make_prism(const std::vector<Vector<2>> &corners, double length,
-                       const Eigen::Matrix<double, dim, dim> &rotation)
+ConvexTool<dim> make_prism(const std::vector<Vector<2>> &corners, double length,
+                           const Eigen::Matrix<double, dim, dim> &rotation)
 {
-  Convex<dim> prism;
+  ConvexTool<dim> prism;
   // Far beyond any body, and still a number.
   const double half = std::isfinite(length) ? length / 2 : 1e6;
   const auto place = [&](const Vector<2> &x, double along) {
@@ -146,16 +146,16 @@ Convex<dim> make_prism(const std::vector<Vector<2>> &corners, double length,
   return prism;
 }
 
-template struct Ball<2>;
-template struct Ball<3>;
-template struct Cylinder<2>;
-template struct Cylinder<3>;
-template struct Convex<2>;
-template struct Convex<3>;
+template struct BallTool<2>;
+template struct BallTool<3>;
+template struct CylinderTool<2>;
+template struct CylinderTool<3>;
+template struct ConvexTool<2>;
+template struct ConvexTool<3>;
 template class ToolShape<2>;
 template class ToolShape<3>;
-template Convex<2> make_prism(const std::vector<Vector<2>> &, double,
-                              const Eigen::Matrix<double, 2, 2> &);
-template Convex<3> make_prism(const std::vector<Vector<2>> &, double,
-                              const Eigen::Matrix<double, 3, 3> &);
+template ConvexTool<2> make_prism(const std::vector<Vector<2>> &, double,
+                                  const Eigen::Matrix<double, 2, 2> &);
+template ConvexTool<3> make_prism(const std::vector<Vector<2>> &, double,
+                                  const Eigen::Matrix<double, 3, 3> &);
 } // namespace ligament::program

@@ -19,7 +19,7 @@ struct Touch
 
 /// A disc (2D) or a ball.
 template <int dim>
-struct Ball
+struct BallTool
 {
   double radius; // m
 
@@ -28,7 +28,7 @@ struct Ball
 
 /// 3D: the points within the radius of an axis, between two ends.
 template <int dim>
-struct Cylinder
+struct CylinderTool
 {
   double radius;    // m
   Vector<dim> axis; // unit
@@ -39,7 +39,7 @@ struct Cylinder
 
 /// What lies behind some planes: a plate or a wedge.
 template <int dim>
-struct Convex
+struct ConvexTool
 {
   struct Plane
   {
@@ -70,12 +70,12 @@ public:
   std::vector<std::array<Vector<dim>, 2>> edges(double reach) const;
 
 private:
-  std::variant<Ball<dim>, Cylinder<dim>, Convex<dim>> form_;
+  std::variant<BallTool<dim>, CylinderTool<dim>, ConvexTool<dim>> form_;
 };
 
 /// A prism over a convex polygon (corners in the order of the trigonometric sense, m), turned by
 /// the rotation; 3D: extruded along its third axis by `length` in all, which may be infinite.
 template <int dim>
-Convex<dim> make_prism(const std::vector<Vector<2>> &corners, double length,
-                       const Eigen::Matrix<double, dim, dim> &rotation);
+ConvexTool<dim> make_prism(const std::vector<Vector<2>> &corners, double length,
+                           const Eigen::Matrix<double, dim, dim> &rotation);
 } // namespace ligament::program

@@ -136,9 +136,12 @@ std::vector<Result> cylinder(const std::string &name)
   return results;
 }
 
-std::vector<Result> ball(const std::string &name)
+std::vector<Result> ball_and_sizes(const std::string &name)
 {
   std::vector<Result> results;
+  // The cylinder with half the spacing, and in a block of twice the size: what each of them does.
+  add_results<2>(name + "/fine_", block(2, {480, 240, 0}, 2000, 1), results);
+  add_results<2>(name + "/large_", block(2, {480, 240, 0}, 1000, 0.5), results);
   add_results<3>(name + "/fcc_", block(3, {64, 44, 64}, 400, 0.25), results);
   return results;
 }
@@ -148,7 +151,8 @@ std::vector<Case> lab_hertz_cases()
 {
   return {{"lab_hertz", "width of the contact with a cylinder against Hertz", false,
            [] { return cylinder("lab_hertz"); }},
-          {"lab_hertz_long", "radius of the contact with a ball against Hertz", true,
-           [] { return ball("lab_hertz_long"); }}};
+          {"lab_hertz_long",
+           "radius of the contact with a ball against Hertz; a cylinder on finer and larger blocks",
+           true, [] { return ball_and_sizes("lab_hertz_long"); }}};
 }
 } // namespace ligament::program

@@ -203,4 +203,45 @@ TEST(ToolContact, AToolInTheBodyIsRefused)
       }
   }
 }
+
+// Standing still beside a body that nothing moves, or on a way that leads past it.
+TEST(ToolContact, AToolThatTouchesNothingIsWarnedOf)
+{
+  const auto warnings = [](const std::string &tool) {
+    ToolBody<2> b({"/far_field=none",
+                   R"(/tools=[{"name": "a", "shape": "ball", "radius": 5, )" + tool + "}]"});
+    return b.log.warnings();
+  };
+  const auto still = warnings(R"("place": [0, 70])");
+  ASSERT_EQ(still.size(), 1u);
+  EXPECT_NE(still[0].find("comes no nearer than 5.00"), std::string::npos) << still[0];
+  EXPECT_EQ(warnings(R"("place": [30, 70], "velocity": [0, -1])").size(), 1u);
+  EXPECT_EQ(warnings(R"("place": [0, 70], "velocity": [0, -0.1])").size(), 0u);
+  EXPECT_EQ(warnings(R"("place": [0, 70], "mass": 50, "initial_velocity": [0, -0.1])").size(), 0u);
+}
+
+TEST(ToolContact, ASpringNeedsItsMass)
+{
+  try {
+    ToolBody<2> b({"/far_field=none", R"(/tools=[{"name": "a", "shape": "ball", "radius": 5,
+      "place": [0, 66], "mass": 1, "machine_stiffness": 50}])"});
+    ADD_FAILURE();
+  } catch (const core::KeyedError &error) {
+    EXPECT_EQ(error.key, "/tools/0/machine_stiffness");
+    EXPECT_NE(error.reason.find("it needs a mass of"), std::string::npos) << error.reason;
+  }
+}
+
+// A tool lighter than the layer that it presses on would swing faster than the step.
+TEST(ToolContact, AToolThatIsTooLightStopsTheRun)
+{
+  ToolBody<2> b({"/far_field=none", R"(/tools=[{"name": "a", "shape": "plate", "size": [20, 2],
+    "place": [0, 61.1], "mass": 0.5, "initial_velocity": [0, -0.1]}])"});
+  EXPECT_THROW(
+      {
+        for (int n = 0; n < 50; ++n)
+          b.step();
+      },
+      core::GuardStop);
+}
 } // namespace

@@ -45,6 +45,12 @@ TEST(ContactSurface, PointsMoveWithTheirParticlesAndCells)
     ToolBody<2> b(kind.overrides + std::vector<std::string>{far_tool});
     const auto &surface = b.tools().surface();
     std::vector<Vector<2>> before;
+    std::vector<Vector<2>> normals;
+    for (int k = 0; k < surface.size(); ++k) {
+      const Vector<2> n = surface.normal(k, b.body.bodies()), x = surface.place(k, b.body.bodies());
+      normals.push_back(n);
+      EXPECT_NEAR(n.dot(x), std::abs(n[0]) > 0.5 ? 12 : 60, 1e-9);
+    }
     for (int k = 0; k < surface.size(); ++k)
       before.push_back(surface.place(k, b.body.bodies()));
     // A rigid turn, which particles and cells follow exactly.
@@ -63,6 +69,8 @@ TEST(ContactSurface, PointsMoveWithTheirParticlesAndCells)
         move(b.body.far->mesh().nodes[i], b.body.far->displacement, i);
     for (int k = 0; k < surface.size(); ++k)
       EXPECT_NEAR((surface.place(k, b.body.bodies()) - turn * before[k]).norm(), 0, 1e-11);
+    for (int k = 0; k < surface.size(); ++k)
+      EXPECT_NEAR((surface.normal(k, b.body.bodies()) - turn * normals[k]).norm(), 0, 1e-11);
   }
 }
 
