@@ -391,8 +391,7 @@ std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, 
 {
   if (specimen.ball || !specimen.surface_file.empty())
     throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/surface_file",
-                     "this body has no mesh",
-                     "in 3D the far field fills boxes and prisms along z",
+                     "this body has no mesh", "in 3D the far field fills boxes and prisms along z",
                      "make it discrete: \"far_field\": \"none\"");
   Specimen meshed = specimen;
   if (dim == 3) { // voids in 3D are inside the zone
@@ -419,7 +418,8 @@ std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, 
   });
   if (meshed.is_plain() && meshed.holes.empty() && meshed.notches.empty())
     return {};
-  return std::make_shared<core::Solid<2>>(core::make_solid(outline_of(meshed, dim, side, dim == 2)));
+  return std::make_shared<core::Solid<2>>(
+      core::make_solid(outline_of(meshed, dim, side, dim == 2)));
 }
 
 template <int dim>
@@ -478,9 +478,9 @@ bool BodyTest::contains(const Point &p) const
 }
 
 template std::shared_ptr<const core::Solid<2>> mesh_outline_of<2>(const Specimen &, double,
-                                                                   const core::BoxUnion<2> &);
+                                                                  const core::BoxUnion<2> &);
 template std::shared_ptr<const core::Solid<2>> mesh_outline_of<3>(const Specimen &, double,
-                                                                   const core::BoxUnion<3> &);
+                                                                  const core::BoxUnion<3> &);
 template std::vector<core::FaceCorners<2>> faces_of<2>(const Specimen &, int);
 template std::vector<core::FaceCorners<3>> faces_of<3>(const Specimen &, int);
 template std::shared_ptr<const core::Solid<2>> solid_of(const Specimen &, double);

@@ -241,8 +241,8 @@ void check_cuts(const Scene &scene, const Box &specimen, const Layout *layout, F
         f.error(key("holes", k), fmt::format("the holes {} and {} overlap", j, k),
                 "each hole has an edge of its own", "move one of them, or join them");
   if (scene.zone.extent == DiscreteZone::Extent::none && !s.cracks.empty())
-    f.error("/specimen/cracks", "a mesh without particles has no cracks",
-            "cells are whole", "remove the cracks, or add a discrete zone around them");
+    f.error("/specimen/cracks", "a mesh without particles has no cracks", "cells are whole",
+            "remove the cracks, or add a discrete zone around them");
   if (scene.zone.extent == DiscreteZone::Extent::none && scene.dimension == 3 && !s.notches.empty())
     f.error("/specimen/notches", "a mesh in 3D has no notches of its own",
             "it fills boxes and prisms along z",

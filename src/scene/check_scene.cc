@@ -2,6 +2,7 @@
 
 #include "core/parameters/spelling.h"
 #include "src/drawing/shown_field.h"
+#include "src/scene/zone_around.h"
 
 #include <fmt/format.h>
 
@@ -44,10 +45,9 @@ void check_models(const Scene &scene, Findings &f)
             "add \"far_field\": {\"cell_size\": ..}, or \"far_field\": \"none\" for the pure "
             "discrete reference");
   if (scene.zone.extent == Extent::box && !f.given(region_key) && scene.zone.boxes.empty() &&
-      f.sound({region_key, boxes_key}))
+      !scene.zone.around && f.sound({region_key, boxes_key, zone_key + "/around"}))
     f.error(region_key, "missing key \"region\" in /discrete_zone",
-            "it says which part of the specimen is discrete",
-            "add \"region\": {\"lower\": [..], \"upper\": [..]}, or \"extent\": \"all\"");
+            "it says which part of the specimen is discrete", proposed_zone(scene, f));
   for (const std::string key : {"packing", "spacing"})
     if (!f.given(zone_key + "/" + key) && f.sound({zone_key + "/" + key}))
       f.error(zone_key + "/" + key, fmt::format("missing key \"{}\" in /discrete_zone", key),

@@ -10,6 +10,7 @@
 #include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 #include "src/scene/scene_parameters.h"
+#include "src/scene/zone_around.h"
 
 #include <fmt/format.h>
 
@@ -60,6 +61,12 @@ void check_choice_of_zone(const DiscreteZone &zone, int dimension, Findings &fin
   bool says_something = false;
   for (int c = 0; c < dimension; ++c)
     says_something |= std::isfinite(zone.lower[c]) || std::isfinite(zone.upper[c]);
+  if (zone.around && (!zone.boxes.empty() || says_something))
+    findings.error("/discrete_zone/around",
+                   fmt::format("both \"around\" and \"{}\" in /discrete_zone",
+                               zone.boxes.empty() ? "region" : "boxes"),
+                   "they are two ways to say which part of the specimen is discrete",
+                   "remove one of them");
   if (!zone.boxes.empty() && says_something)
     findings.error("/discrete_zone/boxes", "both \"region\" and \"boxes\" in /discrete_zone",
                    "they are two ways to say which part of the specimen is discrete",
@@ -124,6 +131,7 @@ void locate_files(const std::string &name, Scene &scene)
 void complete(Scene &scene)
 {
   enclose_body(scene.specimen, scene.dimension);
+  place_zone(scene);
   enclose_boxes(scene.zone);
   resolve_sides(scene, nullptr);
   for (int c = 0; c < 3; ++c) {
@@ -171,14 +179,16 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     Findings findings(json, result.errors, result.warnings);
     check_choice_of_zone(scene.zone, dimension, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
-    enclose_boxes(enclosed.zone);
     locate_files(name, enclosed);
     try {
       if (findings.sound({"/specimen", "/dimension"}))
         enclose_body(enclosed.specimen, dimension);
+      if (findings.sound({"/specimen", "/dimension", "/discrete_zone", "/far_field", "/coupling"}))
+        place_zone(enclosed);
     } catch (const core::KeyedError &error) {
       findings.error(error.key, error.message, error.reason, error.remedy);
     }
+    enclose_boxes(enclosed.zone);
     if (findings.sound({"/dimension"}))
       resolve_sides(enclosed, &findings);
     check_scene(enclosed, findings);

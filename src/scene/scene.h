@@ -120,6 +120,14 @@ struct ZoneBox
   Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
 };
 
+/// What of the specimen a zone holds, and how much around it.
+struct ZoneAround
+{
+  bool cracks = false, slots = false, notches = false, holes = false, cutouts = false,
+       corners = false;
+  double margin = 0; // m, between these and the overlap
+};
+
 struct DiscreteZone
 {
   enum class Extent
@@ -134,6 +142,7 @@ struct DiscreteZone
   Point lower = {-infinity, -infinity, -infinity}, upper = {infinity, infinity, infinity};
   /// The zone is their union; `lower` and `upper` then are the corners around all. Empty: one box.
   std::vector<ZoneBox> boxes;
+  std::optional<ZoneAround> around; // in place of both; afterwards they are what it means
   std::optional<PackingKind> packing;
   std::string packing_file;   // for packing file; relative to the scene until it is read
   int seed = 1;               // this and the next two: for packing random

@@ -105,11 +105,23 @@ void declare_region(Section &s, Box &z)
   s.add("upper", z.upper, "corner with the largest coordinates; null: reaches through the specimen").in("m").usually(0, 1e4, "mm um").null_means(infinity);
 }
 
+void declare_around(Section &s, ZoneAround &a)
+{
+  s.add("cracks", a.cracks, "all initial cracks");
+  s.add("slots", a.slots, "all slots");
+  s.add("notches", a.notches, "all notches");
+  s.add("holes", a.holes, "all holes");
+  s.add("cutouts", a.cutouts, "all cutouts");
+  s.add("corners", a.corners, "re-entrant corners of the outline");
+  s.add("margin", a.margin, "width of the zone between these and its overlap").in("m").usually(1e-8, 1e3, "mm um nm").above(0).required();
+}
+
 void declare_zone(Section &s, DiscreteZone &z)
 {
   s.add("extent", z.extent, "none: finite elements alone; all: discrete elements alone; box: the region below", {"none", "all", "box"});
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
   s.list("boxes", z.boxes, "in place of region: several boxes; those that overlap or touch are one zone, others are separate zones", declare_region<ZoneBox>);
+  s.section("around", z.around, "none", "in place of region and boxes: zones that follow the specimen", declare_around);
   s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file", words(PackingKind())).required_unless("extent is none");
   s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").usually(1e-10, 1e2, "mm um nm").above(0).required_unless("extent is none");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();

@@ -260,6 +260,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.poissons_ratio = scene.material.poissons_ratio;
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
+  body.load_places = load_places(scene, body.loads);
   if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   ContactSurface<dim> surface; // that tools may touch

@@ -22,6 +22,7 @@ struct CoupledBody
   std::unique_ptr<ToolSet<dim>> tools; // null: nothing rigid touches it
   std::vector<core::BoundaryLoad<dim>> loads;
   std::vector<double> loaded_faces;          // m^2, on which each load acts in the zone
+  std::vector<Vector<dim>> load_places;      // m, middle of what each load acts on
   std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
 
   Vector<dim> lower, upper;            // m, specimen

@@ -96,6 +96,31 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
   return loads;
 }
 
+template <int dim>
+std::vector<Vector<dim>> load_places(const Scene &scene,
+                                     const std::vector<core::BoundaryLoad<dim>> &loads)
+{
+  std::vector<Vector<dim>> places;
+  for (const auto &load : loads) {
+    Vector<dim> moment = Vector<dim>::Zero();
+    double area = 0;
+    if (load.boundary >= 0)
+      for (const auto &face : faces_of<dim>(scene.specimen, load.boundary)) {
+        const auto piece = load.part.clip(face);
+        if (const double a = core::face_area<dim>(piece); a > 0) {
+          moment += a * core::face_centroid<dim>(piece);
+          area += a;
+        }
+      }
+    places.push_back(area > 0 ? Vector<dim>(moment / area) : moment);
+  }
+  return places;
+}
+
+template std::vector<Vector<2>> load_places(const Scene &,
+                                            const std::vector<core::BoundaryLoad<2>> &);
+template std::vector<Vector<3>> load_places(const Scene &,
+                                            const std::vector<core::BoundaryLoad<3>> &);
 template double loaded_area(const Scene &, const core::BoundaryLoad<2> &);
 template double loaded_area(const Scene &, const core::BoundaryLoad<3> &);
 template std::vector<core::BoundaryLoad<2>> make_loads(const Scene &);

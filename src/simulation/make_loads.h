@@ -8,6 +8,11 @@ namespace ligament::program
 {
 core::TimeFunction time_function_of(const History &history, double ramp);
 
+/// m, the middles of what the loads act on; the origin for those that act on no side.
+template <int dim>
+std::vector<Vector<dim>> load_places(const Scene &scene,
+                                     const std::vector<core::BoundaryLoad<dim>> &loads);
+
 /// Those of the scene's list in its order, and behind them the body force if there is one. A force
 /// is spread over its part of the side; one at a point over a thousandth of a cell there.
 template <int dim>

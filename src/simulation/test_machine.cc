@@ -65,10 +65,23 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
     return;
   }
   is_answer_ = body.loads[load_].kind != core::BoundaryLoad<dim>::Kind::traction;
-  axis_ = body.loads[load_].boundary / 2;
-  sign_ = body.loads[load_].boundary % 2 ? 1 : -1;
+  const int boundary = body.loads[load_].boundary;
+  is_named_ = boundary > inner_surface<dim>;
+  axis_ = is_named_ ? component_ : boundary / 2;
+  const auto is_upper = [&](std::size_t l) {
+    return body.load_places[l][axis_] > (body.lower[axis_] + body.upper[axis_]) / 2;
+  };
+  sign_ = (is_named_ ? is_upper(load_) : boundary % 2 == 1) ? 1 : -1;
   const Vector<dim> size = body.upper - body.lower;
   size_ = size[axis_];
+  if (is_named_) {
+    area_ = size.prod() / size_ * body.thickness;
+    for (std::size_t l = 0; l < body.loads.size() && opposite_ < 0; ++l)
+      if (body.loads[l].boundary >= 0 && is_upper(l) != is_upper(load_) &&
+          body.loads[l].value[component_])
+        opposite_ = int(l);
+    return;
+  }
   const auto side = core::side_corners<dim>(body.lower, body.upper, body.loads[load_].boundary);
   area_ = body.loads[load_].part.is_whole()
               ? size.prod() / size_ * body.thickness
@@ -108,6 +121,16 @@ double TestMachine<dim>::side_displacement(const CoupledBody<dim> &body, int sid
 }
 
 template <int dim>
+double TestMachine<dim>::load_displacement(const CoupledBody<dim> &body, int load,
+                                           double time) const
+{
+  const auto &l = body.loads[load];
+  if (l.kind != core::BoundaryLoad<dim>::Kind::traction)
+    return l.displacement(component_, time);
+  return body.far ? mean_displacement(body, l.boundary, component_) : 0;
+}
+
+template <int dim>
 Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 {
   Reading r;
@@ -125,7 +148,10 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
   if (body.far)
     r.load += sign_ * body.far->reaction(load_)[component_];
   r.stress = r.load / area_;
-  r.displacement = side_displacement(body, 1, time) - side_displacement(body, 0, time);
+  r.displacement =
+      is_named_ ? sign_ * (load_displacement(body, load_, time) -
+                           (opposite_ < 0 ? 0 : load_displacement(body, opposite_, time)))
+                : side_displacement(body, 1, time) - side_displacement(body, 0, time);
   r.strain = r.displacement / size_;
   return r;
 }
@@ -133,10 +159,11 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
-  const int axis = boundary / 2;
-  if (!body.far)
+  if (!body.far) {
+    const int axis = boundary / 2;
     return extrapolated_displacement(body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
                                      component);
+  }
   double sum = 0, area = 0;
   const auto &mesh = body.far->mesh();
   for (const auto &face : mesh.boundary_faces)
@@ -148,11 +175,12 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
         area += shares.sum();
         continue;
       }
+      const int axis = face.face / 2;
       const Vector<dim> &h = mesh.cell_size[face.cell];
       const double share = h.prod() / h[axis];
       area += share;
       for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-        if (((a >> axis) & 1) == boundary % 2)
+        if (((a >> axis) & 1) == face.face % 2)
           sum += share / (fem::n_cell_nodes<dim> / 2) *
                  body.far->displacement[component][mesh.cells[face.cell][a]];
     }

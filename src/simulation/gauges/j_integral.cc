@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <Eigen/LU>
+
 #include <cmath>
 
 namespace ligament::program
