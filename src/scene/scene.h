@@ -261,6 +261,36 @@ struct LoadParameters
   PartialPoint value;                 // and its components
 };
 
+/// A rigid body that touches the specimen.
+struct ToolParameters
+{
+  std::string name;
+  ToolKind shape = ToolKind::plate;
+  Point place = {0, 0, 0};             // m, of its centre
+  Point orientation = {0, 0, 0};       // rad, as that of the packing
+  Point size = {0, 0, 0};              // m, edges of a plate
+  double radius = 0;                   // m, roller and ball
+  double length = infinity;            // m, 3D: of rollers and wedges, along their third axis
+  std::vector<Point> points;           // m, corners of a wedge against its place, before it turns
+  PartialPoint velocity, displacement; // m/s, m; of the tool or of the far end of its spring
+  double ramp = 0;                     // s
+  History history;                     // of the motion
+  std::optional<double> mass;          // kg; none: it moves as prescribed
+  double inertia = 0;                  // kg m^2; 0: it doesn't turn
+  Point initial_velocity = {0, 0, 0};  // m/s
+  double machine_stiffness = 0;        // N/m; 0: no spring
+  double friction = 0;                 // Coulomb's coefficient
+  double release = infinity;           // s
+
+  bool is_driven() const
+  {
+    for (int c = 0; c < 3; ++c)
+      if (velocity[c] || displacement[c])
+        return true;
+    return false;
+  }
+};
+
 /// Where the run begins, a part of the body or all of it moves.
 struct InitialMotion
 {
@@ -326,6 +356,7 @@ struct Scene
   CouplingParameters coupling;
   Damping damping;
   std::vector<LoadParameters> loads;
+  std::vector<ToolParameters> tools;
   std::vector<GaugeParameters> gauges;
   BodyForceParameters body_force;
   std::vector<InitialMotion> initial_motion;

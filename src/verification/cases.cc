@@ -45,6 +45,7 @@ std::vector<Case> all_cases()
   add(lab_gauges_cases());
   add(lab_cases());
   add(lab_general_cells_cases());
+  add(lab_hertz_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -5,6 +5,7 @@
 #include "core/check.h"
 #include "core/exact_sum.h"
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -6,4 +6,5 @@
 namespace ligament::program
 {
 std::vector<Case> lab_cases();
+std::vector<Case> lab_hertz_cases();
 } // namespace ligament::program
