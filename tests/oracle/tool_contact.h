@@ -35,7 +35,7 @@ struct DiscContact
       const double largest = (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy);
       const double area = std::max(largest, thickness * std::sqrt(state.volume[i] / thickness));
       const double soft = share / 1.5 * 4 / (stable_step * stable_step) * state.mass[i] / area;
-      const double k = std::min(youngs_modulus / spacing, soft);
+      const double k = std::min(youngs_modulus / (spacing / 2), soft);
       const double half = face.area / thickness / 2;
       const double angle = state.rotation[0][i];
       for (const double sign : {-1., 0., 1.}) {

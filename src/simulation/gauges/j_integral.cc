@@ -5,11 +5,10 @@
 #include "core/check.h"
 #include "core/exact_sum.h"
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include <cmath>
 

@@ -11,6 +11,10 @@ namespace ligament::program
 {
 namespace
 {
+// Thickness of the layer between tool and body in spacings or cells: what lies between the centre
+// of a particle, which is rigid, and its face.
+constexpr double layer_thickness = 0.5;
+
 // By which a particle that the layer also turns answers faster than by its mass alone: the largest
 // eigenvalue of the layer at a distance of d/2, friction included, for discs and balls.
 constexpr double with_turns = 1.5;
@@ -120,7 +124,7 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
                                         const ContactStiffness &stiffness, double stable_step)
 {
   thickness_ = dim == 2 ? packing.thickness : 1;
-  const double plain = stiffness.youngs_modulus / packing.spacing;
+  const double plain = stiffness.youngs_modulus / (layer_thickness * packing.spacing);
   n_of_particle_.assign(packing.size(), 0);
   const double most = stiffness.share * std::pow(2 / stable_step, 2) / with_turns;
   std::vector<Tensor<dim>> outer(packing.size(), Tensor<dim>::Zero());
@@ -216,7 +220,7 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
       point.number = n_of_node[point.owner]++;
       point.normal = normal.dot(outward) < 0 ? Vector<dim>(-normal) : normal;
       point.area = weight;
-      point.stiffness = stiffness.youngs_modulus / width * weight;
+      point.stiffness = stiffness.youngs_modulus / (layer_thickness * width) * weight;
       points_.push_back(point);
       for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
         share[point.nodes[a]] += point.shares[a] * point.stiffness * normal * normal.transpose();

@@ -54,7 +54,7 @@ TEST(ToolEnergy, TheLedgerOfAnImpactCloses)
     EXPECT_LT(course.last.tools.kinetic, 0.9 * start);  // and left something behind
     // A point that touches or parts within a step: the trapezoid of its force misses at most
     // K (v dt)^2/8. Each does both; on the way out v is no larger.
-    const double stiffness = course.area / (b.body.zone && !b.body.far ? 1 : 4.),
+    const double stiffness = 2 * course.area / (b.body.zone && !b.body.far ? 1 : 4.),
                  step = b.now.dt * b.body.coupler->step_ratio();
     EXPECT_LT(course.residual, stiffness * std::pow(0.01 * step, 2) / 4);
   }
