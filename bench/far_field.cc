@@ -4,12 +4,14 @@
 #include "bench/matrix_free.h"
 #include "bench/roofline.h"
 #include "fem/cell_kernel.h"
+#include "fem/cell_quality.h"
 #include "fem/fem_solver.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace
 {
@@ -71,6 +73,62 @@ void measure(const std::string &name, const fem::MeshParameters<dim> &parameters
   print(label + ", whole step; reference: product with K", 1e-6 * step, unit, 1e-6 * product);
 }
 
+/// 1e6 cells/s of the product with K.
+template <int dim>
+double cell_rate(const fem::Mesh<dim> &mesh)
+{
+  Components<dim> u, f;
+  for (int c = 0; c < dim; ++c) {
+    f[c].assign(mesh.n_nodes(), 0.);
+    for (const auto &x : mesh.nodes)
+      u[c].push_back(1e-3 * std::sin(0.1 * x[(c + 1) % dim]));
+  }
+  const fem::CellKernel<dim> kernel(mesh, make_body<dim>().stiffness, 1,
+                                    std::vector<char>(mesh.n_cells(), 1));
+  return 1e-6 * mesh.n_cells() * bench::rate([&] { kernel.subtract_forces(u, f); });
+}
+
+/// Cells as boxes in runs, the same ones in batches, as parallelograms and with a shape each.
+template <int dim>
+void measure_shapes(int n)
+{
+  fem::MeshParameters<dim> p;
+  p.lower.setZero();
+  p.upper.setConstant(n);
+  p.cell_size = 1;
+  const fem::Mesh<dim> boxes = fem::make_mesh(p);
+  const double runs = cell_rate(boxes);
+  const auto print_rate = [&](const std::string &name, double rate) {
+    print(fmt::format("{}D, {} cells, {}; reference: boxes in runs", dim, boxes.n_cells(), name),
+          rate, "1e6 cells/s", runs);
+  };
+  print_rate("boxes in runs", runs);
+
+  auto changed = boxes; // no cell follows its neighbour: even ones of a row first
+  for (int row = 0; row + n <= boxes.n_cells(); row += n)
+    for (int i = 0; i < n; ++i) {
+      const int from = i < (n + 1) / 2 ? 2 * i : 2 * (i - (n + 1) / 2) + 1;
+      changed.cells[row + i] = boxes.cells[row + from];
+      changed.cell_lower[row + i] = boxes.cell_lower[row + from];
+    }
+  print_rate("boxes in batches", cell_rate(changed));
+
+  changed = boxes;
+  for (auto &x : changed.nodes)
+    x[0] += 0.25 * x[1];
+  fem::find_cell_shapes(changed);
+  print_rate("equal parallelograms", cell_rate(changed));
+
+  changed = boxes;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-0.2, 0.2);
+  for (auto &x : changed.nodes)
+    for (int k = 0; k < dim; ++k)
+      x[k] += uniform(random);
+  fem::find_cell_shapes(changed);
+  print_rate("of a shape each", cell_rate(changed));
+}
+
 template <int dim>
 void measure_all(int n_small, int n_large, const bench::Roofline &roof)
 {
@@ -95,8 +153,15 @@ void measure_all(int n_small, int n_large, const bench::Roofline &roof)
 }
 } // namespace
 
-int main()
+/// "shapes" measures those alone.
+int main(int argc, char **argv)
 {
+  for (const int n : {50, 700})
+    measure_shapes<2>(n);
+  for (const int n : {12, 60})
+    measure_shapes<3>(n);
+  if (argc > 1 && std::string(argv[1]) == "shapes")
+    return 0;
   const auto roof = bench::measure_roofline();
   measure_all<2>(150, 700, roof);
   measure_all<3>(24, 69, roof);

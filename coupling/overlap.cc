@@ -40,12 +40,17 @@ int last_consistent_layer(const fem::Mesh<dim> &mesh, const std::vector<int> &la
 template <int dim>
 void require_boxes(const fem::Mesh<dim> &mesh, const std::vector<int> &layer)
 {
+  int nearest = -1;
   for (int c = 0; c < mesh.n_cells(); ++c)
-    if (layer[c] >= 0 && !mesh.is_box(c))
-      throw core::InputError(fmt::format(
-          "the {} reaches the cell of the far field at {}: it follows a curved or inclined side; "
-          "keep the zone away from such sides, or lower /coupling/transition_cells",
-          layer[c] == 0 ? "overlap" : "transition beside the overlap", fem::place_text(mesh, c)));
+    if (layer[c] >= 0 && !mesh.is_box(c) && (nearest < 0 || layer[c] < layer[nearest]))
+      nearest = c;
+  if (nearest < 0)
+    return;
+  throw core::InputError(fmt::format(
+      "the {} reaches the cell of the far field at {}: it follows a curved or inclined side; keep "
+      "the zone away from such sides, or lower /coupling/transition_cells",
+      layer[nearest] == 0 ? "overlap" : "transition beside the overlap",
+      fem::place_text(mesh, nearest)));
 }
 } // namespace
 

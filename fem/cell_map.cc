@@ -154,7 +154,7 @@ double cell_volume(const Mesh<dim> &mesh, int cell)
   return mesh.is_box(cell) ? mesh.cell_size[cell].prod() : volume_shares(mesh, cell).sum();
 }
 
-// theory.md eq. (F12). Modes u = e_c (1 - xi_k^2), their gradients through the Jacobian at the
+// theory.md eq. (F11). Modes u = e_c (1 - xi_k^2), their gradients through the Jacobian at the
 // centre and j0/j: their mean over the cell vanishes.
 template <int dim>
 CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Stiffness<dim> &c,

@@ -60,7 +60,7 @@ Vec<n_cell_nodes<dim>> volume_shares(const Mesh<dim> &mesh, int cell);
 template <int dim>
 double cell_volume(const Mesh<dim> &mesh, int cell);
 
-/// Stiffness of any convex cell times the thickness, theory.md eq. (F12): that of a box where the
+/// Stiffness of any convex cell times the thickness, theory.md eq. (F11): that of a box where the
 /// corners are those of one.
 template <int dim>
 CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Stiffness<dim> &c,
@@ -74,7 +74,7 @@ CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Stiffness<
 template <int dim>
 std::array<int, n_cell_nodes<dim> / 2> face_nodes(int face)
 {
-  std::array<int, n_cell_nodes<dim> / 2> nodes;
+  std::array<int, n_cell_nodes<dim> / 2> nodes{};
   int n = 0;
   for (int a = 0; a < n_cell_nodes<dim>; ++a)
     if ((a >> (face / 2) & 1) == face % 2)

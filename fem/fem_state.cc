@@ -5,11 +5,54 @@
 #include "fem/cell_kernel.h"
 #include "fem/corotated_kernel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace ligament::fem
 {
+namespace
+{
+/// Nodes of the flanks of a crack lie at one place: they are told apart by where their cells lie,
+/// counted from a direction that no flank of a usual crack has.
+template <int dim>
+void tell_flanks_apart(const Mesh<dim> &mesh, int shift, std::vector<std::int64_t> &names)
+{
+  std::map<std::int64_t, std::vector<int>> at; // nodes of names that are not alone
+  {
+    std::vector<std::int64_t> sorted = names;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 1; k < sorted.size(); ++k)
+      if (sorted[k] == sorted[k - 1])
+        at[sorted[k]];
+  }
+  if (at.empty())
+    return;
+  for (int i = 0; i < mesh.n_nodes(); ++i)
+    if (const auto found = at.find(names[i]); found != at.end())
+      found->second.push_back(i);
+  std::map<int, Vector<dim>> towards; // the cells of a node
+  for (const auto &[name, nodes] : at)
+    for (const int i : nodes)
+      towards[i] = Vector<dim>::Zero();
+  for (int cell = 0; cell < mesh.n_cells(); ++cell)
+    for (const int i : mesh.cells[cell])
+      if (const auto found = towards.find(i); found != towards.end())
+        found->second += mesh.cell_lower[cell] + mesh.cell_size[cell] / 2 - mesh.nodes[i];
+  const auto angle = [&](int i) {
+    constexpr double first = -2.9; // rad
+    const double a = std::atan2(towards.at(i)[1], towards.at(i)[0]);
+    return a < first ? a + 2 * M_PI : a;
+  };
+  for (auto &[name, nodes] : at) {
+    std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return angle(a) < angle(b); });
+    for (std::size_t k = 1; k < nodes.size(); ++k)
+      if (mesh.nodes[nodes[k]] == mesh.nodes[nodes[0]])
+        names[nodes[k]] += std::int64_t(k) << shift;
+  }
+}
+} // namespace
+
 // A grid of 2^20 intervals per axis over the specimen: far finer than any mesh, the same for all.
 template <int dim>
 core::Names node_names(const Mesh<dim> &mesh, const Vector<dim> &lower, const Vector<dim> &upper)
@@ -24,6 +67,8 @@ core::Names node_names(const Mesh<dim> &mesh, const Vector<dim> &lower, const Ve
     }
     names.push_back(name);
   }
+  if constexpr (dim == 2) // in 3D nothing is left of the bits, and no mesh has cracks
+    tell_flanks_apart(mesh, dim * (bits + 1), names);
   return core::Names(std::move(names));
 }
 

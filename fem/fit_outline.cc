@@ -47,6 +47,7 @@ public:
     find_neighbours();
     keep_cells();
     find_borders();
+    give_up_lines();
     copy_kept();
     for (auto &chain : chains())
       add_layer(chain);
@@ -85,6 +86,7 @@ private:
   void keep_cells();
   bool has_pinch();
   void find_borders();
+  void give_up_lines();
   void copy_kept();
   std::vector<Chain> chains();
   void add_layer(const Chain &chain);
@@ -93,7 +95,7 @@ private:
 
   const Mesh<2> &mesh_;
   const core::Solid<2> &outline_;
-  const SlantedSides sides_;
+  SlantedSides sides_;
   /// Of the halves of each face: the cell behind it, -1: none.
   std::vector<std::array<std::array<int, 2>, 4>> neighbour_;
   std::map<std::pair<int, int>, int> boundary_; // of faces that the mesh has on its boundary
@@ -200,6 +202,40 @@ void Fit::find_borders()
     }
 }
 
+/// Sides on lines of the mesh that no cell borders on, as between slanted ones of a round hole, are
+/// followed like these.
+void Fit::give_up_lines()
+{
+  const auto &facets = outline_.facets();
+  std::vector<char> has_cells(facets.size(), 0);
+  for (const Face &face : borders_)
+    if (const auto foot = outline_.nearest(middle(face.cell, face.face));
+        foot.distance <= 1e-6 * mesh_.cell_size[face.cell].minCoeff())
+      has_cells[foot.facet] = 1;
+  // Facets of one straight side lie behind each other.
+  std::vector<int> from(outline_.vertices().size(), -1);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    from[facets[f].edges[0][0]] = int(f);
+  const auto goes_on = [&](int f) {
+    const int next = from[facets[f].edges[0][1]];
+    const bool is_same =
+        !sides_.is_slanted(next) && outline_.normal(f).dot(outline_.normal(next)) > 1 - 1e-9;
+    return is_same ? next : -1;
+  };
+  for (bool changed = true; changed;) { // a side has cells where one of its facets has
+    changed = false;
+    for (int f = 0; f < int(facets.size()); ++f)
+      if (!sides_.is_slanted(f))
+        if (const int next = goes_on(f); next >= 0 && has_cells[f] != has_cells[next]) {
+          has_cells[f] = has_cells[next] = 1;
+          changed = true;
+        }
+  }
+  for (int f = 0; f < int(facets.size()); ++f)
+    if (!sides_.is_slanted(f) && !has_cells[f])
+      sides_.add(f);
+}
+
 void Fit::copy_kept()
 {
   std::vector<char> used(mesh_.n_nodes(), 0);
@@ -290,14 +326,14 @@ void Fit::add_layer(const Chain &chain)
   OutlinePath path(
       outline_, [&](int facet) { return sides_.is_slanted(facet); }, places, outside,
       chain.is_closed);
-  // Where the outline leaves a line of the mesh hardly bent, a cell has no corner for it: the last
-  // node on the line then is the first one of the layer.
+  // Where the outline leaves a line of the mesh hardly bent or inwards, a cell has no corner for
+  // it: the last node on the line then moves there and is the first one of the layer.
   const auto turns_right = [&](int k) {
     const Vector<2> u = places[k] - places[k - 1], v = places[k + 1] - places[k];
     return u[0] * v[1] - u[1] * v[0] < -0.5 * u.norm() * v.norm();
   };
-  const bool joins_start = !chain.is_closed && n > 3 && path.begins_smoothly() && turns_right(1);
-  const bool joins_end = !chain.is_closed && n > 3 && path.ends_smoothly() && turns_right(n - 2);
+  const bool joins_start = !chain.is_closed && n > 3 && !path.begins_outward() && turns_right(1);
+  const bool joins_end = !chain.is_closed && n > 3 && !path.ends_outward() && turns_right(n - 2);
   const int first = joins_start, end = n - joins_end; // nodes of the chain that the layer joins
   places.assign(places.begin() + first, places.begin() + end);
   outside.assign(outside.begin() + first, outside.begin() + end);
@@ -431,72 +467,6 @@ void Fit::improve()
              "use smaller cells along it (/far_field/outline_cell_size)");
 }
 } // namespace
-
-std::vector<double> straight_sides(const core::Solid<2> &outline, int axis, double shortest)
-{
-  const double tolerance = 1e-9 * (outline.upper() - outline.lower()).maxCoeff();
-  std::vector<std::pair<double, double>> sides; // place, length
-  for (const auto &facet : outline.facets()) {
-    const Vector<2> &a = outline.vertices()[facet.edges[0][0]],
-                    &b = outline.vertices()[facet.edges[0][1]];
-    if (std::abs(a[axis] - b[axis]) > tolerance)
-      continue;
-    const auto same = std::find_if(sides.begin(), sides.end(), [&](const auto &side) {
-      return std::abs(side.first - a[axis]) <= tolerance;
-    });
-    if (same == sides.end())
-      sides.emplace_back(a[axis], (b - a).norm());
-    else
-      same->second += (b - a).norm();
-  }
-  std::sort(sides.begin(), sides.end(),
-            [](const auto &a, const auto &b) { return a.second > b.second; });
-  std::vector<double> places;
-  for (const auto &[place, length] : sides)
-    if (length >= shortest)
-      places.push_back(place);
-  return places;
-}
-
-SlantedSides::SlantedSides(const core::Solid<2> &outline,
-                           const std::array<std::vector<double>, 2> &lines)
-    : outline_(outline)
-{
-  const double tolerance = 1e-9 * (outline.upper() - outline.lower()).maxCoeff();
-  for (const auto &facet : outline.facets()) {
-    const Vector<2> &a = outline.vertices()[facet.edges[0][0]],
-                    &b = outline.vertices()[facet.edges[0][1]];
-    bool on_line = false;
-    for (int axis = 0; axis < 2; ++axis)
-      for (const double line : lines[axis])
-        on_line = on_line ||
-                  (std::abs(a[axis] - line) <= tolerance && std::abs(b[axis] - line) <= tolerance);
-    slanted_.push_back(!on_line);
-  }
-}
-
-bool SlantedSides::come_near(const Vector<2> &lower, const Vector<2> &upper, double distance) const
-{
-  const Vector<2> margin = Vector<2>::Constant(distance);
-  const Vector<2> low = lower - margin, high = upper + margin;
-  bool found = false;
-  outline_.for_each_near(low, high, [&](int f) {
-    if (found || !slanted_[f])
-      return;
-    const auto &edge = outline_.facets()[f].edges[0];
-    const Vector<2> &a = outline_.vertices()[edge[0]], way = outline_.vertices()[edge[1]] - a;
-    double from = 0, to = 1; // of the side, inside the box
-    for (int c = 0; c < 2; ++c) {
-      if (way[c] == 0)
-        continue; // its box meets this one
-      const double s = (low[c] - a[c]) / way[c], t = (high[c] - a[c]) / way[c];
-      from = std::max(from, std::min(s, t));
-      to = std::min(to, std::max(s, t));
-    }
-    found = from <= to;
-  });
-  return found;
-}
 
 Mesh<2> fit_outline(const Mesh<2> &mesh, const core::Solid<2> &outline,
                     const std::array<std::vector<double>, 2> &lines)

@@ -2,15 +2,11 @@
 // quadrilaterals goes from what is left to the outline.
 #pragma once
 
-#include "core/solid.h"
 #include "fem/mesh.h"
+#include "fem/slanted_sides.h"
 
 namespace ligament::fem
 {
-/// Coordinates along the axis of the outline's straight sides across it that are at least so long
-/// in all (m), the longest first: where lines of the mesh may lie.
-std::vector<double> straight_sides(const core::Solid<2> &outline, int axis, double shortest);
-
 /// `mesh` covers the outline, inner boxes left out. Sides of the outline on `lines` of the mesh (by
 /// axis, m) are borders of cells; all others get a layer of general cells, whose inner nodes move
 /// where that makes angles better. Corners of the outline are nodes. Cells nearer to such a side
@@ -21,18 +17,4 @@ std::vector<double> straight_sides(const core::Solid<2> &outline, int axis, doub
 /// meets what was left out.
 Mesh<2> fit_outline(const Mesh<2> &mesh, const core::Solid<2> &outline,
                     const std::array<std::vector<double>, 2> &lines);
-
-/// Whether a side of the outline that lies on none of the lines comes nearer to the box than a
-/// distance in m.
-class SlantedSides
-{
-public:
-  SlantedSides(const core::Solid<2> &outline, const std::array<std::vector<double>, 2> &lines);
-  bool is_slanted(int facet) const { return slanted_[facet]; }
-  bool come_near(const Vector<2> &lower, const Vector<2> &upper, double distance) const;
-
-private:
-  const core::Solid<2> &outline_;
-  std::vector<char> slanted_;
-};
 } // namespace ligament::fem

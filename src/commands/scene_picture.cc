@@ -21,7 +21,8 @@ using Mark = LegendEntry::Mark;
 
 constexpr Color motion_color = {20, 20, 20}, traction_color = {110, 40, 150},
                 held_color = {90, 90, 90}, absorbing_color = {20, 110, 200},
-                crack_color = {225, 25, 60}, inclusion_color = {150, 105, 165};
+                crack_color = {225, 25, 60}, inclusion_color = {150, 105, 165},
+                tool_color = {70, 70, 90};
 
 /// What one part of the body looks like.
 struct Part
@@ -290,6 +291,29 @@ void add_cracks(const Scene &scene, Picture &picture)
   picture.legend.push_back({"initial crack", crack_color, Mark::line});
 }
 
+template <int dim>
+void add_tools(const CoupledBody<dim> &body, Picture &picture)
+{
+  const auto outlines = tool_outlines(body);
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    Segments lines;
+    lines.color = tool_color;
+    lines.width = 2.5;
+    lines.points = outlines[k].points;
+    picture.segments.push_back(std::move(lines));
+    picture.legend.push_back({"tool " + body.tools->name(int(k)), tool_color, Mark::line});
+    const Vector<dim> way = body.tools->drive(int(k)), place = body.tools->place(int(k));
+    if (way.norm() == 0)
+      continue;
+    std::array<double, 3> at = {}, along = {};
+    for (int c = 0; c < dim; ++c) {
+      at[c] = std::max(body.lower[c], std::min(place[c], body.upper[c]));
+      along[c] = way[c];
+    }
+    picture.arrows.push_back({at, along, true, tool_color});
+  }
+}
+
 /// The edges of the packing, cut to the specimen.
 template <int dim>
 void add_zone_boxes(const Scene &scene, const CoupledBody<dim> &body, Picture &picture)
@@ -334,6 +358,7 @@ Picture scene_picture(const CoupledBody<dim> &body, const Scene &scene)
   for (const auto &load : scene.loads)
     add_load<dim>(scene, load, picture);
   add_gauges(scene, picture);
+  add_tools(body, picture);
   std::string size;
   if (state.particles.size() > 0)
     size = grouped(std::int64_t(state.particles.size())) + " particles";

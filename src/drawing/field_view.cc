@@ -11,7 +11,7 @@ namespace ligament::program
 {
 namespace
 {
-constexpr Color crack_color = {225, 25, 60}, cut_color = {40, 40, 40};
+constexpr Color crack_color = {225, 25, 60}, cut_color = {40, 40, 40}, tool_color = {70, 70, 90};
 
 /// One number per item for the colour: a component, or the length of a vector.
 std::vector<double> coloring(const Field &field, int component)
@@ -244,6 +244,16 @@ Picture picture_of(const BodyState &state, int dimension, const FieldView &view)
   };
   add_faces(state.cuts, cut_color, "initial crack");
   add_faces(state.bonds, crack_color, "broken faces");
+  for (const ToolOutline &tool : state.tools)
+    if (!tool.points.empty()) {
+      Segments lines;
+      lines.color = tool_color;
+      lines.width = dimension == 2 ? 2.5 : 1.5;
+      lines.points = tool.points;
+      for (std::size_t k = 0; k < lines.points.size(); ++k)
+        lines.points[k] += (magnify > 0 ? magnify : 1) * tool.displacement[k % 3];
+      picture.segments.push_back(std::move(lines));
+    }
   return picture;
 }
 

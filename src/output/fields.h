@@ -67,6 +67,13 @@ struct BrokenBond
   double energy;      // J, released by the face
 };
 
+/// A rigid tool as pictures show it.
+struct ToolOutline
+{
+  std::vector<double> points; // m, two ends of x, y, z per edge, where the run began
+  double displacement[3];     // m
+};
+
 /// A body at one time that is worth keeping: what pictures are drawn from, during a run and later.
 struct BodyState
 {
@@ -77,6 +84,7 @@ struct BodyState
   CellFields cells;
   std::vector<BrokenBond> bonds; // broken by then
   std::vector<BrokenBond> cuts;  // faces that initial cracks cut
+  std::vector<ToolOutline> tools;
 };
 
 /// A field that runs write, and where.

@@ -10,7 +10,7 @@
 
 namespace ligament::program
 {
-std::vector<Column> history_columns(int dimension, bool has_phases)
+std::vector<Column> history_columns(int dimension, bool has_phases, bool has_tools)
 {
   std::vector<Column> columns = {{"time", "s"},    {"step", "1"},         {"load", "N"},
                                  {"stress", "Pa"}, {"displacement", "m"}, {"strain", "1"}};
@@ -21,6 +21,9 @@ std::vector<Column> history_columns(int dimension, bool has_phases)
     columns.push_back({energy, "J"});
   if (has_phases)
     columns.insert(columns.end() - 2, {"settled", "J"}); // before external_work and residual
+  if (has_tools)
+    for (const char *energy : {"tool_kinetic", "tool_contact", "tool_spring", "tool_friction"})
+      columns.insert(columns.end() - 2, {energy, "J"});
   columns.push_back({"broken_bonds", "1"});
   columns.push_back({"crack_length", dimension == 2 ? "m" : "m^2"});
   if (has_phases)

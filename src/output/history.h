@@ -15,8 +15,9 @@ namespace ligament::program
 /// potential_discrete, kinetic_far, potential_far, blended, impulses, breaking (the step errors of
 /// both), fracture, friction, damper_fine, damper_gap, damping, absorbed, regime_change,
 /// external_work, residual. crack_length is in m (2D) or m^2 (3D). `has_phases`: also settled (J)
-/// and static, 1 in rows inside a static phase.
-std::vector<Column> history_columns(int dimension, bool has_phases = false);
+/// and static, 1 in rows inside a static phase. `has_tools`: also tool_kinetic, tool_contact,
+/// tool_spring and tool_friction (J).
+std::vector<Column> history_columns(int dimension, bool has_phases = false, bool has_tools = false);
 
 /// history.csv of a run; what one that did not end by itself left in the middle of a line is left
 /// out. InputError when it cannot be read.

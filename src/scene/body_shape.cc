@@ -1,11 +1,8 @@
 #include "src/scene/body_shape.h"
 
 #include "core/keyed_error.h"
-#include "src/scene/surface_file.h"
-
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
+#include "src/scene/body_file.h"
+#include "src/scene/cut_polygons.h"
 
 #include <fmt/format.h>
 
@@ -149,110 +146,6 @@ Polygon checked_polygon(const Loop &loop, double side)
   return turned;
 }
 
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::d2::point_xy<double>;
-using BoostPolygon = bg::model::polygon<BoostPoint, false, false>; // counter-clockwise, open
-using BoostPolygons = bg::model::multi_polygon<BoostPolygon>;
-
-BoostPolygon to_boost(const Polygon &polygon)
-{
-  BoostPolygon result;
-  for (const auto &corner : polygon)
-    result.outer().emplace_back(corner.place[0], corner.place[1]);
-  return result;
-}
-
-/// The boundary of the polygon's side that passes through a point.
-int boundary_at(const std::vector<Polygon> &polygons, const Vector<2> &x)
-{
-  int boundary = inner_surface<2>;
-  double least = 1e300;
-  for (const Polygon &polygon : polygons)
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vector<2> &a = polygon[k].place, b = polygon[(k + 1) % polygon.size()].place - a;
-      const double share = std::clamp(b.dot(x - a) / b.squaredNorm(), 0., 1.);
-      if (const double d = (a + share * b - x).norm(); d < least) {
-        least = d;
-        boundary = polygon[k].boundary;
-      }
-    }
-  return boundary;
-}
-
-/// The corner or the crossing of two sides that is meant by a place: Boost.Geometry rounds places
-/// to a grid of about 1e-8 of the figure, so that its decisions are robust.
-Vector<2> exact(const std::vector<Polygon> &polygons, const Vector<2> &x, double tolerance)
-{
-  std::vector<std::pair<Vector<2>, Vector<2>>> lines; // a point, a unit direction
-  for (const Polygon &polygon : polygons)
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vector<2> &a = polygon[k].place, &b = polygon[(k + 1) % polygon.size()].place;
-      if ((a - x).norm() < tolerance)
-        return a;
-      const Vector<2> along = (b - a).normalized(), off = x - a;
-      const double at = std::clamp(along.dot(off), 0., (b - a).norm());
-      if ((off - at * along).norm() < tolerance)
-        lines.emplace_back(a, along);
-    }
-  const auto turn = [](const Vector<2> &u, const Vector<2> &v) {
-    return u[0] * v[1] - u[1] * v[0];
-  };
-  for (std::size_t k = 1; k < lines.size(); ++k)
-    if (const double sine = turn(lines[0].second, lines[k].second); std::abs(sine) > 1e-3)
-      return lines[0].first +
-             turn(lines[k].first - lines[0].first, lines[k].second) / sine * lines[0].second;
-  return x;
-}
-
-/// Without sides that are shorter than the tolerance, which intersections of sides that nearly
-/// touch leave.
-Polygon from_boost(const BoostPolygon::ring_type &ring, const std::vector<Polygon> &sources,
-                   double tolerance)
-{
-  std::vector<Vector<2>> corners;
-  for (const BoostPoint &point : ring) {
-    const Vector<2> x = exact(sources, Vector<2>(point.x(), point.y()), tolerance);
-    if (corners.empty() || (x - corners.back()).norm() > tolerance)
-      corners.push_back(x);
-  }
-  while (corners.size() > 1 && (corners.front() - corners.back()).norm() <= tolerance)
-    corners.pop_back();
-  Polygon polygon;
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    polygon.push_back(
-        {corners[k], boundary_at(sources, (corners[k] + corners[(k + 1) % corners.size()]) / 2)});
-  return polygon;
-}
-
-/// The first polygon without the others.
-std::vector<Polygon> without(const std::vector<Polygon> &polygons,
-                             const std::vector<std::string> &keys, double tolerance)
-{
-  BoostPolygons left = {to_boost(polygons[0])};
-  for (std::size_t k = 1; k < polygons.size(); ++k) {
-    BoostPolygons next;
-    const BoostPolygon cut = to_boost(polygons[k]);
-    if (!bg::intersects(cut, to_boost(polygons[0])))
-      throw KeyedError(keys[k], fmt::format("{} lies outside the specimen", keys[k]),
-                       "it takes nothing away", "move it, or remove it");
-    bg::difference(left, cut, next);
-    left = std::move(next);
-  }
-  std::vector<Polygon> result;
-  for (const BoostPolygon &piece : left) {
-    if (std::abs(bg::area(piece)) < tolerance * tolerance)
-      continue;
-    result.push_back(from_boost(piece.outer(), polygons, tolerance));
-    for (const auto &hole : piece.inners())
-      if (std::abs(bg::area(hole)) > tolerance * tolerance)
-        result.push_back(from_boost(hole, polygons, tolerance));
-  }
-  if (result.empty())
-    throw KeyedError("/specimen", "nothing of the specimen is left",
-                     "cutouts and slots take all of it", "make them smaller");
-  return result;
-}
-
 /// Sides without a name on the box belong to its sides.
 void name_sides_of_box(const Specimen &specimen, std::vector<Polygon> &polygons, int inner)
 {
@@ -283,6 +176,9 @@ void for_each_name(const Specimen &specimen, Visit &&visit)
   }
   for (const Slot &slot : specimen.slots)
     visit(slot.side);
+  if (specimen.body)
+    for (const std::string &name : specimen.body->names)
+      visit(name);
 }
 } // namespace
 
@@ -305,10 +201,21 @@ void enclose_body(Specimen &specimen, int dim)
   if (specimen.ball) {
     upper = Vector<3>::Constant(specimen.ball->radius);
     lower = -upper;
-  } else if (!specimen.surface_file.empty()) {
-    const core::Solid<3> solid = read_surface(specimen.surface_file);
-    lower = solid.lower();
-    upper = solid.upper();
+  } else if (!specimen.file.empty()) {
+    if (!specimen.body)
+      specimen.body = std::make_shared<BodyFile>(read_body(specimen.file, dim));
+    lower = Vector<3>::Constant(1e300);
+    upper = -lower;
+    const auto include = [&](const Vector<3> &x) {
+      lower = lower.cwiseMin(x);
+      upper = upper.cwiseMax(x);
+    };
+    for (const auto &polygon : specimen.body->polygons)
+      for (const auto &corner : polygon)
+        include({corner.place[0], corner.place[1], 0});
+    for (const auto &facet : specimen.body->facets)
+      for (const auto &[a, b] : facet.edges)
+        include(specimen.body->vertices[a]);
   } else {
     const auto [least, most] = box_around(outline_from(specimen.outline, "", {}, 0));
     lower << least, -specimen.thickness / 2;
@@ -328,7 +235,9 @@ std::vector<Polygon> outline_of(const Specimen &specimen, int dim, double side, 
   const int inner = 2 * dim;
   const std::vector<std::string> names = side_names_of(specimen, dim);
   std::vector<Loop> loops;
-  if (specimen.outline.empty())
+  if (specimen.body && dim == 2)
+    ; // polygons below
+  else if (specimen.outline.empty())
     loops.push_back(
         {core::rectangle({specimen.lower(0), specimen.lower(1)},
                          {specimen.upper(0), specimen.upper(1)}, {inner, inner, inner, inner}),
@@ -357,12 +266,22 @@ std::vector<Polygon> outline_of(const Specimen &specimen, int dim, double side, 
   }
   std::vector<Polygon> polygons;
   std::vector<std::string> keys;
+  if (specimen.body && dim == 2)
+    for (Polygon polygon : specimen.body->polygons) {
+      for (auto &corner : polygon)
+        corner.boundary = corner.boundary < 0
+                              ? inner
+                              : number_of(names, specimen.body->names[corner.boundary], inner);
+      polygons.push_back(std::move(polygon));
+      keys.push_back("/specimen/file");
+    }
+  const std::size_t n_outer = std::max<std::size_t>(1, polygons.size());
   for (const Loop &loop : loops) {
     polygons.push_back(checked_polygon(loop, side));
     keys.push_back(loop.key);
   }
-  if (polygons.size() > 1)
-    polygons = without(polygons, keys, 1e-7 * std::max(specimen.size[0], specimen.size[1]));
+  if (polygons.size() > n_outer)
+    polygons = cut_polygons(polygons, n_outer, keys, 1e-7 * std::max(specimen.size[0], specimen.size[1]));
   name_sides_of_box(specimen, polygons, inner);
   return polygons;
 }
@@ -378,8 +297,15 @@ std::shared_ptr<const core::Solid<dim>> solid_of(const Specimen &specimen, doubl
     if (specimen.ball)
       return std::make_shared<core::Solid<3>>(
           core::make_ball(Vector<3>::Zero(), specimen.ball->radius, 2 * side, inner_surface<3>));
-    if (!specimen.surface_file.empty())
-      return std::make_shared<core::Solid<3>>(read_surface(specimen.surface_file));
+    if (specimen.body) {
+      const std::vector<std::string> names = side_names_of(specimen, 3);
+      auto facets = specimen.body->facets;
+      for (auto &facet : facets)
+        facet.boundary = facet.boundary < 0 ? inner_surface<3>
+                                            : number_of(names, specimen.body->names[facet.boundary],
+                                                        inner_surface<3>);
+      return std::make_shared<core::Solid<3>>(specimen.body->vertices, std::move(facets));
+    }
     return std::make_shared<core::Solid<3>>(core::extrude(
         outline_of(specimen, 3, side, false), specimen.lower(2), specimen.upper(2), {4, 5}));
   }
@@ -389,9 +315,9 @@ template <int dim>
 std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, double side,
                                                       const core::BoxUnion<dim> &left_out)
 {
-  if (specimen.ball || !specimen.surface_file.empty())
-    throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/surface_file",
-                     "this body has no mesh", "in 3D the far field fills boxes and prisms along z",
+  if (specimen.ball || (dim == 3 && specimen.body))
+    throw KeyedError(specimen.ball ? "/specimen/ball" : "/specimen/file", "this body has no mesh",
+                     "in 3D the far field fills boxes and prisms along z",
                      "make it discrete: \"far_field\": \"none\"");
   Specimen meshed = specimen;
   if (dim == 3) { // voids in 3D are inside the zone

@@ -188,6 +188,8 @@ private:
   void force()
   {
     const bool side = g_.side.has_value(), load = g_.load >= 0;
+    if (!g_.tool.empty())
+      return force_of_tool(side || load);
     if (side == load)
       return f_.error(
           key_, fmt::format("{} \"side\" and \"load\" in {}", side ? "both" : "neither", key_),
@@ -203,6 +205,19 @@ private:
       f_.error(key_ + "/side",
                fmt::format("\"side\" in {} is \"{}\", which is free", key_, g_.side_name),
                "no load acts on it, so its force is 0", "choose a loaded side, or load this one");
+  }
+
+  void force_of_tool(bool has_other)
+  {
+    if (has_other)
+      return f_.error(key_ + "/tool",
+                      fmt::format("\"tool\" beside \"side\" or \"load\" in {}", key_),
+                      "it is the force of one of them", "give one of them");
+    const bool there = std::any_of(scene_.tools.begin(), scene_.tools.end(),
+                                   [&](const auto &t) { return t.name == g_.tool; });
+    if (!there && f_.sound({"/tools"}))
+      f_.error(key_ + "/tool", fmt::format("\"tool\" in {} is \"{}\"", key_, g_.tool),
+               "there is no tool of this name in /tools", "name one that is there");
   }
 
   void crack_tip()

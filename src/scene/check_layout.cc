@@ -179,7 +179,7 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
     return {};
   const bool particles = scene.zone.extent != Extent::none;
   const bool mesh = scene.zone.extent != Extent::all && scene.far_field.has_value();
-  if (particles && !f.sound({region_key, boxes_key}))
+  if (particles && !f.sound({region_key, boxes_key, zone_key + "/around"}))
     return {};
   std::optional<Layout> layout = check_region(scene, specimen, f);
   const bool spacing = particles && f.sound_and_given({spacing_key});

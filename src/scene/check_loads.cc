@@ -199,7 +199,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
                 "the load will not reach its value", "");
   }
   if (scene.loads.empty() && !scene.body_force.is_any() && scene.initial_motion.empty() &&
-      !scene.time.has_phases() && f.sound({"/loads"}))
+      scene.tools.empty() && !scene.time.has_phases() && f.sound({"/loads"}))
     f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
 }
 } // namespace ligament::program

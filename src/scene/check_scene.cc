@@ -186,6 +186,7 @@ void check_scene(const Scene &scene, Findings &f)
   }
   check_loads(scene, layout ? &*layout : nullptr, f);
   check_motion(scene, f);
+  check_tools(scene, f);
   check_phases(scene, f);
   check_scales(scene, f);
   check_pictures(scene, f);

@@ -66,6 +66,9 @@ void check_fracture(const FractureParameters &fracture, const std::string &secti
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);
 
+/// Rigid tools: names, shapes, what moves them.
+void check_tools(const Scene &scene, Findings &findings);
+
 /// Gauges: their keys, and whether there is something to measure where they lie.
 void check_gauges(const Scene &scene, const Box &specimen, Findings &findings);
 /// The rectangles of a J-integral: around one tip, inside the specimen, nothing else between them.

@@ -17,16 +17,19 @@ const std::string section = "/specimen";
 /// The ways to say what the specimen is, and which of them are used.
 void check_choice(const Scene &scene, Findings &f)
 {
+  const Specimen &s = scene.specimen;
   std::vector<std::string> given;
-  for (const std::string key : {"size", "outline", "ball", "surface_file"})
-    if (f.given(section + "/" + key))
+  for (const auto &[key, is_given] :
+       {std::pair("size", f.given(section + "/size")), std::pair("outline", !s.outline.empty()),
+        std::pair("ball", s.ball.has_value()), std::pair("file", !s.file.empty())})
+    if (is_given)
       given.push_back(key);
   if (given.empty() && f.sound({section}))
     return f.error(section + "/size", "missing key \"size\" in /specimen",
                    "it says how large the body is",
                    scene.dimension == 2 ? "add \"size\": [.., ..], or an \"outline\""
                                         : "add \"size\", an \"outline\", \"ball\" or "
-                                          "\"surface_file\"");
+                                          "\"file\"");
   if (given.size() > 1)
     return f.error(section + "/" + given[1],
                    fmt::format("both \"{}\" and \"{}\" in /specimen", given[0], given[1]),
@@ -39,10 +42,11 @@ void check_choice(const Scene &scene, Findings &f)
       f.sound({section + "/thickness"}))
     f.error(section + "/thickness", "missing key \"thickness\" in /specimen",
             "an outline in 3D is that of a prism along z", "add \"thickness\"");
-  if (scene.specimen.ball || !scene.specimen.surface_file.empty())
-    for (const std::string key : {"cutouts", "slots"})
-      if (f.given(section + "/" + key))
-        f.error(section + "/" + key,
+  if (s.ball || (scene.dimension == 3 && !s.file.empty()))
+    for (const auto &[key, is_given] :
+         {std::pair("cutouts", !s.cutouts.empty()), std::pair("slots", !s.slots.empty())})
+      if (is_given)
+        f.error(section + "/" + std::string(key),
                 fmt::format("\"{}\" in /specimen beside \"{}\"", key, given[0]),
                 "they cut boxes and prisms only", "remove them, or give \"notches\"");
 }
@@ -97,7 +101,10 @@ void check_shape(const Scene &scene, Findings &f)
   for (std::size_t k = 0; k < s.slots.size(); ++k)
     if (const auto key = fmt::format("{}/slots/{}", section, k); f.sound({key}))
       check_slot(s.slots[k], key, particles ? scene.zone.spacing : 0, f);
-  if (!f.sound({section}) || s.is_plain() || s.ball || !s.surface_file.empty())
+  if (scene.far_field && scene.far_field->cells_from_file && s.file.empty())
+    f.error("/far_field/cells_from_file", "\"cells_from_file\" in /far_field without a file",
+            "/specimen has no \"file\"", "add one, or remove the key");
+  if (!f.sound({section}) || s.is_plain() || s.ball || (scene.dimension == 3 && !s.file.empty()))
     return;
   try {
     const auto polygons =

@@ -83,6 +83,15 @@ enum class LoadKind
   force         // N, spread over the part
 };
 
+/// The shape of a rigid tool.
+enum class ToolKind
+{
+  plate,  // a rectangle, a box
+  roller, // a disc, a cylinder
+  ball,   // a disc, a ball
+  wedge   // a convex polygon, a prism
+};
+
 /// The form of a single pulse.
 enum class PulseShape
 {
@@ -93,6 +102,12 @@ enum class PulseShape
 inline const std::vector<std::string> &words(PulseShape)
 {
   static const std::vector<std::string> list = {"half_sine", "ricker"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(ToolKind)
+{
+  static const std::vector<std::string> list = {"plate", "roller", "ball", "wedge"};
   return list;
 }
 

@@ -15,7 +15,7 @@ std::vector<std::string> keys_of(GaugeKind kind)
   case GaugeKind::stress:
     return {"points", "lower", "upper", "angle"};
   case GaugeKind::force:
-    return {"side", "load"};
+    return {"side", "load", "tool"};
   case GaugeKind::j_integral:
     return {"lower", "upper", "inner_lower", "inner_upper", "direction", "normal"};
   case GaugeKind::crack_tip:
@@ -40,6 +40,7 @@ void declare_gauge(core::ParameterSection &s, GaugeParameters &g)
   s.add("angle", g.angle, "strain, stress: of the gauge's x against that of the specimen, about z").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000);
   s.add("side", g.side_name, "force: all loads on this side of the specimen together");
   s.add("load", g.load, "force: one load, by its number in /loads from 0; -1: none").at_least(-1);
+  s.add("tool", g.tool, "force: of this tool, by its name");
   s.add("smoothing", g.smoothing, "crack_tip: the speed is the mean one over this time before; 0: a fiftieth of the duration").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
   s.add("mass", g.mass, "fragments: lighter pieces are not counted").in("kg").usually(1e-24, 1e12, "g mg").at_least(0);
 }

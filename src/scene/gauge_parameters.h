@@ -43,6 +43,7 @@ struct GaugeParameters
   std::string side_name;
   std::optional<int> side; // its number, see side_names_of
   int load = -1;           // index into Scene::loads; -1: none
+  std::string tool;        // name of one
   double smoothing = 0;    // s
   double mass = 0;         // kg
 };

@@ -87,15 +87,15 @@ void leave_out_unused(const DiscreteZone &zone, nlohmann::ordered_json &json)
 void leave_out_unused(const GaugeParameters &gauge, nlohmann::ordered_json &json)
 {
   const std::vector<std::string> own = keys_of(gauge.kind);
-  for (const auto &name :
-       std::vector<std::string>{"points", "direction", "normal", "lower", "upper", "inner_lower",
-                                "inner_upper", "angle", "side", "load", "smoothing", "mass"})
+  for (const auto &name : std::vector<std::string>{"points", "direction", "normal", "lower",
+                                                   "upper", "inner_lower", "inner_upper", "angle",
+                                                   "side", "load", "tool", "smoothing", "mass"})
     if (std::find(own.begin(), own.end(), name) == own.end())
       json.erase(name);
   // What was left open by saying something else would be doubted like a contradiction.
   for (const auto &[name, is_open] :
        {std::pair("points", gauge.points.empty()), std::pair("load", gauge.load < 0),
-        std::pair("side", !gauge.side.has_value())})
+        std::pair("side", gauge.side_name.empty()), std::pair("tool", gauge.tool.empty())})
     if (is_open)
       json.erase(name);
   const bool has_point = !gauge.points.empty();
@@ -104,12 +104,25 @@ void leave_out_unused(const GaugeParameters &gauge, nlohmann::ordered_json &json
       json.erase(name);
 }
 
+/// Likewise of a tool of another shape.
+void leave_out_unused(const ToolParameters &tool, nlohmann::ordered_json &json)
+{
+  const auto keep_for = [&](const char *key, std::initializer_list<ToolKind> kinds) {
+    if (std::find(kinds.begin(), kinds.end(), tool.shape) == kinds.end())
+      json.erase(key);
+  };
+  keep_for("size", {ToolKind::plate});
+  keep_for("radius", {ToolKind::roller, ToolKind::ball});
+  keep_for("length", {ToolKind::roller, ToolKind::wedge});
+  keep_for("points", {ToolKind::wedge});
+}
+
 /// Relative paths in a scene start in its folder; in one that came through a pipe where we are.
 void locate_files(const std::string &name, Scene &scene)
 {
   if (name == scene_name("-"))
     return;
-  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.surface_file})
+  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.file})
     if (!path->empty())
       *path = (std::filesystem::path(name).parent_path() / *path).string();
 }
@@ -188,6 +201,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   leave_out_unused(scene.zone, result.resolved["discrete_zone"]);
   for (std::size_t k = 0; k < scene.gauges.size(); ++k)
     leave_out_unused(scene.gauges[k], result.resolved["gauges"][k]);
+  for (std::size_t k = 0; k < scene.tools.size(); ++k)
+    leave_out_unused(scene.tools[k], result.resolved["tools"][k]);
   if (scene.specimen.has_own_box())
     result.resolved["specimen"].erase("size");
   if (scene.dimension == 3 && scene.specimen.outline.empty())

@@ -7,6 +7,7 @@
 #include "src/scene/gauge_parameters.h"
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,8 @@ struct Ball
   double radius = 0; // m, about the origin
 };
 
+struct BodyFile; // src/scene/body_file.h
+
 struct Specimen
 {
   Point size = {0, 0, 0};             // m, of the smallest box around it
@@ -70,8 +73,9 @@ struct Specimen
   std::vector<OutlineCorner> outline; // empty: the box
   std::vector<Cutout> cutouts;
   std::vector<Slot> slots;
-  std::optional<Ball> ball; // 3D
-  std::string surface_file; // 3D: triangles; relative to the scene until it is read
+  std::optional<Ball> ball;             // 3D
+  std::string file;                     // with the body; relative to the scene until it is read
+  std::shared_ptr<const BodyFile> body; // what it holds
   std::vector<Crack> cracks;
   std::vector<Hole> holes;
   std::vector<Notch> notches;
@@ -83,10 +87,10 @@ struct Specimen
   /// A box, perhaps with boxes and discs cut out of it.
   bool is_plain() const
   {
-    return outline.empty() && cutouts.empty() && slots.empty() && !ball && surface_file.empty();
+    return outline.empty() && cutouts.empty() && slots.empty() && !ball && file.empty();
   }
   /// Its box follows from something else.
-  bool has_own_box() const { return !outline.empty() || ball || !surface_file.empty(); }
+  bool has_own_box() const { return !outline.empty() || ball || !file.empty(); }
 };
 
 struct FractureParameters
@@ -165,6 +169,7 @@ struct FarField
   int cells_per_level = 4; // cells between two steps of the mesh size
   double growth = 1;       // above 1: from cell to cell, in place of refinement
   int fine_cells = 0;      // cells of size h, from the inner end of the overlap on; 0: automatic
+  bool cells_from_file = false; // of /specimen/file
   double outline_cell_size = 0; // m, along curved and slanted sides; 0: cell_size
 };
 
@@ -256,6 +261,36 @@ struct LoadParameters
   PartialPoint value;                 // and its components
 };
 
+/// A rigid body that touches the specimen.
+struct ToolParameters
+{
+  std::string name;
+  ToolKind shape = ToolKind::plate;
+  Point place = {0, 0, 0};             // m, of its centre
+  Point orientation = {0, 0, 0};       // rad, as that of the packing
+  Point size = {0, 0, 0};              // m, edges of a plate
+  double radius = 0;                   // m, roller and ball
+  double length = infinity;            // m, 3D: of rollers and wedges, along their third axis
+  std::vector<Point> points;           // m, corners of a wedge against its place, before it turns
+  PartialPoint velocity, displacement; // m/s, m; of the tool or of the far end of its spring
+  double ramp = 0;                     // s
+  History history;                     // of the motion
+  std::optional<double> mass;          // kg; none: it moves as prescribed
+  double inertia = 0;                  // kg m^2; 0: it doesn't turn
+  Point initial_velocity = {0, 0, 0};  // m/s
+  double machine_stiffness = 0;        // N/m; 0: no spring
+  double friction = 0;                 // Coulomb's coefficient
+  double release = infinity;           // s
+
+  bool is_driven() const
+  {
+    for (int c = 0; c < 3; ++c)
+      if (velocity[c] || displacement[c])
+        return true;
+    return false;
+  }
+};
+
 /// Where the run begins, a part of the body or all of it moves.
 struct InitialMotion
 {
@@ -321,6 +356,7 @@ struct Scene
   CouplingParameters coupling;
   Damping damping;
   std::vector<LoadParameters> loads;
+  std::vector<ToolParameters> tools;
   std::vector<GaugeParameters> gauges;
   BodyForceParameters body_force;
   std::vector<InitialMotion> initial_motion;

@@ -57,13 +57,13 @@ void declare_specimen_ball(Section &s, Ball &b)
 
 void declare_specimen(Section &s, Specimen &p)
 {
-  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or surface_file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a surface_file");
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
   s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-8, 1e4, "mm um nm").above(0);
   s.list("outline", p.outline, "in place of size: the corners of the body's outline in turn, either way round; in 3D that of a prism along z", declare_corner);
   s.list("cutouts", p.cutouts, "openings of any outline; what reaches out of the specimen opens its side; in 3D they go through along z", declare_cutout);
   s.list("slots", p.slots, "notches with parallel flanks at any angle; in 3D they go through along z", declare_slot);
   s.section("ball", p.ball, "none", "in place of size: a ball about the origin", declare_specimen_ball).only_in(3);
-  s.add("surface_file", p.surface_file, "in place of size: file of a closed surface of triangles (STL) in m, relative to the scene").only_in(3);
+  s.add("file", p.file, "in place of size: a file with the body, lengths in m, relative to the scene: gmsh's .msh (text, version 2.2 or 4.1), whose physical groups of lines (2D) or faces (3D) are names of sides; in 3D also .stl");
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
@@ -140,6 +140,7 @@ void declare_far_field(Section &s, FarField &f)
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);
   s.add("fine_cells", f.fine_cells, "cells of size h between the inner end of the overlap and the first larger ones; 0: overlap, transition and two more").at_least(0).at_most(1000);
+  s.add("cells_from_file", f.cells_from_file, "the quadrilaterals of /specimen/file are the mesh, less those in the discrete zone, whose edges must be edges of cells; cells beside the zone must be rectangles along x and y").only_in(2);
   s.add("outline_cell_size", f.outline_cell_size, "size of the cells along curved and slanted sides, holes and notches, cell_size times a power of 2; 0: cell_size; not with growth").in("m").usually(1e-9, 1e3, "mm um nm").at_least(0);
 }
 
@@ -214,6 +215,28 @@ void declare_load(Section &s, LoadParameters &l)
   s.add("absorbing_layer", l.absorbing_layer, "width of a damping layer inside the absorbing side, one to two wave lengths; 0: dashpots on the side alone").in("m").usually(0, 1e4, "mm um").at_least(0);
 }
 
+void declare_tool(Section &s, ToolParameters &t)
+{
+  s.add("name", t.name, "of the tool; its columns in history.csv begin with it").required();
+  s.add("shape", t.shape, "plate: a rectangle (2D) or box; roller: a disc or cylinder; ball; wedge: a convex polygon or the prism over one", words(ToolKind())).required();
+  s.add("place", t.place, "centre of the tool where the run begins; of a wedge the point that its corners refer to").in("m").usually(0, 1e4, "mm um").required();
+  s.add("orientation", t.orientation, "turns the tool: an angle (2D) or a rotation vector (3D); a roller's axis and a wedge's edge lie along z at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();
+  s.add("size", t.size, "plate: edge lengths").in("m").usually(1e-8, 1e4, "mm um").at_least(0);
+  s.add("radius", t.radius, "roller, ball").in("m").usually(1e-8, 1e4, "mm um nm").at_least(0);
+  s.add("length", t.length, "roller, wedge: along their axis").in("m").usually(1e-8, 1e4, "mm um").above(0).word("endless", infinity).only_in(3);
+  s.add("points", t.points, "wedge: three or more corners against its place, in turn; 3D: with 0 as third coordinate").in("m").usually(0, 1e4, "mm um");
+  s.add("velocity", t.velocity, "prescribed velocity; null: 0. Without mass that of the tool, with machine_stiffness that of the spring's far end").in("m/s").usually(1e-12, 1e4, "mm/s um/s km/h");
+  s.add("displacement", t.displacement, "prescribed displacement, likewise, in place of a velocity").in("m").usually(0, 1e2, "mm um nm");
+  s.add("ramp", t.ramp, "time over which the motion grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  declare_history(s.section("history", "course of the motion in time, as for loads"), t.history);
+  s.add("mass", t.mass, "of a tool that moves as it is pushed; in 2D over the thickness; not given: it moves as prescribed, or stands still").in("kg").usually(1e-18, 1e9, "g mg t").above(0);
+  s.add("inertia", t.inertia, "of a tool with mass about its centre, 2D or a ball; 0: it doesn't turn").in("kg*m^2").at_least(0);
+  s.add("initial_velocity", t.initial_velocity, "of a tool with mass where the run begins").in("m/s").usually(1e-12, 1e5, "mm/s km/h");
+  s.add("machine_stiffness", t.machine_stiffness, "of a spring between the prescribed motion and a tool with mass, alike in all directions; 0: none").in("N/m").usually(1e-3, 1e15, "kN/mm N/mm").at_least(0);
+  s.add("friction", t.friction, "Coulomb friction between tool and body").at_least(0).at_most(10);
+  s.add("release", t.release, "when the tool is taken away").in("s").usually(1e-12, 1e5, "us ms ns").above(0).word("never", infinity);
+}
+
 void declare_initial_motion(Section &s, InitialMotion &m)
 {
   s.add("velocity", m.velocity, "of all points there").in("m/s").usually(1e-12, 1e4, "mm/s um/s km/h");
@@ -272,6 +295,7 @@ void declare_scene(Section &s, Scene &scene)
   declare_coupling(s.section("coupling", "the overlap of the two models"), scene.coupling);
   declare_damping(s.section("damping", "losses without physical meaning, for quasi-static scenes"), scene.damping);
   s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);
+  s.list("tools", scene.tools, "rigid bodies that touch the specimen: supports, punches, projectiles", declare_tool);
   s.list("gauges", scene.gauges, "what is measured besides load and elongation: columns of history.csv, curves of the report", declare_gauge);
   declare_body_force(s.section("body_force", "acts on every mass, of both models"), scene.body_force);
   s.list("initial_motion", scene.initial_motion, "motions of the body or parts of it at the beginning, which add up; the overlap begins with the motion of the mesh there", declare_initial_motion);

@@ -15,8 +15,6 @@ namespace ligament::program
 {
 namespace
 {
-const char *const key = "/specimen/surface_file";
-
 /// Numbers for places; those that round to the same point of a fine grid, or to neighbouring ones,
 /// share theirs.
 class Welder
@@ -48,12 +46,13 @@ private:
 };
 } // namespace
 
-core::Solid<3> read_surface(const std::string &file)
+void read_surface(const std::string &file, const std::string &key, std::vector<Vector<3>> &vertices,
+                  std::vector<core::Solid<3>::Facet> &facets)
 {
   Assimp::Importer importer;
   const aiScene *scene = importer.ReadFile(file, aiProcess_Triangulate);
   if (!scene || scene->mNumMeshes == 0)
-    throw core::KeyedError(key, fmt::format("\"surface_file\" {} cannot be read", file),
+    throw core::KeyedError(key, fmt::format("\"file\" {} cannot be read", file),
                            importer.GetErrorString(), "give an STL file of a closed surface");
   double extent = 0;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m)
@@ -63,7 +62,6 @@ core::Solid<3> read_surface(const std::string &file)
           std::max({extent, std::abs(double(x.x)), std::abs(double(x.y)), std::abs(double(x.z))});
     }
   Welder welder(1e-7 * extent);
-  std::vector<core::Solid<3>::Facet> facets;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh &mesh = *scene->mMeshes[m];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
@@ -75,19 +73,9 @@ core::Solid<3> read_surface(const std::string &file)
         t[k] = welder.number(Vector<3>(x.x, x.y, x.z));
       }
       if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
-        facets.push_back({{{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}}, inner_surface<3>});
+        facets.push_back({{{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}}, -1});
     }
   }
-  try {
-    core::Solid<3> solid(welder.vertices, facets);
-    if (solid.volume() <= 0)
-      throw core::InputError("the surface is inside out: its volume is not positive");
-    return solid;
-  } catch (const core::KeyedError &) {
-    throw;
-  } catch (const core::InputError &error) {
-    throw core::KeyedError(key, fmt::format("\"surface_file\" {} bounds no body", file),
-                           error.what(), "mend the surface, so that it is closed");
-  }
+  vertices = std::move(welder.vertices);
 }
 } // namespace ligament::program

@@ -1,4 +1,4 @@
-// Closed surfaces of triangles from files.
+// Surfaces of triangles from STL files.
 #pragma once
 
 #include "core/solid.h"
@@ -7,8 +7,8 @@
 
 namespace ligament::program
 {
-/// Reads an STL file, text or binary, lengths in m; corners nearer than 1e-7 of its extent are one.
-/// Its sides carry inner_surface<3>. Throws core::KeyedError (key /specimen/surface_file) where it
-/// can't be read, leaves a gap, or is inside out.
-core::Solid<3> read_surface(const std::string &file);
+/// Reads a text or binary file, lengths in m; corners nearer than 1e-7 of its extent are one. Adds
+/// its triangles with boundary -1. Throws core::KeyedError about the key where it can't be read.
+void read_surface(const std::string &file, const std::string &key, std::vector<Vector<3>> &vertices,
+                  std::vector<core::Solid<3>::Facet> &facets);
 } // namespace ligament::program

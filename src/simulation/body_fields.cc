@@ -4,6 +4,8 @@
 #include "fem/cell_map.h"
 #include "src/simulation/kept_tables.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <unordered_map>
 
@@ -192,6 +194,54 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
     add_particle_fields(body, state);
 }
 
+namespace
+{
+/// What of a segment lies in a box; false where nothing does.
+template <int dim>
+bool clip_to_box(const Vector<dim> &lower, const Vector<dim> &upper,
+                 std::array<Vector<dim>, 2> &segment)
+{
+  const Vector<dim> start = segment[0], way = segment[1] - segment[0];
+  double from = 0, to = 1;
+  for (int c = 0; c < dim; ++c) {
+    if (way[c] == 0 && (start[c] < lower[c] || start[c] > upper[c]))
+      return false;
+    if (way[c] == 0)
+      continue;
+    const double a = (lower[c] - start[c]) / way[c], b = (upper[c] - start[c]) / way[c];
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  segment = {start + from * way, start + to * way};
+  return from < to;
+}
+
+// Around the body, as a share of its longest edge: pictures show what of a tool lies there.
+constexpr double shown_margin = 0.25;
+} // namespace
+
+template <int dim>
+std::vector<ToolOutline> tool_outlines(const CoupledBody<dim> &body)
+{
+  std::vector<ToolOutline> outlines;
+  for (int k = 0; body.tools && k < body.tools->size(); ++k) {
+    ToolOutline outline = {};
+    const double margin = shown_margin * (body.upper - body.lower).maxCoeff();
+    for (auto edge : body.tools->edges(k)) {
+      if (!clip_to_box<dim>(body.lower.array() - margin, body.upper.array() + margin, edge))
+        continue;
+      for (const Vector<dim> &end : edge)
+        for (int c = 0; c < 3; ++c)
+          outline.points.push_back(c < dim ? end[c] : 0);
+    }
+    const Vector<dim> u = body.tools->read(k).displacement;
+    for (int c = 0; c < dim; ++c)
+      outline.displacement[c] = u[c];
+    outlines.push_back(std::move(outline));
+  }
+  return outlines;
+}
+
 template <int dim>
 core::State save_fields(const BodyState &kept, BodyNames<dim> &names)
 {
@@ -206,6 +256,13 @@ core::State save_fields(const BodyState &kept, BodyNames<dim> &names)
   };
   save("particles", names.particles(), kept.particles.fields);
   save("nodes", names.nodes(), kept.cells.node_fields);
+  for (std::size_t k = 0; k < kept.tools.size(); ++k) {
+    for (int c = 0; c < 3; ++c)
+      core::save_value(state, "tools", fmt::format("{}_displacement_{}", k, c),
+                       kept.tools[k].displacement[c]);
+    core::save_value(state, "tools", fmt::format("{}_gone", k),
+                     std::int64_t(kept.tools[k].points.empty()));
+  }
   return state;
 }
 
@@ -218,6 +275,13 @@ BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState
   };
   load("particles", names.particles(), like.particles.fields);
   load("nodes", names.nodes(), like.cells.node_fields);
+  for (std::size_t k = 0; k < like.tools.size(); ++k) {
+    for (int c = 0; c < 3; ++c)
+      like.tools[k].displacement[c] =
+          core::load_real(state, "tools", fmt::format("{}_displacement_{}", k, c));
+    if (core::load_integer(state, "tools", fmt::format("{}_gone", k)))
+      like.tools[k].points.clear();
+  }
   return like;
 }
 
@@ -280,6 +344,8 @@ template ParticleFields particle_fields(const CoupledBody<2> &);
 template ParticleFields particle_fields(const CoupledBody<3> &);
 template CellFields cell_fields(const CoupledBody<2> &);
 template CellFields cell_fields(const CoupledBody<3> &);
+template std::vector<ToolOutline> tool_outlines(const CoupledBody<2> &);
+template std::vector<ToolOutline> tool_outlines(const CoupledBody<3> &);
 template core::State save_fields(const BodyState &, BodyNames<2> &);
 template core::State save_fields(const BodyState &, BodyNames<3> &);
 template BodyState load_fields(const core::State &, BodyNames<2> &, BodyState);

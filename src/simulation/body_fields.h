@@ -16,6 +16,10 @@ ParticleFields particle_fields(const CoupledBody<dim> &body);
 template <int dim>
 CellFields cell_fields(const CoupledBody<dim> &body);
 
+/// The tools that are not gone.
+template <int dim>
+std::vector<ToolOutline> tool_outlines(const CoupledBody<dim> &body);
+
 /// Completes states of a body by the fields that never change or that follow from others:
 /// equivalent stress, radius, id, material, zone, share of broken faces.
 template <int dim>

@@ -20,6 +20,8 @@ core::State take_state(const CoupledBody<dim> &body)
   if (body.far)
     body.far->save(state, node_names(body));
   body.coupler->save(state, body.bodies());
+  if (body.tools)
+    body.tools->save(state);
   core::save_value(state, "body", "regime_change", body.regime_change);
   core::save_value(state, "body", "settled", body.settled);
   core::save_value(state, "body", "started", body.started);
@@ -35,6 +37,8 @@ void give_state(const core::State &state, CoupledBody<dim> &body)
     body.far->load(state, node_names(body));
   auto bodies = body.bodies();
   body.coupler->load(state, bodies);
+  if (body.tools)
+    body.tools->load(state, bodies);
   body.regime_change = core::load_real(state, "body", "regime_change");
   body.settled = core::load_real(state, "body", "settled");
   body.started = core::load_real(state, "body", "started");

@@ -4,10 +4,13 @@
 #include "core/keyed_error.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
+#include "fem/import_mesh.h"
+#include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_loads.h"
 #include "src/simulation/make_zone.h"
+#include "src/simulation/tools/make_tools.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +48,31 @@ double material_volume(const Scene &scene)
   return volume * (scene.dimension == 2 ? scene.specimen.thickness : 1);
 }
 
+/// Those of the body's file, or made to its outline.
+template <int dim>
+fem::Mesh<dim> make_cells(const Scene &scene, const fem::MeshParameters<dim> &p)
+{
+  if constexpr (dim == 2)
+    if (scene.far_field->cells_from_file) {
+      const GmshMesh &file = scene.specimen.body->mesh;
+      std::vector<Vector<2>> places;
+      for (const auto &x : file.nodes)
+        places.push_back(x.template head<2>());
+      std::vector<std::array<int, 4>> quads;
+      for (const auto &face : file.faces) {
+        const Vector<2> &x = places[face.corners[0]];
+        require(face.corners.size() == 4,
+                fmt::format("/far_field/cells_from_file: the face at ({:.6g}, {:.6g}) m is a "
+                            "triangle; mesh the body by quadrilaterals, or leave the key out: the "
+                            "cells then follow the outline",
+                            x[0], x[1]));
+        quads.push_back({face.corners[0], face.corners[1], face.corners[2], face.corners[3]});
+      }
+      return fem::import_mesh(places, quads, *p.outline, p.inner);
+    }
+  return fem::make_mesh(p);
+}
+
 template <int dim>
 void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
@@ -70,11 +98,14 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   material.stiffness = constants.stiffness;
   material.density = scene.coupling.coarse_mass * constants.density;
   material.thickness = body.thickness;
-  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(p), material, body.loads);
+  body.far = std::make_unique<fem::FemSolver<dim>>(make_cells(scene, p), material, body.loads);
   body.dt_far = body.far->stable_step();
   log.info("{} cells, {} nodes, {} hanging, stable step {:.4g} s", body.far->mesh().n_cells(),
            body.far->mesh().n_nodes(), body.far->mesh().hanging.size(), body.dt_far);
 }
+
+// Of the stable step with tools, which is a bound and no estimate.
+constexpr double largest_share = 0.98;
 
 /// To 12 bits of mantissa: whoever estimates the stable step again, in another order of sums, comes
 /// to the same step.
@@ -86,10 +117,16 @@ double rounded_down(double step)
 }
 
 template <int dim>
-void choose_step(const Scene &scene, CoupledBody<dim> &body)
+void choose_step(const Scene &scene, double contact_rate, CoupledBody<dim> &body)
 {
-  const double stable = body.zone ? body.dt_zone : body.dt_far;
-  body.dt = scene.time.step.value_or(rounded_down(scene.time.step_fraction * stable));
+  const double plain = body.zone ? body.dt_zone : body.dt_far;
+  // What tools press on answers faster, by no more than this (theory.md eq. (T3)).
+  const double stable =
+      contact_rate > 0 ? 2 / std::sqrt(std::pow(2 / plain, 2) + contact_rate) : plain;
+  double proposal = scene.time.step_fraction * plain;
+  if (contact_rate > 0)
+    proposal = std::min(proposal, largest_share * stable);
+  body.dt = scene.time.step.value_or(rounded_down(proposal));
   require(
       body.dt <= 0.99 * stable,
       fmt::format("/time/step: {:.4g} s is above the stable step of {:.4g} s; give at most 0.95 "
@@ -253,20 +290,24 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.load_places = load_places(scene, body.loads);
   if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
+  ContactSurface<dim> surface; // that tools may touch
   if (scene.zone.extent != DiscreteZone::Extent::none)
     core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
-                 [&] { make_zone(scene, make_force, reference, body, log); });
+                 [&] { make_zone(scene, make_force, reference, body, surface, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
     core::at_key("/far_field", "change cell_size, levels or the zone",
                  [&] { make_far(scene, body, log); });
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
-  if (!coupled)
+  if (!coupled) {
     body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
+    if (body.far && !scene.tools.empty())
+      add_cells(scene, body, surface);
+  }
   core::at_key("/coupling", "change overlap_cells, cell_size or the zone", [&] {
     if (coupled && coupling::is_energy_weighted(scene.coupling.scheme))
       make_bridging_domain(scene, reference, body, log, timers);
-    choose_step(scene, body);
+    choose_step(scene, surface.largest_rate(), body);
     if (!body.coupler)
       make_fine_scale_split(scene, body, log, timers);
   });
@@ -275,6 +316,11 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
     body.zone->body_force = particles::BodyForce<dim>(body.loads);
   if (const auto *overlap = body.coupler->overlap(); overlap && scene.body_force.is_any())
     body.far->set_weights(overlap->near_nodes, body.coupler->near_weight(body.zone->state));
+  if (!scene.tools.empty()) {
+    if (coupled)
+      add_cells(scene, body, surface);
+    body.tools = make_tools(scene, body, std::move(surface), log);
+  }
   body.skipped = skipped_parts(body);
   return body;
 }

@@ -8,6 +8,7 @@
 #include "src/scene/scene.h"
 #include "src/simulation/make_force.h"
 #include "src/simulation/make_packing.h"
+#include "src/simulation/tools/tool_set.h"
 
 namespace ligament::program
 {
@@ -18,6 +19,7 @@ struct CoupledBody
   std::unique_ptr<particles::ParticleSolver<dim>> zone;
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
+  std::unique_ptr<ToolSet<dim>> tools; // null: nothing rigid touches it
   std::vector<core::BoundaryLoad<dim>> loads;
   std::vector<double> loaded_faces;          // m^2, on which each load acts in the zone
   std::vector<Vector<dim>> load_places;      // m, middle of what each load acts on

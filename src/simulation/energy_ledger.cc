@@ -18,6 +18,10 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"damping", damping},
           {"regime_change", regime_change},
           {"settled", settled},
+          {"tool_kinetic", tools.kinetic},
+          {"tool_contact", tools.contact},
+          {"tool_spring", tools.spring},
+          {"tool_friction", tools.friction},
           {"absorbed", absorbed},
           {"external_work", external_work},
           {"residual", residual()}};
@@ -33,6 +37,10 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
   ledger.regime_change = body.regime_change;
   ledger.settled = body.settled;
   ledger.external_work += body.started;
+  if (body.tools) {
+    ledger.tools = body.tools->energy();
+    ledger.external_work += ledger.tools.work;
+  }
   if (body.zone)
     ledger.absorbed += body.zone->dashpots.energy();
   if (body.zone)

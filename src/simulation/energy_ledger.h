@@ -19,6 +19,7 @@ struct EnergyLedger
   double external_work = 0;
   double regime_change = 0; // taken where the coupler changed its regime
   double settled = 0;       // taken where the body settled into an equilibrium
+  ToolEnergy tools;         // but their work, which is external
 
   double kinetic() const { return body.kinetic_discrete + body.kinetic_far; }
   double potential() const { return body.potential_discrete + body.potential_far + body.blended; }
@@ -26,7 +27,8 @@ struct EnergyLedger
   {
     return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter +
            force.fracture + force.friction + force.breaking_step_error + damping + absorbed +
-           regime_change + settled + force.plastic - external_work;
+           regime_change + settled + force.plastic + tools.kinetic + tools.contact + tools.spring +
+           tools.friction - external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;

@@ -17,7 +17,7 @@ constexpr int rows_per_flush = 50;
 template <int dim>
 std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges)
 {
-  std::vector<Column> columns = history_columns(dim, scene.time.has_phases());
+  std::vector<Column> columns = history_columns(dim, scene.time.has_phases(), !scene.tools.empty());
   for (const Column &column : gauges.columns()) {
     const bool is_there = std::any_of(columns.begin(), columns.end(),
                                       [&](const Column &c) { return c.name == column.name; });
@@ -33,7 +33,7 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges)
 template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
-    : has_phases_(scene.time.has_phases()), gauges_(scene, body),
+    : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()), gauges_(scene, body),
       writer_(folder.history(), all_columns(scene, gauges_), rows_per_flush, goes_on)
 {
 }
@@ -49,7 +49,7 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
   writer_.set("displacement", row.reading.displacement);
   writer_.set("strain", row.reading.strain);
   for (const auto &[name, value] : row.ledger.channels())
-    if (name != "settled" || has_phases_)
+    if ((name != "settled" || has_phases_) && (name.compare(0, 5, "tool_") != 0 || has_tools_))
       writer_.set(name, value);
   if (has_phases_)
     writer_.set("static", row.is_static);

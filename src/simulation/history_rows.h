@@ -34,7 +34,7 @@ public:
   GaugeSet<dim> &gauges() { return gauges_; }
 
 private:
-  bool has_phases_;
+  bool has_phases_, has_tools_;
   GaugeSet<dim> gauges_;
   HistoryWriter writer_;
 };

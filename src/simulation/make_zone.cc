@@ -4,6 +4,7 @@
 #include "packings/absorbing_sides.h"
 #include "packings/outer_face.h"
 #include "src/simulation/make_packing.h"
+#include "src/simulation/tools/make_tools.h"
 
 #include <fmt/format.h>
 
@@ -46,7 +47,7 @@ void require_same_solid(const particles::ElasticConstants<dim> &force,
 
 template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
-               CoupledBody<dim> &body, core::Log &log)
+               CoupledBody<dim> &body, ContactSurface<dim> &surface, core::Log &log)
 {
   auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
   body.seeds = std::move(seeds);
@@ -73,6 +74,9 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};
+  std::optional<packings::Packing<dim>> faces; // the force keeps the packing
+  if (!scene.tools.empty())
+    faces = packing;
   auto force = make_force(scene, std::move(packing), body.loads, body.figures, log);
   for (const auto &[name, figure] : body.figures)
     if (name.compare(0, calibrated.size(), calibrated) == 0)
@@ -82,12 +86,14 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.zone->dashpots = std::move(dashpots);
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
+  if (faces)
+    surface.add_particles(*faces, body.zone->state, contact_stiffness_of(scene), body.dt_zone);
   log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
            body.zone->state.size(), body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
 }
 
 template void make_zone(const Scene &, const ForceMaker<2> &, Reference &, CoupledBody<2> &,
-                        core::Log &);
+                        ContactSurface<2> &, core::Log &);
 template void make_zone(const Scene &, const ForceMaker<3> &, Reference &, CoupledBody<3> &,
-                        core::Log &);
+                        ContactSurface<3> &, core::Log &);
 } // namespace ligament::program

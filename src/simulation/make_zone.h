@@ -2,12 +2,13 @@
 #pragma once
 
 #include "src/simulation/coupled_body.h"
+#include "src/simulation/tools/contact_surface.h"
 
 namespace ligament::program
 {
 /// Fills in zone, seeds, cut faces, stable step and figures; `loads` must be there. Throws
-/// core::InputError where the scene can't be built.
+/// core::InputError where the scene can't be built. Adds what tools feel of it to `surface`.
 template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
-               CoupledBody<dim> &body, core::Log &log);
+               CoupledBody<dim> &body, ContactSurface<dim> &surface, core::Log &log);
 } // namespace ligament::program

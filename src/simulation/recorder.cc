@@ -206,6 +206,7 @@ BodyState Recorder<dim>::present_state(const CoupledBody<dim> &body, double time
   state.time = time;
   state.particles = particle_fields(body);
   state.cells = cell_fields(body);
+  state.tools = tool_outlines(body);
   return state;
 }
 

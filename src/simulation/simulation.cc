@@ -164,7 +164,7 @@ void Simulation<dim>::let_rest()
 {
   if (!body_.zone || !body_.force()->can_rest() || !body_.coupler->can_rest() ||
       scene_.time.has_phases() || // an equilibrium moves all
-      scene_.body_force.is_any() || !scene_.initial_motion.empty())
+      scene_.body_force.is_any() || !scene_.initial_motion.empty() || !scene_.tools.empty())
     return;
   const double strain = scene_.time.rest_threshold;
   body_.zone->let_rest(particles::RestLimits::of_strain(
@@ -187,6 +187,15 @@ void Simulation<dim>::report_rest(RunRecord &record)
   report("share_at_rest", "particle-steps", body_.zone->rest()->share_at_rest());
   for (const auto &[name, steps, share] : body_.coupler->shares_at_rest())
     report(name, steps, share);
+}
+
+template <int dim>
+void Simulation<dim>::compute_forces()
+{
+  auto bodies = body_.bodies();
+  body_.coupler->compute_forces(bodies, clock_.now);
+  if (body_.tools)
+    body_.tools->act(bodies, clock_.now, body_.coupler->step_ratio());
 }
 
 template <int dim>
@@ -215,7 +224,7 @@ template <int dim>
 std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
 {
   auto bodies = body_.bodies();
-  body_.coupler->compute_forces(bodies, clock_.now);
+  compute_forces();
   const int ratio = body_.coupler->step_ratio();
   if (clock_.now.step == 0)
     let_rest();
@@ -242,7 +251,7 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
       build_anew();
       bodies = body_.bodies();
     }
-    body_.coupler->compute_forces(bodies, clock_.now);
+    compute_forces();
   }
   return {};
 }

@@ -53,6 +53,8 @@ private:
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;
   void build_anew();
+  /// Of both halves and of the tools, at the present time.
+  void compute_forces();
   /// Between forces and kick of a step in which the far field acts: what ends the run, or nothing.
   std::optional<Stop> look();
   /// The same of all steps that an equilibrium stands for, where one is due; at its end in the last

@@ -60,8 +60,10 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
         load_ = int(l);
         component_ = c;
       }
-  if (load_ < 0)
+  if (load_ < 0) {
+    look_for_tool(body);
     return;
+  }
   is_answer_ = body.loads[load_].kind != core::BoundaryLoad<dim>::Kind::traction;
   const int boundary = body.loads[load_].boundary;
   is_named_ = boundary > inner_surface<dim>;
@@ -85,6 +87,25 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
               ? size.prod() / size_ * body.thickness
               : core::face_area<dim>(body.loads[load_].part.clip(side)) *
                     (dim == 2 ? body.thickness : 1);
+}
+
+// As if the tool were the side that it is nearer to.
+template <int dim>
+void TestMachine<dim>::look_for_tool(const CoupledBody<dim> &body)
+{
+  const int n = body.tools ? body.tools->size() : 0;
+  for (int k = 0; k < n && tool_ < 0; ++k)
+    if (const Vector<dim> way = body.tools->drive(k); way.cwiseAbs().maxCoeff() > 0) {
+      tool_ = k;
+      way.cwiseAbs().maxCoeff(&component_);
+      axis_ = component_;
+      is_answer_ = true;
+      const double middle = (body.upper + body.lower)[axis_] / 2;
+      sign_ = body.tools->place(k)[axis_] < middle ? -1 : 1;
+      const Vector<dim> size = body.upper - body.lower;
+      size_ = size[axis_];
+      area_ = size.prod() / size_ * body.thickness;
+    }
 }
 
 template <int dim>
@@ -113,6 +134,13 @@ template <int dim>
 Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 {
   Reading r;
+  if (tool_ >= 0) {
+    const ToolReading<dim> tool = body.tools->read(tool_);
+    r.load = sign_ * tool.force[component_];
+    r.stress = r.load / area_;
+    r.displacement = sign_ * tool.displacement[component_];
+    r.strain = r.displacement / size_;
+  }
   if (load_ < 0)
     return r;
   if (body.force())

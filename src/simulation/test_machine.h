@@ -13,7 +13,8 @@ struct Reading
   double strain = 0;       // elongation over the specimen's size
 };
 
-/// Reads the first load that has a component: its largest one is the axis of the test.
+/// Reads the first load that has a component: its largest one is the axis of the test. Without such
+/// a load it reads the first tool that is driven, its force and its way.
 /// On a side with a name of its own the axis is that of the component, the area that of the box
 /// around the specimen across it, and the displacement is against the load in the other half.
 /// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
@@ -26,7 +27,7 @@ public:
 
   Reading read(const CoupledBody<dim> &body, double time) const;
 
-  bool has_load() const { return load_ >= 0; }
+  bool has_load() const { return load_ >= 0 || tool_ >= 0; }
   /// The load answers a prescribed motion: it falls when nothing carries it any more.
   bool is_answer() const { return is_answer_; }
   /// Component of the measured force, 0 for x.
@@ -38,7 +39,10 @@ private:
   double side_displacement(const CoupledBody<dim> &body, int side, double time) const;
   double load_displacement(const CoupledBody<dim> &body, int load, double time) const;
 
+  void look_for_tool(const CoupledBody<dim> &body);
+
   int load_ = -1; // index of the load that is read
+  int tool_ = -1; // likewise
   int component_ = 0, axis_ = 0;
   bool is_named_ = false; // a side with a name of its own: the axis is that of its component
   int opposite_ = -1;     // then: the load in the other half of the body, -1: it rests

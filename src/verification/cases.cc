@@ -5,6 +5,7 @@
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
 #include "src/verification/cases/lab.h"
+#include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -43,6 +44,12 @@ std::vector<Case> all_cases()
   add(static_run_cases());
   add(lab_gauges_cases());
   add(lab_cases());
+  add(lab_general_cells_cases());
+  add(lab_hertz_cases());
+  add(lab_shapes_cases());
+  add(lab_kirsch_cases());
+  add(lab_oblique_cases());
+  add(lab_ring_cases());
   add(random_scene_cases());
   return cases;
 }

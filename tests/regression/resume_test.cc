@@ -42,6 +42,12 @@ const std::string torn = R"({
     {"name": "tip", "kind": "crack_tip", "points": [[0, 0]], "direction": [1, 0], "smoothing": 20},
     {"name": "pieces", "kind": "fragments"}
   ],
+  "tools": [
+    {"name": "ball", "shape": "ball", "radius": 6, "place": [-18.05, 4], "mass": 60, "inertia": 900,
+     "initial_velocity": [8e-4, 4e-4], "friction": 0.4},
+    {"name": "stamp", "shape": "plate", "size": [3, 2], "place": [13.505, -6], "velocity": [-5e-5, 5e-5],
+     "friction": 0.3}
+  ],
   "time": {"duration": 400},
   "output": {
     "history_interval": 1.7, "field_interval": 50, "progress_interval": 1000,

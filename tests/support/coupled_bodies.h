@@ -54,6 +54,8 @@ struct CoupledBodiesParameters
   std::function<std::unique_ptr<particles::ParticleForce<dim>>(
       const particles::Particles<dim> &, std::unique_ptr<particles::ParticleForce<dim>>)>
       replace_law;
+  /// Changes the far field's mesh before anything knows it; empty: leaves it.
+  std::function<void(fem::Mesh<dim> &)> change_mesh;
 };
 
 template <int dim>
@@ -104,7 +106,10 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
   fem::Body<dim> material;
   material.stiffness = p.material.template elastic_constants<dim>().stiffness;
   material.density = p.material.density;
-  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material,
+  fem::Mesh<dim> far = fem::make_mesh(mesh);
+  if (p.change_mesh)
+    p.change_mesh(far);
+  body.far = std::make_unique<fem::FemSolver<dim>>(std::move(far), material,
                                                    std::vector<core::BoundaryLoad<dim>>());
   auto bodies = body.bodies();
   const auto timed = [&](auto &&set_up) {

@@ -8,7 +8,10 @@ template <int dim>
 ForceGauge<dim>::ForceGauge(const GaugeParameters &gauge, const CoupledBody<dim> &body)
     : name_(gauge.name)
 {
-  for (int l = 0; l < int(body.loads.size()); ++l)
+  for (int k = 0; body.tools && k < body.tools->size(); ++k)
+    if (body.tools->name(k) == gauge.tool)
+      tool_ = k;
+  for (int l = 0; tool_ < 0 && l < int(body.loads.size()); ++l)
     if (gauge.load >= 0 ? l == gauge.load : body.loads[l].boundary == gauge.side)
       loads_.push_back(l);
 }
@@ -32,6 +35,8 @@ void ForceGauge<dim>::read(GaugeLook<dim> &look, double *values)
     if (look.body.far)
       force += look.body.far->reaction(load);
   }
+  if (tool_ >= 0)
+    force = look.body.tools->read(tool_).force;
   for (int c = 0; c < dim; ++c)
     values[c] = force[c];
 }
@@ -39,6 +44,8 @@ void ForceGauge<dim>::read(GaugeLook<dim> &look, double *values)
 template <int dim>
 std::string ForceGauge<dim>::description() const
 {
+  if (tool_ >= 0)
+    return fmt::format("of /tools/{} on the body", tool_);
   std::string list;
   for (const int load : loads_)
     list += fmt::format("{}/loads/{}", list.empty() ? "" : ", ", load);

@@ -5,7 +5,7 @@
 
 namespace ligament::program
 {
-/// In N, as it acts on the body: of a load, or of all loads on a side.
+/// In N, as it acts on the body: of a load, of all loads on a side, or of a tool.
 template <int dim>
 class ForceGauge : public Gauge<dim>
 {
@@ -19,5 +19,6 @@ public:
 private:
   std::string name_;
   std::vector<int> loads_;
+  int tool_ = -1;
 };
 } // namespace ligament::program

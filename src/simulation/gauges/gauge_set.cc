@@ -7,6 +7,7 @@
 #include "src/simulation/gauges/fragments.h"
 #include "src/simulation/gauges/j_integral.h"
 #include "src/simulation/gauges/point_gauges.h"
+#include "src/simulation/gauges/tool_gauge.h"
 
 #include <fmt/format.h>
 
@@ -45,21 +46,30 @@ std::unique_ptr<Gauge<dim>> make_gauge(const GaugeParameters &gauge, const Gauge
 template <int dim>
 GaugeSet<dim>::GaugeSet(const Scene &scene, const CoupledBody<dim> &body)
 {
+  for (int k = 0; body.tools && k < body.tools->size(); ++k)
+    add(body.tools->name(k), "tool", std::make_unique<ToolGauge<dim>>(k, body));
   if (scene.gauges.empty())
     return;
   const GaugePlaces<dim> places(scene, body);
   for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
     const GaugeParameters &gauge = scene.gauges[k];
-    gauges_.push_back(core::at_key(fmt::format("/gauges/{}", k), "move it",
-                                   [&] { return make_gauge<dim>(gauge, places); }));
-    GaugeEntry entry{
-        gauge.name, words(gauge.kind)[std::size_t(gauge.kind)], {}, gauges_.back()->description()};
-    for (const Column &column : gauges_.back()->columns()) {
-      entry.columns.push_back(column.name);
-      columns_.push_back(column);
-    }
-    entries_.push_back(std::move(entry));
+    add(gauge.name, words(gauge.kind)[std::size_t(gauge.kind)],
+        core::at_key(fmt::format("/gauges/{}", k), "move it",
+                     [&] { return make_gauge<dim>(gauge, places); }));
   }
+}
+
+template <int dim>
+void GaugeSet<dim>::add(const std::string &name, const std::string &kind,
+                        std::unique_ptr<Gauge<dim>> gauge)
+{
+  GaugeEntry entry{name, kind, {}, gauge->description()};
+  for (const Column &column : gauge->columns()) {
+    entry.columns.push_back(column.name);
+    columns_.push_back(column);
+  }
+  entries_.push_back(std::move(entry));
+  gauges_.push_back(std::move(gauge));
 }
 
 template <int dim>

@@ -25,6 +25,8 @@ public:
   void write(const CoupledBody<dim> &body, const RunFolder &folder);
 
 private:
+  void add(const std::string &name, const std::string &kind, std::unique_ptr<Gauge<dim>> gauge);
+
   std::vector<std::unique_ptr<Gauge<dim>>> gauges_;
   std::vector<Column> columns_;
   std::vector<GaugeEntry> entries_;

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include <cmath>
 

@@ -6,6 +6,8 @@
 #include "src/scene/geometry.h"
 #include "src/simulation/coupled_body.h"
 
+#include <Eigen/LU>
+
 #include <optional>
 
 namespace ligament::program

@@ -1,6 +1,7 @@
 // One cell of any convex shape: its map, shares, stiffness, quality, and finding it in a mesh.
 #include "core/check.h"
-#include "tests/unit/fem/distorted.h"
+#include "tests/support/distorted_meshes.h"
+#include "tests/unit/fem/meshes.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -3,7 +3,8 @@
 #include "core/check.h"
 #include "fem/fem_solver.h"
 #include "fem/part_shares.h"
-#include "tests/unit/fem/distorted.h"
+#include "tests/support/distorted_meshes.h"
+#include "tests/unit/fem/meshes.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

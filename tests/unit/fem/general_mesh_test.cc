@@ -3,7 +3,8 @@
 #include "core/check.h"
 #include "fem/cell_kernel.h"
 #include "fem/fem_solver.h"
-#include "tests/unit/fem/distorted.h"
+#include "tests/support/distorted_meshes.h"
+#include "tests/unit/fem/meshes.h"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

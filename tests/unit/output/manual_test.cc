@@ -43,7 +43,7 @@ TEST(Manual, NamesTheColumnsOfTheHistory)
 {
   const std::string text = section("history.csv");
   for (const int dimension : {2, 3})
-    for (const Column &column : history_columns(dimension, true)) {
+    for (const Column &column : history_columns(dimension, true, true)) {
       expect_named(text, column.name);
       if (column.name != "crack_length")
         expect_unit(text, column.name, column.unit);

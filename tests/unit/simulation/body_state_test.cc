@@ -70,6 +70,8 @@ private:
   {
     auto bodies = body_.bodies();
     body_.coupler->compute_forces(bodies, now_);
+    if (body_.tools)
+      body_.tools->act(bodies, now_, body_.coupler->step_ratio());
   }
   void let_rest()
   {
@@ -290,6 +292,34 @@ TEST(BodyState, ABreakingBarGoesOnToTheLastBit)
   for (const auto &error : result.errors)
     ADD_FAILURE() << core::to_string(error);
   expect_same_course<3>(result.scene.value(), 60, 200, 5);
+}
+
+// A wedge opens a crack, with friction; a ball at a spring presses from the side, another flies in.
+const std::string three_tools = R"(/tools=[
+  {"name": "wedge", "shape": "wedge", "points": [[0, 0], [-30, 6], [-30, -6]], "orientation": 3.14159265,
+   "place": [12.1, 0.2], "velocity": [-0.03, 0], "friction": 0.3},
+  {"name": "ball", "shape": "ball", "radius": 9, "place": [-21.1, 21], "mass": 60, "inertia": 2000,
+   "machine_stiffness": 0.05, "displacement": [1.5, 0], "ramp": 100, "friction": 0.4},
+  {"name": "shot", "shape": "plate", "size": [6, 3], "place": [3, 62], "mass": 20,
+   "initial_velocity": [0.01, -0.03], "friction": 0.2, "release": 120}])";
+
+TEST(BodyState, ToolsGoOnToTheLastBit)
+{
+  // The control of the regime is no part of the body: it changes nothing here.
+  const std::vector<std::string> brittle = {
+      R"(/material/fracture={"criterion": "maximum_tension", "strength": 4e-3})",
+      "/material/friction=0.3",
+      "/coupling/step_ratio=2",
+      "/time/duration=300",
+      "/coupling/regime=corotated",
+      three_tools};
+  for (const auto &kind : {std::vector<std::string>{}, std::vector<std::string>{"/far_field=none"}})
+  {
+    SCOPED_TRACE(kind.size());
+    expect_same_course<2>(small_scene(brittle + kind), 40, 160, 5);
+  }
+  expect_same_course<2>(small_scene({"/discrete_zone=none", "/time/duration=700", three_tools}), 40,
+                        600, 0);
 }
 
 TEST(BodyState, RandomPackingsOfTwoMaterialsGoOnToTheLastBit)

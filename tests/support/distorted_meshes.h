@@ -3,9 +3,9 @@
 
 #include "fem/cell_map.h"
 #include "fem/cell_quality.h"
-#include "tests/unit/fem/meshes.h"
 
 #include <algorithm>
+#include <random>
 
 namespace ligament::fem
 {
