@@ -76,6 +76,39 @@ std::optional<Box> box_of(const Scene &scene, const LoadParameters &load)
   return scene.dimension == 2 ? box_of<2>(scene, load) : box_of<3>(scene, load);
 }
 
+/// Boxes around pieces of the loaded part: those of slanted faces are short, so that the boxes are
+/// near to them.
+template <int dim>
+std::vector<Box> pieces_of(const Scene &scene, const LoadParameters &load)
+{
+  constexpr int n = 16;
+  const auto part = part_with_area<dim>(scene, load);
+  std::vector<Box> pieces;
+  for (const auto &face : faces_of<dim>(scene.specimen, load.boundary)) {
+    const auto clipped = part.clip(face);
+    const bool is_slanted = axis_across(load, dim) < 0 && dim == 2 && clipped.size() == 2;
+    for (int k = 0; k < (is_slanted ? n : 1) && !clipped.empty(); ++k) {
+      std::vector<Point> points;
+      for (std::size_t c = 0; c < clipped.size(); ++c) {
+        const Vector<dim> x =
+            is_slanted
+                ? Vector<dim>(clipped[0] + double(k + int(c)) / n * (clipped[1] - clipped[0]))
+                : clipped[c];
+        Point p = {0, 0, 0};
+        std::copy(x.data(), x.data() + dim, p.begin());
+        points.push_back(p);
+      }
+      pieces.push_back(bounding_box(points));
+    }
+  }
+  return pieces;
+}
+
+std::vector<Box> pieces_of(const Scene &scene, const LoadParameters &load)
+{
+  return scene.dimension == 2 ? pieces_of<2>(scene, load) : pieces_of<3>(scene, load);
+}
+
 /// Up to which value at most `most` the condition holds, if it does at 0.
 template <typename Holds>
 double largest(double most, Holds &&holds)
@@ -222,29 +255,31 @@ void check_part(const Scene &scene, const LoadParameters &load, const std::strin
 void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &f)
 {
-  const auto part = box_of(scene, load);
   const int axis = axis_across(load, scene.dimension);
-  if (!part || !layout.coupled || (axis >= 0 && layout.coupled_side[load.boundary]))
+  if (!layout.coupled || (axis >= 0 && layout.coupled_side[load.boundary]))
     return;
-  const Vector<3> lower(part->lower.data()), upper(part->upper.data());
   const auto zone = zone_shape<3>(scene);
   const double tolerance = 1e-9 * layout.cell_size;
   // Within the zone: off the overlap and the cells that reach into it. Beside it: off the
   // transition, whose cells the coupler has.
   const double margin_inside = layout.overlap + 2 * scene.zone.spacing,
                margin_beside = (scene.coupling.transition_cells + 1) * layout.cell_size;
-  const double inside = largest(margin_inside, [&](double margin) {
-    return zone.eroded(margin).covers(lower, upper, tolerance);
-  });
-  const double beside = largest(margin_beside, [&](double margin) {
-    Vector<3> far = Vector<3>::Constant(margin);
-    if (axis >= 0)
-      far[axis] = 0;
-    return !zone.meets(lower - far, upper + far, tolerance);
-  });
-  if (inside == margin_inside || beside == margin_beside)
+  double missing = 0; // of the piece of the side that lies worst
+  for (const Box &piece : pieces_of(scene, load)) {
+    const Vector<3> lower(piece.lower.data()), upper(piece.upper.data());
+    const double inside = largest(margin_inside, [&](double margin) {
+      return zone.eroded(margin).covers(lower, upper, tolerance);
+    });
+    const double beside = largest(margin_beside, [&](double margin) {
+      Vector<3> far = Vector<3>::Constant(margin);
+      if (axis >= 0)
+        far[axis] = 0;
+      return !zone.meets(lower - far, upper + far, tolerance);
+    });
+    missing = std::max(missing, std::min(margin_inside - inside, margin_beside - beside));
+  }
+  if (missing == 0)
     return;
-  const double missing = std::min(margin_inside - inside, margin_beside - beside);
   f.error(key + "/boundary",
           fmt::format("\"boundary\" in {}: the loaded part of the side \"{}\" is too near to the "
                       "end of the overlap there",
