@@ -105,7 +105,7 @@ double kinetic_energy(const CoupledBody<2> &body)
 /// transition.
 double energy_left(WaveKind kind, double direction)
 {
-  const double orientation = 11 * M_PI / 180, far_width = 7 * width;
+  const double orientation = 11 * M_PI / 180, far_width = 7.6 * width;
   Scene scene = unit_scene(2, {2 * (reach + far_width), 2 * (reach + far_width), 0}, nu);
   add_far_field(scene, {2 * reach, 2 * reach, 0}, cell_size);
   scene.zone.orientation[0] = orientation;
