@@ -47,6 +47,7 @@ public:
     find_neighbours();
     keep_cells();
     find_borders();
+    give_up_lines();
     copy_kept();
     for (auto &chain : chains())
       add_layer(chain);
@@ -85,6 +86,7 @@ private:
   void keep_cells();
   bool has_pinch();
   void find_borders();
+  void give_up_lines();
   void copy_kept();
   std::vector<Chain> chains();
   void add_layer(const Chain &chain);
@@ -93,7 +95,7 @@ private:
 
   const Mesh<2> &mesh_;
   const core::Solid<2> &outline_;
-  const SlantedSides sides_;
+  SlantedSides sides_;
   /// Of the halves of each face: the cell behind it, -1: none.
   std::vector<std::array<std::array<int, 2>, 4>> neighbour_;
   std::map<std::pair<int, int>, int> boundary_; // of faces that the mesh has on its boundary
@@ -200,6 +202,40 @@ void Fit::find_borders()
     }
 }
 
+/// Sides on lines of the mesh that no cell borders on, as between slanted ones of a round hole, are
+/// followed like these.
+void Fit::give_up_lines()
+{
+  const auto &facets = outline_.facets();
+  std::vector<char> has_cells(facets.size(), 0);
+  for (const Face &face : borders_)
+    if (const auto foot = outline_.nearest(middle(face.cell, face.face));
+        foot.distance <= 1e-6 * mesh_.cell_size[face.cell].minCoeff())
+      has_cells[foot.facet] = 1;
+  // Facets of one straight side lie behind each other.
+  std::vector<int> from(outline_.vertices().size(), -1);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    from[facets[f].edges[0][0]] = int(f);
+  const auto goes_on = [&](int f) {
+    const int next = from[facets[f].edges[0][1]];
+    const bool is_same =
+        !sides_.is_slanted(next) && outline_.normal(f).dot(outline_.normal(next)) > 1 - 1e-9;
+    return is_same ? next : -1;
+  };
+  for (bool changed = true; changed;) { // a side has cells where one of its facets has
+    changed = false;
+    for (int f = 0; f < int(facets.size()); ++f)
+      if (!sides_.is_slanted(f))
+        if (const int next = goes_on(f); next >= 0 && has_cells[f] != has_cells[next]) {
+          has_cells[f] = has_cells[next] = 1;
+          changed = true;
+        }
+  }
+  for (int f = 0; f < int(facets.size()); ++f)
+    if (!sides_.is_slanted(f) && !has_cells[f])
+      sides_.add(f);
+}
+
 void Fit::copy_kept()
 {
   std::vector<char> used(mesh_.n_nodes(), 0);
@@ -290,14 +326,14 @@ void Fit::add_layer(const Chain &chain)
   OutlinePath path(
       outline_, [&](int facet) { return sides_.is_slanted(facet); }, places, outside,
       chain.is_closed);
-  // Where the outline leaves a line of the mesh hardly bent, a cell has no corner for it: the last
-  // node on the line then is the first one of the layer.
+  // Where the outline leaves a line of the mesh hardly bent or inwards, a cell has no corner for
+  // it: the last node on the line then moves there and is the first one of the layer.
   const auto turns_right = [&](int k) {
     const Vector<2> u = places[k] - places[k - 1], v = places[k + 1] - places[k];
     return u[0] * v[1] - u[1] * v[0] < -0.5 * u.norm() * v.norm();
   };
-  const bool joins_start = !chain.is_closed && n > 3 && path.begins_smoothly() && turns_right(1);
-  const bool joins_end = !chain.is_closed && n > 3 && path.ends_smoothly() && turns_right(n - 2);
+  const bool joins_start = !chain.is_closed && n > 3 && !path.begins_outward() && turns_right(1);
+  const bool joins_end = !chain.is_closed && n > 3 && !path.ends_outward() && turns_right(n - 2);
   const int first = joins_start, end = n - joins_end; // nodes of the chain that the layer joins
   places.assign(places.begin() + first, places.begin() + end);
   outside.assign(outside.begin() + first, outside.begin() + end);

@@ -90,8 +90,8 @@ OutlinePath::OutlinePath(const core::Solid<2> &outline, const std::function<bool
   boundary_behind_ = outline.facets()[facet].boundary;
   if (is_closed)
     return;
-  begins_smoothly_ = !is_corner(links.before[first], first);
-  ends_smoothly_ = !is_corner(facets_.back(), facet);
+  begins_outward_ = turn(links.before[first], first) > corner;
+  ends_outward_ = turn(facets_.back(), facet) > corner;
   // An open chain begins on the line that leads to the path, and ends on the one behind it.
   const double reach = 6 * (places.size() > 1 ? (places[1] - places[0]).norm() : length);
   for (const auto &[x, end] :
@@ -138,17 +138,17 @@ double OutlinePath::nearest(const Vector<2> &x) const
   return best;
 }
 
-bool OutlinePath::is_corner(int facet, int next) const
+double OutlinePath::turn(int facet, int next) const
 {
   const Vector<2> &n = outline_.normal(facet), &m = outline_.normal(next);
-  return std::abs(std::atan2(n[0] * m[1] - n[1] * m[0], n.dot(m))) > corner;
+  return std::atan2(n[0] * m[1] - n[1] * m[0], n.dot(m));
 }
 
 std::vector<double> OutlinePath::corners() const
 {
   std::vector<double> places;
   for (std::size_t k = is_closed_ ? 0 : 1; k < facets_.size(); ++k)
-    if (is_corner(facets_[k == 0 ? facets_.size() - 1 : k - 1], facets_[k]))
+    if (std::abs(turn(facets_[k == 0 ? facets_.size() - 1 : k - 1], facets_[k])) > corner)
       places.push_back(start_[k]);
   return places;
 }

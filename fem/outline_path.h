@@ -33,9 +33,10 @@ public:
   int boundary_at(double place) const;
   int boundary_before() const { return boundary_before_; } // of the side that leads to the path
   int boundary_behind() const { return boundary_behind_; }
-  /// Whether an open path leaves the side before it, or meets the one behind it, at no corner.
-  bool begins_smoothly() const { return begins_smoothly_; }
-  bool ends_smoothly() const { return ends_smoothly_; }
+  /// Whether the body has a corner that sticks out where an open path leaves the side before it, or
+  /// meets the one behind it.
+  bool begins_outward() const { return begins_outward_; }
+  bool ends_outward() const { return ends_outward_; }
   bool holds(double place) const { return is_closed_ || (place > 0 && place < length()); }
   double length() const { return start_.back(); }
 
@@ -51,7 +52,7 @@ private:
   double badness(const std::vector<Vector<2>> &places, const std::vector<double> &place) const;
   double nearest(const Vector<2> &x) const;
   std::size_t side_at(double &place) const;
-  bool is_corner(int facet, int next) const;
+  double turn(int facet, int next) const; // rad, to the left
   std::vector<double> corners() const;
 
   const core::Solid<2> &outline_;
@@ -59,6 +60,6 @@ private:
   std::vector<int> facets_;
   std::vector<double> start_; // m, of each facet, and the end of the last one
   int boundary_before_ = 0, boundary_behind_ = 0;
-  bool begins_smoothly_ = false, ends_smoothly_ = false;
+  bool begins_outward_ = false, ends_outward_ = false;
 };
 } // namespace ligament::fem

@@ -95,7 +95,7 @@ void leave_out_unused(const GaugeParameters &gauge, nlohmann::ordered_json &json
   // What was left open by saying something else would be doubted like a contradiction.
   for (const auto &[name, is_open] :
        {std::pair("points", gauge.points.empty()), std::pair("load", gauge.load < 0),
-        std::pair("side", !gauge.side.has_value()), std::pair("tool", gauge.tool.empty())})
+        std::pair("side", gauge.side_name.empty()), std::pair("tool", gauge.tool.empty())})
     if (is_open)
       json.erase(name);
   const bool has_point = !gauge.points.empty();

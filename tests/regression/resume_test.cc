@@ -43,9 +43,9 @@ const std::string torn = R"({
     {"name": "pieces", "kind": "fragments"}
   ],
   "tools": [
-    {"name": "ball", "shape": "ball", "radius": 6, "place": [-18.2, 4], "mass": 60, "inertia": 900,
-     "initial_velocity": [0.02, 0.01], "friction": 0.4},
-    {"name": "stamp", "shape": "plate", "size": [3, 2], "place": [13.1, -6], "velocity": [-2e-3, 1e-3],
+    {"name": "ball", "shape": "ball", "radius": 6, "place": [-18.05, 4], "mass": 60, "inertia": 900,
+     "initial_velocity": [8e-4, 4e-4], "friction": 0.4},
+    {"name": "stamp", "shape": "plate", "size": [3, 2], "place": [13.505, -6], "velocity": [-5e-5, 5e-5],
      "friction": 0.3}
   ],
   "time": {"duration": 400},

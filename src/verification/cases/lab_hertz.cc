@@ -142,7 +142,7 @@ std::vector<Result> ball_and_sizes(const std::string &name)
   // The cylinder with half the spacing, and in a block of twice the size: what each of them does.
   add_results<2>(name + "/fine_", block(2, {480, 240, 0}, 2000, 1), results);
   add_results<2>(name + "/large_", block(2, {480, 240, 0}, 1000, 0.5), results);
-  add_results<3>(name + "/fcc_", block(3, {64, 44, 64}, 400, 0.25), results);
+  add_results<3>(name + "/fcc_", block(3, {64, 44, 64}, 400, 0.5), results);
   return results;
 }
 } // namespace

@@ -179,6 +179,25 @@ TEST(FitOutline, RandomOutlinesAreFilledOrRefused)
   EXPECT_GT(n_made, n_drawn * 9 / 10);
 }
 
+// The sides of a coarse polygon along x and y are long enough for lines of the mesh, but no cell is
+// left beside them.
+TEST(FitOutline, HolesOfFewSidesAreFollowed)
+{
+  for (const int n : {4, 8, 12}) {
+    Polygon hole;
+    for (int k = 0; k < n; ++k) {
+      const double angle = -2 * M_PI * (k + 0.5) / n;
+      hole.push_back({{10.3 + 4 * std::cos(angle), 10.1 + 4 * std::sin(angle)}, 8});
+    }
+    const auto outline = solid_of({box({0, 0}, {20, 20}), hole});
+    const auto mesh = make_mesh(parameters(outline, 0.5));
+    expect_closed(mesh);
+    EXPECT_NEAR(area(mesh) / outline->volume(), 1, 0.01) << n;
+    EXPECT_NEAR(surfaces(mesh).at(8) / (2 * n * 4 * std::sin(M_PI / n)), 1, 0.02) << n;
+    require_convex(mesh);
+  }
+}
+
 TEST(FitOutline, GradedCellsFollowAHoleAndLeaveTheZoneOut)
 {
   const auto outline =
