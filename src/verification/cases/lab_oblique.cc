@@ -60,14 +60,15 @@ std::vector<Wave> spectrum(const dem::DemMaterial &material, WaveKind kind, doub
   return waves;
 }
 
-/// Particles of the zone follow the packet; those of the overlap and the mesh are at rest.
-void start(const std::vector<Wave> &waves, CoupledBody<2> &body)
+/// Particles of the zone follow the packet, its middle at `from`; those of the overlap and the mesh
+/// are at rest.
+void start(const std::vector<Wave> &waves, const Vector<2> &from, CoupledBody<2> &body)
 {
   const auto &overlap = *body.coupler->overlap();
   auto &state = body.zone->state;
   constexpr double amplitude = 1e-8 * wave_length;
   for (int i = 0; i < state.size(); ++i) {
-    const Vector<2> x = get(state.reference, i);
+    const Vector<2> x = get(state.reference, i) - from;
     if (overlap.member_of_particle[i] >= 0 || x.norm() > 1.2 * reach)
       continue;
     std::array<double, 3> u = {}, v = {};
@@ -102,28 +103,37 @@ double kinetic_energy(const CoupledBody<2> &body)
 }
 
 /// Share of the energy that is in the zone when the end of the packet has left overlap and
-/// transition.
+/// transition. The zone is so long that the packet meets the middle of one side, and what that
+/// throws back as the same kind of wave is still inside.
 double energy_left(WaveKind kind, double direction)
 {
-  const double orientation = 11 * M_PI / 180, far_width = 7 * width;
-  Scene scene = unit_scene(2, {2 * (reach + far_width), 2 * (reach + far_width), 0}, nu);
-  add_far_field(scene, {2 * reach, 2 * reach, 0}, cell_size);
+  const double orientation = 11 * M_PI / 180, far_width = 7.6 * width;
+  const int normal = std::abs(std::cos(direction)) >= std::abs(std::sin(direction)) ? 0 : 1;
+  const Vector<2> along = turned(Vector<2>(1, 0), direction);
+  Scene scene = unit_scene(2, {0, 0, 0}, nu);
+  const double beyond =
+      (scene.coupling.overlap_cells + scene.coupling.transition_cells) * cell_size;
+  const double way = (2 * reach + beyond) / along[normal];
+  Vector<2> half, from = Vector<2>::Zero();
+  from[1 - normal] = -along[1 - normal] * way / 2;
+  half[normal] = reach;
+  half[1 - normal] = reach - from[1 - normal];
+  for (int c = 0; c < 2; ++c)
+    scene.specimen.size[c] = 2 * (half[c] + far_width);
+  add_far_field(scene, {2 * half[0], 2 * half[1], 0}, cell_size);
   scene.zone.orientation[0] = orientation;
   scene.coupling.fine_damper = 4;
   UnitBody<2> unit(scene);
   auto &body = unit.body;
   dem::DemMaterial material;
   material.poissons_ratio = nu;
-  start(spectrum(material, kind, direction, orientation, body.dt), body);
+  start(spectrum(material, kind, direction, orientation, body.dt), from, body);
   const double before = kinetic_energy(body);
 
   const auto constants = body.force()->elastic_constants();
   const double speed = kind == WaveKind::p ? constants.wave_speed_p : constants.wave_speed_s;
-  // Its slowest side; waves that the outer sides throw back need more.
-  const double across = std::max(std::abs(std::cos(direction)), std::abs(std::sin(direction)));
-  const double beyond =
-      (scene.coupling.overlap_cells + scene.coupling.transition_cells) * cell_size;
-  const double end = (2 * reach + beyond) / (across * speed);
+  const double end = way / speed;
+  // The outer sides are heard then, by the faster waves.
   const double answer = far_width / speed + far_width / constants.wave_speed_p;
   auto bodies = body.bodies();
   coupling::StepTime step{0, 0, body.dt};
