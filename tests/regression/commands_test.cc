@@ -69,6 +69,7 @@ TEST_P(WrongCommand, IsRefused)
   const auto json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.output;
   EXPECT_EQ(json["status"], outcome.code == 2 ? "wrong input" : "failed");
+  ASSERT_TRUE(json.contains("errors"));
   EXPECT_GE(json["errors"].size(), 1u);
 }
 
@@ -99,6 +100,7 @@ TEST_P(WrongSceneThroughTheProgram, EndsWithTwoAndAnObject)
   const auto json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.output;
   EXPECT_EQ(json["status"], "wrong input");
+  ASSERT_TRUE(json.contains("errors"));
   EXPECT_EQ(int(json["errors"].size()), wrong.value("errors", 1));
   for (const auto &error : json["errors"])
     for (const char *part : {"place", "message", "remedy"})
