@@ -393,15 +393,21 @@ Mesh<dim> make_boxes(const MeshParameters<dim> &p, bool keeps_inner,
   const int levels = refines ? p.levels + extra : 0;
   Grid<dim> grid = make_grid(p, levels, std::ldexp(p.cell_size, levels - extra), lines);
   const auto inner = grid.inner;
+  std::optional<SlantedSides> sides;
+  if (p.outline)
+    sides.emplace(*p.outline, lines);
+  if (sides && levels > 0 && inner.empty() && !sides->any()) { // small cells are wanted nowhere
+    MeshParameters<dim> even = p;
+    even.levels = 0;
+    even.outline_cell_size = 0;
+    return make_boxes(even, keeps_inner, lines);
+  }
   if (keeps_inner)
     grid.inner.clear();
 
   dealii::Triangulation<dim> triangulation(
       dealii::Triangulation<dim>::limit_level_difference_at_vertices);
   make_base_mesh(grid, Index(1) << levels, triangulation);
-  std::optional<SlantedSides> sides;
-  if (p.outline)
-    sides.emplace(*p.outline, lines);
   grid.inner = inner;
   refine(grid, p, levels, extra, sides ? &*sides : nullptr, outline_level, triangulation);
   if (keeps_inner)

@@ -48,6 +48,11 @@ SlantedSides::SlantedSides(const core::Solid<2> &outline,
   }
 }
 
+bool SlantedSides::any() const
+{
+  return std::find(slanted_.begin(), slanted_.end(), 1) != slanted_.end();
+}
+
 bool SlantedSides::come_near(const Vector<2> &lower, const Vector<2> &upper, double distance) const
 {
   const Vector<2> margin = Vector<2>::Constant(distance);

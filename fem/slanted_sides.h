@@ -18,6 +18,7 @@ class SlantedSides
 public:
   SlantedSides(const core::Solid<2> &outline, const std::array<std::vector<double>, 2> &lines);
   bool is_slanted(int facet) const { return slanted_[facet]; }
+  bool any() const;
   void add(int facet) { slanted_[facet] = 1; }
   bool come_near(const Vector<2> &lower, const Vector<2> &upper, double distance) const;
 
