@@ -208,6 +208,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   if (scene.dimension == 3 && scene.specimen.outline.empty())
     result.resolved["specimen"].erase("thickness");
   locate_files(name, scene);
+  if (!scene.specimen.file.empty()) // whoever resumes the run reads it from another folder
+    result.resolved["specimen"]["file"] = std::filesystem::absolute(scene.specimen.file).string();
   complete(scene);
   result.scene = std::move(scene);
   return result;

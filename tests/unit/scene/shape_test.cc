@@ -157,6 +157,9 @@ TEST(Shape, SurfacesOfTrianglesAreRead)
   const ReadResult good = parse_scene(scene, "scene.json", {});
   ASSERT_TRUE(good.scene) << good.errors[0].message << good.errors[0].reason;
   EXPECT_NEAR(solid_of<3>(good.scene->specimen, 0.1)->volume(), 8. / 6, 1e-6);
+  // A run is resumed from the resolved scene in its own folder.
+  const ReadResult again = parse_scene(good.resolved.dump(), "elsewhere/scene.json", {});
+  EXPECT_TRUE(again.scene) << again.errors[0].message;
   stl.open(file);
   write(3);
   const ReadResult open = parse_scene(scene, "scene.json", {});
