@@ -295,12 +295,13 @@ const std::vector<std::pair<std::string, std::string>> other_scenes = {
     {"resting", " --set /time/rest_threshold=1e-5 --set /far_field=none --set /damping/local=0.2 "},
     {"mesh", " --set /discrete_zone=none --set '/specimen/cracks=[]' --set /damping/mass=1e-3 "
              "--set /time/duration=5000 --set '/gauges=[]' "},
-    {"weighted", " --set /coupling/scheme=acceleration --set /coupling/step_ratio=1 "},
+    {"weighted", " --set /coupling/scheme=acceleration --set /coupling/step_ratio=1 "
+                 "--set '/tools=[]' "},
     {"cube", " --set /dimension=3 --set '/specimen={\"size\": [10, 30, 10]}' --set /far_field=none "
              "--set '/discrete_zone={\"extent\": \"all\", \"packing\": \"fcc\", \"spacing\": 1}' "
              "--set '/loads=[{\"boundary\": \"top\", \"velocity\": [null, 2e-3, null]}, "
              "{\"boundary\": \"bottom\", \"velocity\": [null, -2e-3, null]}]' "
-             "--set /time/duration=60 --set '/gauges=[]' "}};
+             "--set /time/duration=60 --set '/gauges=[]' --set '/tools=[]' "}};
 
 TEST_F(Resume, SlowOtherScenesGoOnAsWell)
 {
