@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace ligament::fem
 {
@@ -35,6 +36,28 @@ std::array<int, 4> in_order(std::array<int, 4> quad, const std::vector<Vector<2>
   return {quad[0], quad[1], quad[3], quad[2]};
 }
 
+/// Coordinates that differ by rounding alone become equal, so that rectangles are ones.
+void align(const std::vector<std::array<int, 4>> &quads, std::vector<Vector<2>> &places)
+{
+  double shortest = 1e300;
+  for (const auto &quad : quads)
+    for (int k = 0; k < 4; ++k)
+      shortest = std::min(shortest, (places[quad[(k + 1) % 4]] - places[quad[k]]).norm());
+  std::vector<int> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (int c = 0; c < 2; ++c) {
+    std::sort(order.begin(), order.end(),
+              [&](int a, int b) { return places[a][c] < places[b][c]; });
+    double before = -1e300, value = 0;
+    for (const int i : order) {
+      if (places[i][c] - before > tolerance * shortest)
+        value = places[i][c];
+      before = places[i][c];
+      places[i][c] = value;
+    }
+  }
+}
+
 /// Whether the boxes hold the cell; throws where one of them cuts it.
 bool is_left_out(const CellVectors<2> &corners, const std::vector<InnerBox<2>> &inner)
 {
@@ -57,10 +80,12 @@ bool is_left_out(const CellVectors<2> &corners, const std::vector<InnerBox<2>> &
 }
 } // namespace
 
-Mesh<2> import_mesh(const std::vector<Vector<2>> &places,
+Mesh<2> import_mesh(const std::vector<Vector<2>> &given,
                     const std::vector<std::array<int, 4>> &quads, const core::Solid<2> &outline,
                     const std::vector<InnerBox<2>> &inner)
 {
+  std::vector<Vector<2>> places = given;
+  align(quads, places);
   Mesh<2> mesh;
   std::vector<int> number(places.size(), -1);
   for (const auto &quad : quads) {

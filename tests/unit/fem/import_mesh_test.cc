@@ -24,7 +24,7 @@ struct Quads
   {
     for (int j = 0; j <= m; ++j)
       for (int i = 0; i <= n; ++i)
-        places.emplace_back(i + (i == n ? lean * j : 0), j);
+        places.emplace_back(i + (i == n ? lean * j : 0), j + 1e-13 * (i % 3)); // as files round
     for (int j = 0; j < m; ++j)
       for (int i = 0; i < n; ++i) {
         const int a = j * (n + 1) + i;
