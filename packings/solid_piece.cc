@@ -149,7 +149,7 @@ auto SolidPiece<dim>::faces() const -> std::vector<Face>
 
 template <int dim>
 SolidPieces<dim>::SolidPieces(const core::Solid<dim> &solid, int first_id, double reach)
-    : reach_(reach), bin_(reach), lower_(solid.lower())
+    : bin_(reach), lower_(solid.lower())
 {
   const Vector<dim> size = solid.upper() - solid.lower();
   bin_ = std::max(bin_, size.maxCoeff() / (dim == 2 ? 1000 : 60));

@@ -33,7 +33,6 @@ public:
   /// Moves it all by x.
   void shift(const Vector<dim> &x);
 
-  bool is_empty() const { return faces_.empty(); }
   /// Faces of no area may be among them.
   std::vector<Face> faces() const;
   const std::vector<Vector<dim>> &vertices() const { return vertices_; } // m
@@ -65,13 +64,12 @@ public:
   /// A piece that holds all of the solid within the reach of x, about x; empty where the surface is
   /// farther.
   SolidPiece<dim> around(const Vector<dim> &x) const;
-  double reach() const { return reach_; }
 
 private:
   using Index = std::array<int, dim>;
   Index bin_of(const Vector<dim> &x) const;
 
-  double reach_, bin_;
+  double bin_; // m
   Vector<dim> lower_;
   Index n_bins_;
   std::vector<SolidPiece<dim>> piece_; // of each bin and what is within reach of it

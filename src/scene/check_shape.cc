@@ -1,6 +1,7 @@
 // The shape of the specimen: one description of it, and one that bounds a body.
 #include "core/keyed_error.h"
 #include "core/parameters/spelling.h"
+#include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 
@@ -104,6 +105,10 @@ void check_shape(const Scene &scene, Findings &f)
   if (scene.far_field && scene.far_field->cells_from_file && s.file.empty())
     f.error("/far_field/cells_from_file", "\"cells_from_file\" in /far_field without a file",
             "/specimen has no \"file\"", "add one, or remove the key");
+  if (s.body && s.body->mesh.was_second_order)
+    f.warning(section + "/file", "\"file\" in /specimen has elements of second order",
+              "their corners are taken, and straight edges between them",
+              "mesh it by first order, finer where it is curved");
   if (!f.sound({section}) || s.is_plain() || s.ball || (scene.dimension == 3 && !s.file.empty()))
     return;
   try {
