@@ -3,6 +3,7 @@
 
 #include "dem/fracture/face_tension.h"
 #include "dem/fracture/maximum_tension.h"
+#include "dem/laws/cohesive.h"
 
 #include <vector>
 
@@ -27,5 +28,17 @@ struct FractureLaw
   std::vector<double> strengths = {};
   /// m^2, thickness included: the whole face of size factors, eq. (D12b); 0: size doesn't matter.
   double whole_face = 0;
+  /// G_c in J per m^2 of projected crack, theory.md section 1.13, of each material where a body has
+  /// several; with 0 a bond breaks at once. A bond between two takes the smaller one.
+  double energy = 0;
+  std::vector<double> energies = {};
+  Softening softening = {};
+  double mode_ratio = 1; // beta: shear strength over tensile strength of a face that opens
+
+  bool softens() const
+  {
+    return energy > 0 ||
+           std::any_of(energies.begin(), energies.end(), [](double g) { return g > 0; });
+  }
 };
 } // namespace ligament::dem

@@ -9,10 +9,15 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
-      rows_(body_), slices_(body_), interfaces_(body_.bonds()), contacts_(packing, materials),
-      search_(fracture, body_, interfaces_.members()), evaluation_(body_), trial_(body_),
+      rows_(body_), slices_(body_), cohesive_(body_, fracture.softening, fracture.mode_ratio),
+      interfaces_(body_.bonds()), contacts_(packing, materials),
+      search_(fracture, body_, interfaces_.members(), cohesive_), evaluation_(body_), trial_(body_),
       energy_evaluation_(body_)
 {
+  core::require(interfaces_.empty() || !fracture.softens(),
+                "/material/fracture/energy: faces that soften need a body of one elastic material; "
+                "give the inclusions the material's \"youngs_modulus\" and \"poissons_ratio\", or "
+                "leave out \"energy\"");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
 }
@@ -50,6 +55,7 @@ void ManyBodyForce<dim>::set_coupled_edge(const Particles &p, particles::Coupled
 template <int dim>
 void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
 {
+  core::require(!fracture().softens(), "faces of a body that flows cannot soften");
   core::require(interfaces_.empty(),
                 "plastic flow needs a body of one elastic material with its whole energy");
   core::require(!rest_ || rest_->is_exact(), "what is held at rest by a threshold could yield");
@@ -101,6 +107,18 @@ void ManyBodyForce<dim>::find_forces(Particles &p, Evaluation<dim> &e) const
 }
 
 template <int dim>
+void ManyBodyForce<dim>::find_forces_of_step(Particles &p)
+{
+  Evaluation<dim> &e = evaluation_;
+  find_other_pressures(p, e);
+  cohesive_.open(p, time_, e);
+  rows_.set_forces(p, e);
+  for (const auto *part : parts_)
+    part->add_forces(p, e);
+  clear_forces_at_rest(p, e);
+}
+
+template <int dim>
 void ManyBodyForce<dim>::add_contacts(Particles &p)
 {
   if (contacts_.all().empty())
@@ -142,16 +160,19 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   surface_.wake(rest_);
   search_.ask(evaluation_, flow_);
   flow_.ask(evaluation_);
-  find_forces(p, evaluation_);
+  find_forces_of_step(p);
   flow(p);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   surface_.book_work(p, evaluation_);
-  if (broken_.have_broken_at(time))
+  if (broken_.have_broken_at(time) || began_at_ == time)
     return;
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
-  break_bonds(p, search_.exceeding_bonds(state));
+  std::vector<BondId> breaking = cohesive_.torn();
+  const auto at_once = begin_softening(p, search_.exceeding_bonds(state));
+  breaking.insert(breaking.end(), at_once.begin(), at_once.end());
+  break_bonds(p, breaking);
 }
 
 template <int dim>

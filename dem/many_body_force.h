@@ -7,6 +7,7 @@
 #include "dem/fracture/broken_bonds.h"
 #include "dem/fracture_law.h"
 #include "dem/interfaces.h"
+#include "dem/parts/cohesive_faces.h"
 #include "dem/parts/contact_forces.h"
 #include "dem/parts/plastic_flow.h"
 #include "dem/parts/row_bonds.h"
@@ -109,6 +110,9 @@ public:
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return broken_.energy(); }
+  /// Energy in J that opened faces which soften.
+  double cohesive_work() const { return cohesive_.work(); }
+  const CohesiveFaces<dim> &cohesive() const { return cohesive_; }
   /// Energy in J by which the leap-frog's invariant fell because forces jumped, theory.md (E10):
   /// where bonds broke, and where contacts opened or closed. Belongs to the energy balance; second
   /// order in the step.
@@ -156,6 +160,8 @@ private:
   void find_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Pressures; overwrites forces and torques by those of all parts but contacts.
   void find_forces(Particles &particles, Evaluation<dim> &evaluation) const;
+  /// The same of the step's own evaluation: faces that soften open first.
+  void find_forces_of_step(Particles &particles);
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
@@ -169,6 +175,8 @@ private:
   /// leap-frog's kinetic energy has of the forces: adds it, or its negative.
   void add_flowing_energy(const Particles &particles, int sign, core::ExactSum &sum);
 
+  /// Returns those that break at once; the others soften from now on.
+  std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
   /// Particles whose forces these bonds enter, by the pressures of others, too; ascending. Without
   /// those that a threshold holds at rest.
@@ -194,10 +202,12 @@ private:
   RowBonds<dim> rows_;
   SliceBonds<dim> slices_;
   PlasticFlow<dim> flow_;
+  CohesiveFaces<dim> cohesive_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
   /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
-  std::vector<ForcePart<dim> *> parts_ = {&slices_, &surface_, &flow_, &interfaces_, &contacts_};
+  std::vector<ForcePart<dim> *> parts_ = {&slices_,   &surface_,    &flow_,
+                                          &cohesive_, &interfaces_, &contacts_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_;               // of the last compute()
@@ -208,5 +218,6 @@ private:
   mutable std::vector<double> energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
   double time_ = 0, last_time_ = 0; // s
+  double began_at_ = -1;            // s, softening of faces, last
 };
 } // namespace ligament::dem

@@ -44,8 +44,8 @@ void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particle
 
 template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
-                              std::vector<int> at_interfaces)
-    : law_(law), at_interfaces_(std::move(at_interfaces))
+                              std::vector<int> at_interfaces, const CohesiveFaces<dim> &softening)
+    : law_(law), softening_(softening), at_interfaces_(std::move(at_interfaces))
 {
   reset(body);
 }
@@ -94,6 +94,13 @@ double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materi
 }
 
 template <int dim>
+double BreakSearch<dim>::energy_of(const Bond<dim> &b, const Materials &materials) const
+{
+  const auto &of = law_.energies;
+  return of.empty() ? law_.energy : std::min(of[materials.number(b.i)], of[materials.number(b.j)]);
+}
+
+template <int dim>
 BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
 {
   double least = law_.strength;
@@ -134,7 +141,7 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
   const double normal = t.traction.dot(t.normal);
-  if (normal <= 0 || !state.body().edge().may_break(b))
+  if (normal <= 0 || !state.body().edge().may_break(b) || softening_.has(b, p))
     return t;
   const double shear = (t.traction - normal * t.normal).norm();
   t.utilisation = size_factor(b) * (normal + criterion().tangent * shear) /
@@ -224,6 +231,11 @@ BreakSearch<dim>::suspected_bonds(const StressedBody<dim> &state) const
     test_bonds_of(i, false, [&](int k) { return std::binary_search(few.begin(), few.end(), k); });
   bonds.for_each_interface(test);
   const auto none = [](int) { return false; };
+  if (noted.own_terms) // stresses of the kernels don't know openings
+    for (const int i : softening_.particles()) {
+      test_bonds_of(i, true, none);
+      test_bonds_of(i, false, none);
+    }
   if (state.flow.has_flowed()) // the kernels don't know plastic strains
     for (const RowRange &range : state.flow.blocks()->around_plastic())
       for (int i = range.begin; i < range.end; ++i) {

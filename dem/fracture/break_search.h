@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dem/fracture_law.h"
+#include "dem/parts/cohesive_faces.h"
 #include "dem/stress_screen.h"
 #include "dem/stressed_body.h"
 
@@ -26,8 +27,10 @@ class BreakSearch
 public:
   using Particles = particles::Particles<dim>;
 
-  /// Particles `at_interfaces` have bonds to another material.
-  BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces);
+  /// Particles `at_interfaces` have bonds to another material. Faces that soften have broken as far
+  /// as the search knows.
+  BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces,
+              const CohesiveFaces<dim> &softening);
 
   const FractureLaw &law() const { return law_; }
   bool can_break() const { return law_.criterion != FractureLaw::Criterion::none; }
@@ -65,6 +68,8 @@ public:
 
   /// The bond no longer carries.
   void remove(const Bond<dim> &bond) { screen_.remove(bond); }
+  /// What it takes to open a bond wholly, in J per m^2 of projected crack.
+  double energy_of(const Bond<dim> &bond, const Materials &materials) const;
   /// Other bonds, or others' strengths, from now on.
   void reset(const BondedBody<dim> &body);
 
@@ -86,6 +91,7 @@ private:
                      double least) const;
 
   FractureLaw law_;
+  const CohesiveFaces<dim> &softening_;
   std::vector<int> at_interfaces_; // ascending
   double noted_share_ = 1;         // of the limit
   double largest_size_factor_ = 1; // of the bonds

@@ -1,0 +1,152 @@
+// The face that softens, theory.md section 1.13: how far it opens under what the particles around
+// it would make it bear.
+#pragma once
+
+#include "core/types.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::dem
+{
+/// What a face still bears of its strength as it opens: straight lines from 1 over one corner to 0.
+struct Softening
+{
+  /// Share of the strength at the corner, and the opening there in G_c/f_t; 1 and 0: no corner.
+  double corner_share = 1, corner_opening = 0;
+
+  /// The opening at which nothing is left, in G_c/f_t: the area below the lines is 1.
+  double reach() const
+  {
+    return corner_opening + (2 - corner_opening * (1 + corner_share)) / corner_share;
+  }
+  /// Steepest fall of the share per G_c/f_t.
+  double steepest() const
+  {
+    const double last = corner_share / (reach() - corner_opening);
+    return corner_opening > 0 ? std::max(last, (1 - corner_share) / corner_opening) : last;
+  }
+
+  /// At an opening in units of the reach, with its slope.
+  struct Share
+  {
+    double value, slope;
+  };
+  Share at(double opening) const
+  {
+    const double corner = corner_opening / reach();
+    if (opening >= 1)
+      return {0, 0};
+    if (opening < corner) {
+      const double slope = (corner_share - 1) / corner;
+      return {1 + slope * opening, slope};
+    }
+    const double slope = -corner_share / (1 - corner);
+    return {slope * (opening - 1), slope};
+  }
+};
+
+/// What a face remembers of its past.
+template <int dim>
+struct Opening
+{
+  Vector<dim> jump;   // w, m
+  double largest = 0; // kappa: the largest effective opening so far, m
+};
+
+/// Of one face. Forces are tractions times its area.
+template <int dim>
+struct CohesiveLaw
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+
+  double strength; // N, in terms of the effective traction
+  double reach;    // m, w_c
+  Softening shape;
+  double mode_ratio; // beta
+  double friction;
+
+  /// Share of the strength that is left.
+  double left(double largest) const { return shape.at(largest / reach).value; }
+  /// Share of the face that rubs.
+  double broken_share(double largest) const { return std::min(largest / reach, 1.); }
+
+  /// (t_n^2 + t_t^2/beta^2)^(1/2) of a traction times area.
+  double effective(const Vector<dim> &force, const Vector<dim> &normal) const
+  {
+    const double n = force.dot(normal);
+    return std::hypot(n, (force - n * normal).norm() / mode_ratio);
+  }
+
+  /// The opening that goes with the force F = force - stiffness w of the particles around it.
+  Opening<dim> answer(const Opening<dim> &last, const Vector<dim> &force, const Matrix &stiffness,
+                      const Vector<dim> &normal) const
+  {
+    const Matrix across = normal * normal.transpose(), along = Matrix::Identity() - across;
+    const double beta2 = mode_ratio * mode_ratio;
+    const auto open = softened(last.largest, force, stiffness, across + beta2 * along);
+    if (normal.dot(open.jump) >= 0)
+      return open;
+    // It is closed and slides, if at all.
+    Opening<dim> closed = {along * last.jump, last.largest};
+    const Vector<dim> trial = force - stiffness * closed.jump;
+    const Vector<dim> borne = along * trial - bond_stiffness(last.largest) * beta2 * closed.jump;
+    const double grip = friction * broken_share(last.largest) * std::max(-normal.dot(trial), 0.),
+                 size = borne.norm();
+    if (grip > 0 && size <= grip)
+      return closed;
+    const Vector<dim> rubs = size > 0 ? Vector<dim>(grip / size * borne) : borne;
+    return softened(last.largest, along * force - rubs,
+                    along * stiffness * along + stiffness.trace() * across, across + beta2 * along);
+  }
+
+private:
+  /// f/kappa, N/m.
+  double bond_stiffness(double largest) const
+  {
+    return largest > 0 ? strength * left(largest) / largest : 0;
+  }
+
+  /// Without contact: F - C w = (f/kappa) B w and kappa = max(kappa, |w|), |w|^2 = w.Bw. With
+  /// w = kappa y this is (kappa C + f B) y = F; 1/|y| - 1 is a straight line in kappa where C is a
+  /// multiple of B, and Newton's method starts at the last kappa.
+  Opening<dim> softened(double largest, const Vector<dim> &force, const Matrix &stiffness,
+                        const Matrix &metric) const
+  {
+    constexpr int most = 30;
+    constexpr double round_off = 1e-14;
+    double kappa = largest;
+    for (int k = 0; k < most; ++k) {
+      const auto [share, slope] = shape.at(kappa / reach);
+      if (share == 0) { // nothing is left
+        const Vector<dim> jump = stiffness.inverse() * force;
+        return {jump, std::max(kappa, std::sqrt(jump.dot(metric * jump)))};
+      }
+      const Matrix inverse = (kappa * stiffness + strength * share * metric).inverse();
+      const Vector<dim> y = inverse * force, pulled = metric * y;
+      const double size = std::sqrt(y.dot(pulled));
+      if (kappa == largest && size <= 1)
+        return {kappa * y, kappa}; // elastic, unloading or as before
+      const Vector<dim> change =
+          -inverse * (stiffness * y + strength * slope / reach * pulled); // of y with kappa
+      const double rate = -pulled.dot(change) / (size * size * size);
+      if (rate <= 0) { // more falls off than the particles around it give back
+        kappa = reach;
+        continue;
+      }
+      const double next = std::clamp(kappa - (1 / size - 1) / rate, largest, reach);
+      if (std::abs(next - kappa) <= round_off * reach)
+        return {next * y, next};
+      kappa = next;
+    }
+    return {
+        kappa *
+            Vector<dim>(
+                (kappa * stiffness + strength * shape.at(kappa / reach).value * metric).inverse() *
+                force),
+        kappa};
+  }
+};
+} // namespace ligament::dem
