@@ -3,6 +3,7 @@
 
 #include "dem/fracture/face_tension.h"
 #include "dem/fracture/maximum_tension.h"
+#include "dem/fracture/opening_tension.h"
 #include "dem/laws/cohesive.h"
 
 #include <vector>
@@ -18,6 +19,7 @@ struct FractureLaw
     static constexpr CriterionRef none{};
     static constexpr CriterionRef face_tension = dem::criterion<FaceTension>();
     static constexpr CriterionRef maximum_tension = dem::criterion<MaximumTension>();
+    static constexpr CriterionRef opening_tension = dem::criterion<OpeningTension>();
 
     constexpr Criterion(CriterionRef criterion = none) : CriterionRef(criterion) {}
   };

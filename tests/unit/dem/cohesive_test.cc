@@ -20,7 +20,7 @@ constexpr double youngs_modulus = 3e10, strength = 3e6, density = 2500;
 /// Softens with E G_c/f_t^2 of so many spacings.
 FractureLaw softening(double lengths, double spacing, const Softening &shape = {})
 {
-  FractureLaw law{FractureLaw::Criterion::maximum_tension, strength};
+  FractureLaw law{FractureLaw::Criterion::opening_tension, strength};
   law.energy = lengths * spacing * strength * strength / youngs_modulus;
   law.softening = shape;
   return law;
