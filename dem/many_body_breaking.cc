@@ -1,7 +1,6 @@
 // Breaking of bonds: energy released, contact in place of the bond.
 #include "dem/bond_law.h"
 #include "dem/many_body_force.h"
-#include "dem/principal_tension.h"
 
 #include <algorithm>
 
@@ -105,8 +104,6 @@ std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) cons
   return found;
 }
 
-// The face's share of the energy is its area as the largest principal stress sees it: that of a
-// crack across it.
 template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
                                                         const std::vector<BondId> &bonds)
@@ -122,13 +119,7 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       at_once.push_back(id);
       continue;
     }
-    const auto [first, second] = std::minmax(b.i, b.j);
-    const auto stress = state.stresses_of({first, second});
-    const Vector<dim> e1 = PrincipalTension<dim>::direction(Strain<dim>(stress[0] + stress[1]));
-    const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
-    const double area = b.area * std::abs(e1.dot(present_normal(b, turn_i, turn_j)));
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b, turn_i, turn_j)),
-                    b.weight * energy * area);
+    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
     body_.add_other_particle(b.i);
     body_.add_other_particle(b.j);
     began_at_ = time_;

@@ -29,6 +29,19 @@ struct Softening
     return corner_opening > 0 ? std::max(last, (1 - corner_share) / corner_opening) : last;
   }
 
+  /// What is left of the area below the lines, from an opening in units of the reach on; 1/reach()
+  /// from the start.
+  double area_from(double opening) const
+  {
+    const double corner = corner_opening / reach();
+    if (opening >= 1)
+      return 0;
+    if (opening >= corner)
+      return at(opening).value * (1 - opening) / 2;
+    return (at(opening).value + corner_share) * (corner - opening) / 2 +
+           corner_share * (1 - corner) / 2;
+  }
+
   /// At an opening in units of the reach, with its slope.
   struct Share
   {
@@ -54,6 +67,7 @@ struct Opening
 {
   Vector<dim> jump;   // w, m
   double largest = 0; // kappa: the largest effective opening so far, m
+  double damage = 0;  // kappa in units of the reach, as it grew
 };
 
 /// Of one face. Forces are tractions times its area.
@@ -63,15 +77,13 @@ struct CohesiveLaw
   using Matrix = Eigen::Matrix<double, dim, dim>;
 
   double strength; // N, in terms of the effective traction
-  double reach;    // m, w_c
+  double reach;    // m, w_c, of what it opens from now on
   Softening shape;
   double mode_ratio; // beta
   double friction;
 
   /// Share of the strength that is left.
-  double left(double largest) const { return shape.at(largest / reach).value; }
-  /// Share of the face that rubs.
-  double broken_share(double largest) const { return std::min(largest / reach, 1.); }
+  double left(const Opening<dim> &o) const { return shape.at(o.damage).value; }
 
   /// (t_n^2 + t_t^2/beta^2)^(1/2) of a traction times area.
   double effective(const Vector<dim> &force, const Vector<dim> &normal) const
@@ -86,67 +98,65 @@ struct CohesiveLaw
   {
     const Matrix across = normal * normal.transpose(), along = Matrix::Identity() - across;
     const double beta2 = mode_ratio * mode_ratio;
-    const auto open = softened(last.largest, force, stiffness, across + beta2 * along);
+    const auto open = softened(last, force, stiffness, across + beta2 * along);
     if (normal.dot(open.jump) >= 0)
       return open;
     // It is closed and slides, if at all.
-    Opening<dim> closed = {along * last.jump, last.largest};
+    Opening<dim> closed = {along * last.jump, last.largest, last.damage};
     const Vector<dim> trial = force - stiffness * closed.jump;
-    const Vector<dim> borne = along * trial - bond_stiffness(last.largest) * beta2 * closed.jump;
-    const double grip = friction * broken_share(last.largest) * std::max(-normal.dot(trial), 0.),
+    const Vector<dim> borne = along * trial - bond_stiffness(last) * beta2 * closed.jump;
+    const double grip = friction * std::min(last.damage, 1.) * std::max(-normal.dot(trial), 0.),
                  size = borne.norm();
     if (grip > 0 && size <= grip)
       return closed;
     const Vector<dim> rubs = size > 0 ? Vector<dim>(grip / size * borne) : borne;
-    return softened(last.largest, along * force - rubs,
+    return softened(last, along * force - rubs,
                     along * stiffness * along + stiffness.trace() * across, across + beta2 * along);
   }
 
 private:
   /// f/kappa, N/m.
-  double bond_stiffness(double largest) const
+  double bond_stiffness(const Opening<dim> &o) const
   {
-    return largest > 0 ? strength * left(largest) / largest : 0;
+    return o.largest > 0 ? strength * left(o) / o.largest : 0;
   }
 
   /// Without contact: F - C w = (f/kappa) B w and kappa = max(kappa, |w|), |w|^2 = w.Bw. With
   /// w = kappa y this is (kappa C + f B) y = F; 1/|y| - 1 is a straight line in kappa where C is a
   /// multiple of B, and Newton's method starts at the last kappa.
-  Opening<dim> softened(double largest, const Vector<dim> &force, const Matrix &stiffness,
+  Opening<dim> softened(const Opening<dim> &last, const Vector<dim> &force, const Matrix &stiffness,
                         const Matrix &metric) const
   {
     constexpr int most = 30;
     constexpr double round_off = 1e-14;
-    double kappa = largest;
+    const double end = last.largest + std::max(1 - last.damage, 0.) * reach; // nothing is left
+    const auto damage = [&](double kappa) { return last.damage + (kappa - last.largest) / reach; };
+    double kappa = last.largest;
+    Vector<dim> jump;
     for (int k = 0; k < most; ++k) {
-      const auto [share, slope] = shape.at(kappa / reach);
-      if (share == 0) { // nothing is left
-        const Vector<dim> jump = stiffness.inverse() * force;
-        return {jump, std::max(kappa, std::sqrt(jump.dot(metric * jump)))};
+      if (kappa >= end) {
+        jump = stiffness.inverse() * force;
+        return {jump, std::max(kappa, std::sqrt(jump.dot(metric * jump))),
+                std::max(last.damage, 1.)};
       }
+      const auto [share, slope] = shape.at(damage(kappa));
       const Matrix inverse = (kappa * stiffness + strength * share * metric).inverse();
       const Vector<dim> y = inverse * force, pulled = metric * y;
       const double size = std::sqrt(y.dot(pulled));
-      if (kappa == largest && size <= 1)
-        return {kappa * y, kappa}; // elastic, unloading or as before
+      jump = kappa * y;
+      if (kappa == last.largest && size <= 1)
+        break; // shut, unloading or as before
       const Vector<dim> change =
           -inverse * (stiffness * y + strength * slope / reach * pulled); // of y with kappa
       const double rate = -pulled.dot(change) / (size * size * size);
-      if (rate <= 0) { // more falls off than the particles around it give back
-        kappa = reach;
-        continue;
-      }
-      const double next = std::clamp(kappa - (1 / size - 1) / rate, largest, reach);
+      // Where more falls off than the particles around it give back, the face opens at once.
+      const double next =
+          rate > 0 ? std::clamp(kappa - (1 / size - 1) / rate, last.largest, end) : end;
       if (std::abs(next - kappa) <= round_off * reach)
-        return {next * y, next};
+        break;
       kappa = next;
     }
-    return {
-        kappa *
-            Vector<dim>(
-                (kappa * stiffness + strength * shape.at(kappa / reach).value * metric).inverse() *
-                force),
-        kappa};
+    return {jump, kappa, damage(kappa)};
   }
 };
 } // namespace ligament::dem

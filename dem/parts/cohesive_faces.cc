@@ -56,7 +56,7 @@ struct SofteningFace
   /// Share of bending and twist that is left: they fall as the face's stiffness does.
   double bending_share() const
   {
-    const double force = face.law.strength * face.law.left(face.opening.largest);
+    const double force = face.law.strength * face.law.left(face.opening);
     return force / (force + law.shear * face.opening.largest);
   }
 
@@ -102,6 +102,24 @@ double bending_product(const Bond<3> &b, const Spin<3> &u, const Spin<3> &v)
   return 2 * (b.bending * u.dot(v) + (b.twist - b.bending) * b.normal.dot(u) * b.normal.dot(v));
 }
 
+/// The crack that a face is a part of lies across the way in which it opens: its share of the
+/// energy is that of the area seen that way, eq. (D27), less what it has spent already.
+template <int dim>
+void take_direction(CohesiveFace<dim> &face, const Vector<dim> &way)
+{
+  constexpr double least = 0.3; // that of the criterion's cone
+  const double cosine = face.bond.normal.dot(way) / way.norm();
+  if (!(cosine > 0)) // shut, or not open yet
+    return;
+  const Softening &shape = face.law.shape;
+  const double energy = face.whole_energy * std::max(cosine, least),
+               whole = shape.reach() * energy / face.law.strength,
+               area = face.law.strength * shape.area_from(face.opening.damage);
+  constexpr double shortest = 0.2, longest = 2; // of the whole reach
+  if (area > 0)
+    face.law.reach = std::clamp((energy - face.spent) / area, shortest * whole, longest * whole);
+}
+
 /// visit(column, number) for all that a face remembers.
 template <int dim, typename F, typename Visit>
 void for_each_number(F &face, Visit &&visit)
@@ -114,8 +132,11 @@ void for_each_number(F &face, Visit &&visit)
   visit("reach", face.law.reach);
   vector("opening", face.opening.jump);
   visit("largest", face.opening.largest);
+  visit("damage", face.opening.damage);
   vector("last_force", face.last_force);
   vector("last_turn", face.last_turn);
+  visit("spent", face.spent);
+  visit("whole_energy", face.whole_energy);
   visit("work", face.work);
 }
 } // namespace
@@ -145,7 +166,7 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
           b,
           {0, 0, shape_, mode_ratio_, friction},
           p.global_id[b.i] == name_of(b, p)[0],
-          {Vector<dim>::Zero(), 0}};
+          {Vector<dim>::Zero()}};
 }
 
 // The strength is what the face bears now, so that nothing jumps; the reach gives the area below
@@ -157,8 +178,9 @@ void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Parti
   Face face = make(id, b, p);
   const SofteningFace<dim> now(face, p);
   face.law.strength = face.law.effective(force, now.normal);
-  face.law.reach = shape_.reach() * energy / face.law.strength;
+  face.whole_energy = energy;
   face.last_force = now.in_own_axes(force);
+  take_direction(face, face.last_force);
   face.last_turn = relative_turn(b, p);
   faces_.emplace(name_of(b, p), face);
 }
@@ -201,8 +223,11 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     double bending_share;
   };
   std::vector<Start> starts;
-  for (const auto &[name, face] : faces_)
-    starts.push_back({face.opening, SofteningFace<dim>(face, p).bending_share()});
+  for (auto &[name, face] : faces_) {
+    const double bending_share = SofteningFace<dim>(face, p).bending_share();
+    take_direction(face, face.opening.jump);
+    starts.push_back({face.opening, bending_share});
+  }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     auto start = starts.begin();
     for (auto &[name, face] : faces_) {
@@ -210,13 +235,14 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
       const int i = face.bond.i, j = face.bond.j;
       const auto stiffness = now.stiffness(lambda[i], lambda[j]);
       const Vector<dim> shut = now.force(pressure[i], pressure[j]) + stiffness * now.jump;
-      const Opening<dim> last = {now.in_space(start->opening.jump), start->opening.largest};
+      const Opening<dim> last = {now.in_space(start->opening.jump), start->opening.largest,
+                                 start->opening.damage};
       const Opening<dim> next = face.law.answer(last, shut, stiffness, now.normal);
       const Vector<dim> opened = next.jump - now.jump;
       const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
       pressure[i] += to_i, e.pressure[i] += to_i;
       pressure[j] += to_j, e.pressure[j] += to_j;
-      face.opening = {now.in_own_axes(next.jump), next.largest};
+      face.opening = {now.in_own_axes(next.jump), next.largest, next.damage};
       ++start;
     }
   }
@@ -230,6 +256,9 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     const double taken = 0.5 * (face.last_force + force).dot(opened) +
                          (start->bending_share - now.bending_share()) *
                              bending_product(face.bond, face.last_turn, turn);
+    face.spent += face.law.strength * face.law.reach *
+                  (face.law.shape.area_from(start->opening.damage) -
+                   face.law.shape.area_from(face.opening.damage));
     work_.add(taken);
     face.work += taken;
     face.last_force = force;
@@ -256,7 +285,7 @@ std::vector<BondId> CohesiveFaces<dim>::torn() const
   for (const auto &[name, face] : faces_) {
     const double open = face.bond.normal.dot(face.opening.jump);
     const bool has_left = face.opening.jump.norm() > body_.spacing() / 4;
-    if (face.law.left(face.opening.largest) == 0 && (open > 0 || has_left))
+    if (face.law.left(face.opening) == 0 && (open > 0 || has_left))
       found.push_back(face.id);
   }
   return found;

@@ -21,6 +21,8 @@ struct CohesiveFace
   Opening<dim> opening; // in the axes of that particle
   Vector<dim> last_force = Vector<dim>::Zero(); // N, in these axes, of the last step
   Spin<dim> last_turn = Spin<dim>::Zero();      // of j against i
+  double spent = 0;                             // J, below the curve of softening so far
+  double whole_energy = 0;                      // J, of a crack along the face
   double work = 0;                              // J, done on the opening so far
 };
 
@@ -47,7 +49,7 @@ public:
   const CohesiveFace<dim> *find(const Bond<dim> &bond, const Particles &particles) const;
 
   /// A bond begins to soften at this force (N) on its particle i. `energy` in J is what it takes to
-  /// open it wholly.
+  /// open it wholly along its normal.
   void begin(const BondId &id, const Bond<dim> &bond, const Particles &particles,
              const Vector<dim> &force, double energy);
 
