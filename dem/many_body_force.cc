@@ -260,6 +260,21 @@ Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
 }
 
 template <int dim>
+void ManyBodyForce<dim>::softening(const Particles &p, std::vector<double> &share,
+                                   std::vector<double> &opening) const
+{
+  particles::ForceReport<dim>::softening(p, share, opening);
+  for (const auto &bond : broken_.all())
+    for (const int i : {bond.i, bond.j})
+      share[i] = 1;
+  for (const auto &[name, face] : cohesive_.all())
+    for (const int i : {face.bond.i, face.bond.j}) {
+      share[i] = std::max(share[i], std::min(face.opening.damage, 1.));
+      opening[i] = std::max(opening[i], face.opening.jump.norm());
+    }
+}
+
+template <int dim>
 particles::ElasticConstants<dim> ManyBodyForce<dim>::elastic_constants() const
 {
   return materials().base().template elastic_constants<dim>();

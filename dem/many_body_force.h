@@ -121,10 +121,14 @@ public:
   double frictional_work() const { return contacts_.frictional_work(); }
   particles::ForceLosses losses() const override
   {
-    return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error()};
+    return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
+            cohesive_work()};
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
+  bool softens() const override { return fracture().softens(); }
+  void softening(const Particles &particles, std::vector<double> &share,
+                 std::vector<double> &opening) const override;
   bool can_break() const override { return search_.can_break(); }
   long n_bonds() const override { return body_.bonds().n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }

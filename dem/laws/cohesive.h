@@ -123,40 +123,58 @@ private:
 
   /// Without contact: F - C w = (f/kappa) B w and kappa = max(kappa, |w|), |w|^2 = w.Bw. With
   /// w = kappa y this is (kappa C + f B) y = F; 1/|y| - 1 is a straight line in kappa where C is a
-  /// multiple of B, and Newton's method starts at the last kappa.
+  /// multiple of B, and Newton's method, kept between two bounds, starts at the last kappa.
   Opening<dim> softened(const Opening<dim> &last, const Vector<dim> &force, const Matrix &stiffness,
                         const Matrix &metric) const
   {
-    constexpr int most = 30;
-    constexpr double round_off = 1e-14;
     const double end = last.largest + std::max(1 - last.damage, 0.) * reach; // nothing is left
+    const auto size = [&](const Vector<dim> &y) { return std::sqrt(y.dot(metric * y)); };
+    struct Trial
+    {
+      Matrix inverse;
+      Vector<dim> y;
+      double size, slope; // of the share
+    };
     const auto damage = [&](double kappa) { return last.damage + (kappa - last.largest) / reach; };
-    double kappa = last.largest;
-    Vector<dim> jump;
-    for (int k = 0; k < most; ++k) {
-      if (kappa >= end) {
-        jump = stiffness.inverse() * force;
-        return {jump, std::max(kappa, std::sqrt(jump.dot(metric * jump))),
-                std::max(last.damage, 1.)};
-      }
+    const auto at = [&](double kappa) {
       const auto [share, slope] = shape.at(damage(kappa));
-      const Matrix inverse = (kappa * stiffness + strength * share * metric).inverse();
-      const Vector<dim> y = inverse * force, pulled = metric * y;
-      const double size = std::sqrt(y.dot(pulled));
-      jump = kappa * y;
-      if (kappa == last.largest && size <= 1)
-        break; // shut, unloading or as before
-      const Vector<dim> change =
-          -inverse * (stiffness * y + strength * slope / reach * pulled); // of y with kappa
-      const double rate = -pulled.dot(change) / (size * size * size);
-      // Where more falls off than the particles around it give back, the face opens at once.
-      const double next =
-          rate > 0 ? std::clamp(kappa - (1 / size - 1) / rate, last.largest, end) : end;
-      if (std::abs(next - kappa) <= round_off * reach)
-        break;
-      kappa = next;
+      Trial t{(kappa * stiffness + strength * share * metric).inverse(), {}, 0, slope};
+      t.y = t.inverse * force;
+      t.size = size(t.y);
+      return t;
+    };
+    double kappa = last.largest, low = kappa, high = end;
+    if (last.damage < 1) {
+      const Trial now = at(kappa);
+      if (now.size <= 1) // shut, unloading or as before
+        return {kappa * now.y, kappa, last.damage};
     }
-    return {jump, kappa, damage(kappa)};
+    const Vector<dim> free = stiffness.inverse() * force;
+    if (const double opened = size(free); last.damage >= 1 || opened >= end)
+      return {free, std::max(opened, kappa), std::max(last.damage, 1.)};
+
+    constexpr int most = 100;
+    constexpr double round_off = 1e-15;
+    Trial now = at(kappa);
+    for (int k = 0; k < most && high - low > round_off * reach; ++k) {
+      (now.size > 1 ? low : high) = kappa;
+      const Vector<dim> pulled = metric * now.y;
+      const Vector<dim> change =
+          -now.inverse * (stiffness * now.y + strength * now.slope / reach * pulled);
+      const double rate = -pulled.dot(change) / (now.size * now.size * now.size); // of 1/|y|
+      double next = kappa - (1 / now.size - 1) / rate;
+      if (!(next > low && next < high)) {
+        if (std::abs(next - kappa) <= round_off * reach)
+          break;
+        next = (low + high) / 2;
+      }
+      const bool is_there = std::abs(next - kappa) <= round_off * reach;
+      kappa = next;
+      now = at(kappa);
+      if (is_there)
+        break;
+    }
+    return {kappa * now.y, kappa, damage(kappa)};
   }
 };
 } // namespace ligament::dem

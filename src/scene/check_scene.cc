@@ -145,11 +145,7 @@ void check_fracture(const FractureParameters &fracture, const std::string &secti
                     const DiscreteZone &zone, Findings &f)
 {
   const bool strength = f.given(section + "/strength"), toughness = f.given(section + "/toughness");
-  if (strength && toughness)
-    f.error(section + "/toughness",
-            fmt::format("both \"strength\" and \"toughness\" in {}", section),
-            "the strength of a bond follows from the toughness", "remove one of them");
-  if (toughness && zone.packing == PackingKind::file)
+  if (toughness && !strength && zone.packing == PackingKind::file)
     f.error(section + "/toughness",
             fmt::format("\"toughness\" in {} cannot be used with the packing \"file\"", section),
             "the factor between toughness and strength is calibrated on samples of a packing, "
@@ -171,6 +167,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_models(scene, f);
   check_packing(scene, f);
   check_fracture(scene.material.fracture, "/material/fracture", scene.zone, f);
+  check_softening(scene, scene.material, "/material/fracture", f);
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;

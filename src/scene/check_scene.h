@@ -63,6 +63,10 @@ void check_inclusions(const Scene &scene, const Box &specimen, const Layout *lay
 void check_fracture(const FractureParameters &fracture, const std::string &section,
                     const DiscreteZone &zone, Findings &findings);
 
+/// Whether faces can soften as it says.
+void check_softening(const Scene &scene, const MaterialParameters &material,
+                     const std::string &section, Findings &findings);
+
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);
 

@@ -36,6 +36,13 @@ enum class Criterion
   face_tension
 };
 
+/// The curve along which a face softens.
+enum class SofteningCurve
+{
+  linear,
+  bilinear
+};
+
 /// The kinematics of overlap and far field: that of the motion, or a fixed one.
 enum class RegimeChoice
 {
@@ -126,6 +133,12 @@ inline const std::vector<std::string> &words(SlotTip)
 inline const std::vector<std::string> &words(Criterion)
 {
   static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(SofteningCurve)
+{
+  static const std::vector<std::string> list = {"linear", "bilinear"};
   return list;
 }
 

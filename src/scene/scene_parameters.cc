@@ -72,8 +72,11 @@ void declare_specimen(Section &s, Specimen &p)
 void declare_fracture(Section &s, FractureParameters &f)
 {
   s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing", words(Criterion()));
-  s.add("strength", f.strength, "tension at which a bond breaks; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
-  s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
+  s.add("strength", f.strength, "tension at which a bond breaks or, with an energy or a toughness beside it, begins to soften").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("energy", f.energy, "G_c per area of crack: faces that reach the strength soften and break when they have taken it; without, they break at once").in("J/m^2").usually(1e-2, 1e7, "N/m kJ/m^2").above(0);
+  s.add("softening", f.softening, "what a face still bears as it opens: one straight line, or two, with the corner at a third of the strength and an opening of 0.8 G_c/f_t as for concrete", words(SofteningCurve()));
+  s.add("mode_ratio", f.mode_ratio, "shear strength over tensile strength of a face that opens").at_least(0.1).at_most(10);
+  s.add("toughness", f.toughness, "K_Ic; alone: the strength follows from it and from the spacing; with a strength: faces soften with the energy K_Ic^2/E'").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
 }
 
 void declare_material(Section &s, MaterialParameters &m)

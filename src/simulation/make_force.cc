@@ -3,6 +3,7 @@
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
+#include "src/scene/fracture_energy.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -96,6 +97,14 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
   law.criterion = criterion_of(scene);
   if (law.criterion == dem::FractureLaw::Criterion::none)
     return law;
+  law.energy = fracture_energy(scene, scene.material).value_or(0);
+  if (law.energy > 0) {
+    law.criterion = dem::FractureLaw::Criterion::opening_tension;
+    figures["fracture_energy"] = {law.energy, "J/m^2"};
+  }
+  if (scene.material.fracture.softening == SofteningCurve::bilinear)
+    law.softening = {1 / 3., 0.8};
+  law.mode_ratio = scene.material.fracture.mode_ratio;
   if (!scene.material.fracture.strength)
     law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
                      (dim == 2 ? scene.specimen.thickness : 1);
@@ -103,9 +112,12 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
   if (scene.inclusions.empty())
     return law;
   law.strengths = {law.strength};
+  law.energies = {law.energy};
   for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
     law.strengths.push_back(strength_of<dim>(scene, scene.inclusions[k].material,
                                              fmt::format("_inclusion_{}", k + 1), figures, log));
+  for (const Inclusion &inclusion : scene.inclusions)
+    law.energies.push_back(fracture_energy(scene, inclusion.material).value_or(0));
   return law;
 }
 } // namespace
