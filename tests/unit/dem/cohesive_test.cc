@@ -417,5 +417,53 @@ TYPED_TEST(Cohesive, FaceFollowsThePlainLaw)
   for (const int n : {grown, unloaded, stuck, slid, torn})
     EXPECT_GT(n, 3);
 }
+
+/// Work that the broken faces of a crack took, over G_c times their area across its way; the arms
+/// of a notched plate are drawn apart on one side. Of 20 spacings per E G_c/f_t^2.
+double work_per_area(double degrees)
+{
+  const double length = 0.2, d = length / 20, width = 2.5 * length, height = 3 * length;
+  packings::LatticeParameters<2> lattice;
+  lattice.spacing = d;
+  lattice.thickness = 1;
+  lattice.lower.setZero();
+  lattice.upper = {width, height};
+  lattice.orientation[0] = degrees * M_PI / 180;
+  auto packing = packings::make_lattice_packing<2>(lattice);
+  const double y = height / 2 + 0.23 * d, notch = 0.45 * width;
+  packings::cut_faces<2>(packing, {packings::CrackPlane<2>({{-d, y}, {notch, y}}, 1e-9 * d)});
+  const FractureLaw law = softening(20, d);
+  const double speed_p = 3600, duration = 100 * height / speed_p,
+               stroke = 4 * (2.2 * law.energy / strength + height * strength / youngs_modulus);
+  std::vector<core::BoundaryLoad<2>> loads(2);
+  for (int arm = 0; arm < 2; ++arm) {
+    Vector<2> lower(-1, -1), upper(1, 1);
+    (arm ? lower : upper)[1] = (arm ? 0.6 : 0.4) * height;
+    loads[arm].boundary = 0;
+    loads[arm].part = core::Part<2>::box(lower, upper);
+    loads[arm].value[1] = (arm ? 0.5 : -0.5) * stroke / duration;
+    loads[arm].history = core::Ramp{0.05 * duration};
+  }
+  Run<2> run(packing, DemMaterial{youngs_modulus, 0.2, density, PlaneMode::strain, 0}, loads, law);
+  double area = 0, taken = 0, largest = 0;
+  for (std::size_t seen = 0; area < 0.6 * (width - notch) && run.time < duration;) {
+    run.step(0.5 * speed_p / height);
+    for (; seen < run.force->broken_bonds().size(); ++seen) {
+      const auto &bond = run.force->broken_bonds()[seen];
+      area += bond.area * std::abs(bond.normal[1]);
+      taken += bond.energy;
+      largest = std::max(largest, std::abs(run.residual()));
+    }
+  }
+  EXPECT_GT(area, 0.6 * (width - notch));
+  EXPECT_LT(largest, 1e-8 * taken);
+  return taken / (area * law.energy);
+}
+
+TEST(CohesiveCrack, TakesItsEnergyPerProjectedArea)
+{
+  for (const double degrees : {0., 10.})
+    EXPECT_NEAR(work_per_area(degrees), 1, 0.05) << degrees;
+}
 } // namespace
 } // namespace ligament::dem::testing
