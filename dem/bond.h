@@ -24,7 +24,7 @@ struct BondMotion
 {
   Vector<dim> a_i, a_j; // m, present levers
   Vector<dim> du;       // m, Du of theory.md eq. (D8b)
-  Vector<dim> elastic;  // m, Du without its plastic part
+  Vector<dim> elastic;  // m, Du without what strains of the particles take
 
   BondMotion(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j,
              const Vector<dim> &u_i, const Vector<dim> &u_j)

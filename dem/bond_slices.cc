@@ -192,10 +192,23 @@ void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::Larg
 }
 
 template <int dim>
+void BondSlices<dim>::add_strains(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                                  const InelasticSweep<dim> &inelastic,
+                                  const SliceNearness *nearness) const
+{
+  if (empty())
+    return;
+  SliceSweep<dim> sweep{table_, arrays, records.data(), 0, false, nullptr, nearness};
+  sweep.inelastic = &inelastic;
+  sweep.responds = all_particles_;
+  ligament::dem::add_strains(sweep);
+}
+
+template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
-                             const TractionScreen &screen, core::LargeArray &records,
-                             std::vector<int> &exceeded, const SliceNearness *nearness,
-                             bool faces_too) const
+                             core::LargeArray &records, std::vector<int> &exceeded,
+                             const SliceNearness *nearness, bool faces_too,
+                             const InelasticSweep<dim> *strained) const
 {
   exceeded.clear();
   if (empty())
@@ -211,18 +224,24 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
                         squared(breaking.least_traction()),
                         all_particles_,
                         &exceeded,
-                        nearness,
-                        nullptr,
-                        squared(screen.traction),
-                        screen,
-                        breaking.strength / (2 * shear_modulus_),
-                        breaking.tangent,
-                        breaking.per_cosine()};
+                        nearness};
+  sweep.strain = breaking.strength / (2 * shear_modulus_);
+  sweep.tangent = breaking.tangent;
+  sweep.per_cosine = breaking.per_cosine();
   long n_reached = 0;
   sweep.n_reached = &n_reached;
   sweep.faces_too = faces_too;
   sweep.by_particle = breaking.by_particle;
   sweep.faces_at_once = faces_at_once_ && faces_too && breaking.strength > 0;
+  if (strained) {
+    const long n = table_.n_records();
+    if (!strain_records_.data())
+      strain_records_ =
+          core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
+    sweep.inelastic = strained;
+    sweep.strain_records = strain_records_.data();
+    load_strains(sweep);
+  }
   add_slice_forces(sweep);
   if (breaking.strength > 0)
     faces_at_once_ = 2 * n_reached > table_.n_slices();

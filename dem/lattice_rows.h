@@ -211,7 +211,7 @@ private:
         bonds_.set_window(sweep_.window->origin());
         // Overlapping vectors stay within this piece: what lies before may have left the window.
         for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
-        if (sweep_.volumetric)
+        if (sweep_.volumetric && !Bonds::inelastic)
           take_other_pressures(turned_, end);
         turned_ = end;
       }
@@ -232,8 +232,14 @@ private:
   HWY_INLINE void dilatation(const PieceCursor &piece)
   {
     const typename Bonds::Offsets offsets(piece.segment());
-    for_each_vector(piece.first, piece.begin, piece.end,
-                    [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
+    int done = piece.begin; // those before have flowed
+    for_each_vector(piece.first, piece.begin, piece.end, [&](auto d, long i) HWY_ATTR {
+      if constexpr (Bonds::inelastic)
+        bonds_.strain(d, i, offsets, done);
+      else
+        bonds_.dilatation(d, i, offsets);
+      done = int(i) + int(hn::Lanes(d));
+    });
   }
 
   template <bool by_particle>
@@ -250,17 +256,12 @@ private:
     });
   }
 
-  /// Where there is something to look at: marks of the screen, and particles with bonds that could
-  /// break.
+  /// Where there is something to look at: particles with bonds that could break.
   template <bool by_particle, typename D>
   HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, hn::Mask<D> look,
                        const RowRange &range)
   {
     *sweep_.n_looked += range.end - range.begin;
-    if (sweep_.screen.traction > 0) {
-      sweep_.screen.mark(range.begin);
-      sweep_.screen.mark(range.end - 1);
-    }
     if (!std::isfinite(sweep_.constants.strength))
       return;
     auto found = look;

@@ -12,7 +12,7 @@ double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) c
   if (b.joins_materials)
     return 0;
   const auto m = stressed(p, evaluation_).motion(b);
-  return law_of(b).twice_energy(m.elastic) / 2 + bending_energy(b, p);
+  return law_of(b).twice_energy(m.du) / 2 + bending_energy(b, p) + strains_.bond_energy(b, p);
 }
 
 template <int dim>
@@ -48,10 +48,11 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   const auto m = stressed(p, evaluation_).motion(b);
   const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
     return (b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0)) -
-           flow_.flowed_volume(b, i);
+           strains_.flowed_volume(b, i);
   };
   const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, m.du, m.a_i)),
                                                         std::pair(b.j, share(b.j, -m.du, m.a_j))};
+  const std::array<double, 2> before = {pressure[b.i], pressure[b.j]};
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] = pressure[i] / stiffness[i] - share; // theta_i V_i for a moment
@@ -59,6 +60,8 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] *= stiffness[i];
+  strains_.forget_face(b, b.i, p, before[0], pressure[b.i]);
+  strains_.forget_face(b, b.j, p, before[1], pressure[b.j]);
   if (at_interface)
     interfaces_.add_pressures(p, evaluation_);
   return local_energy(b, p) - bond_energy(b, p);
@@ -108,7 +111,7 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
-    broken_.add(b, p, time_, energy_before - energy - contacts_.act_broken(b, p, dt()));
+    broken_.add(b, p, time_, energy_before - energy - contacts_.act_broken(strains_.stretched(b), p, dt()));
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);

@@ -9,12 +9,15 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
-      rows_(body_), slices_(body_), interfaces_(body_.bonds()), contacts_(packing, materials),
+      rows_(body_), slices_(body_), strains_(packing, body_, surface_.walls(), surface_.particles()),
+      interfaces_(body_.bonds()), contacts_(packing, materials),
       search_(fracture, body_, interfaces_.members()), evaluation_(body_), trial_(body_),
       energy_evaluation_(body_)
 {
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
+  core::require(!strains_.has_law() || interfaces_.empty(),
+                "a body that flows is of one elastic material");
 }
 
 template <int dim>
@@ -31,7 +34,7 @@ void ManyBodyForce<dim>::find_other_particles()
 template <int dim>
 void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 {
-  core::require(broken_.all().empty() && !flow_.has_law(),
+  core::require(broken_.all().empty() && !strains_.has_law(),
                 "energy weights are set on an intact, elastic body");
   body_.set_energy_weights(weights);
   slices_ = SliceBonds<dim>(body_);
@@ -43,17 +46,9 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 template <int dim>
 void ManyBodyForce<dim>::set_coupled_edge(const Particles &p, particles::CoupledEdge<dim> edge)
 {
+  strains_.keep_elastic(edge.members);
   body_.set_edge(EdgeCells<dim>(std::move(edge), body_.boundary_faces(), body_.materials(), p,
                                 body_.energy_weights()));
-}
-
-template <int dim>
-void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
-{
-  core::require(interfaces_.empty(),
-                "plastic flow needs a body of one elastic material with its whole energy");
-  core::require(!rest_ || rest_->is_exact(), "what is held at rest by a threshold could yield");
-  flow_.set_law(std::move(law), body_, rows_.constants(), surface_.particles());
 }
 
 // The pressures at interfaces are solved for together: one that moves moves all, if by next to
@@ -61,7 +56,7 @@ void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
 template <int dim>
 void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 {
-  core::require(!rest || !flow_.has_law() || rest->is_exact(),
+  core::require(!rest || !strains_.has_law() || rest->is_exact(),
                 "what is held at rest by a threshold could yield");
   rest_ = rest;
   evaluation_.rest = rest;
@@ -74,6 +69,14 @@ template <int dim>
 void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim> &e) const
 {
   e.pressure.resize(body_.n_particles());
+  if (strains_.has_law()) {
+    // Slices come last: without a lattice they find what the particles answer.
+    e.inelastic = strains_.begin(e.may_flow, time_);
+    e.inelastic->energy = e.own_energy;
+    surface_.add_strains(p, e);
+    slices_.add_strains(p, e);
+    return;
+  }
   if (body_.has_dilatation())
     for (const int i : body_.other_particles())
       e.pressure[i] = 0;
@@ -140,10 +143,9 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   }
   surface_.set_time(time);
   surface_.wake(rest_);
-  search_.ask(evaluation_, flow_);
-  flow_.ask(evaluation_);
+  search_.ask(evaluation_, strains_);
+  evaluation_.may_flow = true;
   find_forces(p, evaluation_);
-  flow(p);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   surface_.book_work(p, evaluation_);
@@ -155,54 +157,21 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
 }
 
 template <int dim>
-void ManyBodyForce<dim>::flow(Particles &p)
-{
-  const auto increments = flow_.increments(p, time_, evaluation_, surface_);
-  if (increments.empty())
-    return;
-  surface_.book_work(p, evaluation_); // with the reactions before
-  core::ExactSum taken;
-  add_flowing_energy(p, 1, taken);
-  const int n_before = flow_.blocks()->n_plastic_blocks();
-  flow_.add(increments, p);
-  if (flow_.blocks()->n_plastic_blocks() > n_before)
-    find_other_particles();
-  surface_.set_plastic([&](int i) { return flow_.blocks()->strain(i); });
-  search_.ask(evaluation_, flow_);
-  find_forces(p, evaluation_);
-  add_flowing_energy(p, -1, taken);
-  flow_.book(taken);
-}
-
-// Energy that leaves at fixed positions; the leap-frog's invariant counts the kinetic energy with
-// the force in it, so that of the force's change belongs to the balance.
-template <int dim>
-void ManyBodyForce<dim>::add_flowing_energy(const Particles &p, int sign, core::ExactSum &sum)
-{
-  energy_.assign(body_.n_particles(), 0.);
-  surface_.add_energies(p, evaluation_, energy_);
-  const auto of_particle = [&](int i) {
-    const double power =
-        get(p.velocity, i).dot(get(p.force, i)) + get(p.spin, i).dot(get(p.torque, i));
-    return sign *
-           (energy_[i] + body_.volume_energy(i, evaluation_.pressure[i]) + 0.5 * dt() * power);
-  };
-  sum.merge(particles::block_sum(p.part.owned, of_particle));
-  for (const double of_bonds : evaluation_.plastic_energy)
-    sum.add(sign * of_bonds);
-}
-
-template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
   Evaluation<dim> &e = energy_evaluation_;
+  own_energy_.assign(strains_.has_law() ? body_.n_particles() : 0, 0.);
+  e.own_energy = own_energy_.data();
   find_other_pressures(p, e);
   rows_.set_energies(p, e, energy_);
   for (const auto *part : parts_)
     part->add_energies(p, e, energy_);
   return particles::block_sum(
              p.part.owned,
-             [&](int i) { return energy_[i] + body_.volume_energy(i, e.pressure[i]); })
+             [&](int i) {
+               return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
+                      (own_energy_.empty() ? 0 : own_energy_[i]);
+             })
       .value();
 }
 
@@ -236,6 +205,28 @@ Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
                                                  const std::vector<Watch> &watch) const
 {
   return search_.utilisation(stressed(p, evaluation_), watch);
+}
+
+template <int dim>
+Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
+                                                      const std::vector<Watch> &watch) const
+{
+  Utilisation<dim> most;
+  if (!can_flow())
+    return most;
+  std::vector<int> watched;
+  for (int i = 0; i < p.size(); ++i)
+    if (watch[i] == Watch::watched)
+      watched.push_back(i);
+  const auto stress = stressed(p, evaluation_).stresses_of(watched);
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    const int i = watched[k];
+    const double zz = body_.is_plane_strain() ? evaluation_.pressure[i] : 0;
+    const double share = flow_share<dim>(materials().of(i).plasticity, stress[k], zz);
+    if (share > most.share)
+      most = {share, get(p.reference, i)};
+  }
+  return most;
 }
 
 template <int dim>

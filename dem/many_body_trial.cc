@@ -7,7 +7,7 @@ namespace ligament::dem
 template <int dim>
 void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_share)
 {
-  core::require(!flow_.has_law(), "bodies that flow have no trial states");
+  core::require(!strains_.has_law(), "bodies that flow have no trial states");
   surface_.set_time(time);
   search_.ask_trial(trial_, noted_share);
   trial_.has_loads = true;

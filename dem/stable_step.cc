@@ -43,7 +43,7 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
 template <int dim>
 double ManyBodyForce<dim>::stable_step(const Particles &particles) const
 {
-  core::require(!flow_.has_flowed(), "the stable step is that of a body without plastic strains");
+  core::require(!strains_.has_begun(), "the stable step is that of a body without strains of its own");
   Particles p = particles;
   Evaluation<dim> evaluation(body_);
   evaluation.has_loads = false;

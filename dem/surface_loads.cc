@@ -1,5 +1,6 @@
 #include "dem/surface_loads.h"
 
+#include "dem/parts/inelastic_strains.h"
 #include "dem/surface_law.h"
 
 #include <fmt/format.h>
@@ -128,14 +129,14 @@ Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall, const Particl
       du[c] = 0;
     else if (has_loads)
       du[c] += displacement_[wall.load[c]][c];
-  return du - wall.plastic;
+  return du;
 }
 
 template <int dim>
 Vector<dim> SurfaceLoads<dim>::force(const WallFace<dim> &wall, const Particles &p,
                                      const Evaluation<dim> &e) const
 {
-  return law_of(wall).force(relative(wall, p, e.has_loads), e.pressure[wall.i],
+  return law_of(wall).force(relative(wall, p, e.has_loads) - stretch(wall, e), e.pressure[wall.i],
                             pressed_along(wall));
 }
 
@@ -165,6 +166,21 @@ void SurfaceLoads<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) co
 }
 
 template <int dim>
+void SurfaceLoads<dim>::add_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  using Strains = InelasticStrains<dim>;
+  for (const auto &wall : walls_)
+    Strains::add_strain(*e.inelastic, wall.i,
+                        wall.area * relative(wall, p, e.has_loads) * wall.normal.transpose());
+  for (const auto &face : tractions_) {
+    const Vector<dim> t = traction(face, e.has_loads);
+    const Vector<dim> own = t + Turn<dim>::of(p, face.i).inverse().change(t);
+    Strains::add_strain(*e.inelastic, face.i,
+                        face.area / (2 * face.shear_modulus) * own * face.lever.transpose());
+  }
+}
+
+template <int dim>
 Wrench<dim> SurfaceLoads<dim>::wrench(const WallFace<dim> &wall, const Particles &p,
                                       const Vector<dim> &force) const
 {
@@ -179,7 +195,8 @@ Wrench<dim> SurfaceLoads<dim>::wrench(const TractionFace<dim> &face, const Parti
   const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
   const TractionLaw<dim> law = law_of(face);
   const Vector<dim> t = traction(face, e.has_loads);
-  return {law.force(t), law.torque(t, a, e.pressure[face.i])};
+  return {law.force(t),
+          law.torque(t, a, e.pressure[face.i]) + cross(stretch(face, p, e), law.force(t))};
 }
 
 template <int dim>
@@ -241,6 +258,11 @@ void SurfaceLoads<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
 {
   for (const auto &wall : walls_)
     energy[wall.i] += law_of(wall).twice_energy(relative(wall, p, e.has_loads)) / 2;
+  // What the strains of particles have of it is the work of the load.
+  if (e.inelastic)
+    for (const auto &face : tractions_)
+      energy[face.i] +=
+          law_of(face).force(traction(face, e.has_loads)).dot(stretch(face, p, e));
 }
 
 template <int dim>
@@ -257,11 +279,21 @@ void SurfaceLoads<dim>::for_each_moment(const Particles &p, const Evaluation<dim
 }
 
 template <int dim>
-void SurfaceLoads<dim>::set_plastic(
-    const std::function<Eigen::Matrix<double, dim, dim>(int)> &strain_of)
+Vector<dim> SurfaceLoads<dim>::stretch(const WallFace<dim> &wall, const Evaluation<dim> &e) const
 {
-  for (auto &wall : walls_)
-    wall.plastic = wall.q * wall.prescribed.cwiseProduct(strain_of(wall.i) * wall.normal);
+  if (!e.inelastic)
+    return Vector<dim>::Zero();
+  return wall.q * wall.prescribed.cwiseProduct(e.inelastic->strain(wall.i) * wall.normal);
+}
+
+template <int dim>
+Vector<dim> SurfaceLoads<dim>::stretch(const TractionFace<dim> &face, const Particles &p,
+                                       const Evaluation<dim> &e) const
+{
+  if (!e.inelastic)
+    return Vector<dim>::Zero();
+  const Vector<dim> own = e.inelastic->strain(face.i) * face.lever;
+  return own + Turn<dim>::of(p, face.i).change(own);
 }
 
 // Face by face, so that a body in parts books what the whole one does.
@@ -275,7 +307,7 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
   Booked now{displacement_, traction_, e.wall_forces, {}, {}};
   for (const auto &face : tractions_) {
     const Vector<dim> change = Turn<dim>::of(p, face.i).change(face.lever);
-    now.place.push_back(get(p.displacement, face.i) + change);
+    now.place.push_back(get(p.displacement, face.i) + change + stretch(face, p, e));
     now.gradient.push_back(
         law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), e.pressure[face.i]));
   }

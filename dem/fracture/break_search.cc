@@ -108,14 +108,14 @@ BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, 
           criterion().clearing != Clearing::by_face};
 }
 
-// The screen of stresses doesn't know plastic strains.
+// The screen of stresses doesn't know strains of the particles' own.
 template <int dim>
-void BreakSearch<dim>::ask(Evaluation<dim> &e, const PlasticFlow<dim> &flow) const
+void BreakSearch<dim>::ask(Evaluation<dim> &e, const InelasticStrains<dim> &strains) const
 {
   if (can_break())
     e.look =
         BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
-                  criterion().clearing == Clearing::by_stress && !flow.has_flowed(), noted_share_};
+                  criterion().clearing == Clearing::by_stress && !strains.has_begun(), noted_share_};
 }
 
 template <int dim>
@@ -145,7 +145,7 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
 template <int dim>
 void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &e)
 {
-  if (!e.look || !e.look->cleared_by_stress)
+  if (!e.look || !e.look->cleared_by_stress || state.strains.has_begun())
     return;
   const std::vector<int> noted = noted_particles(e.noted);
   if (int(noted.size()) < StressScreen<dim>::least) {
@@ -223,13 +223,6 @@ BreakSearch<dim>::suspected_bonds(const StressedBody<dim> &state) const
   for (const int i : few)
     test_bonds_of(i, false, [&](int k) { return std::binary_search(few.begin(), few.end(), k); });
   bonds.for_each_interface(test);
-  const auto none = [](int) { return false; };
-  if (state.flow.has_flowed()) // the kernels don't know plastic strains
-    for (const RowRange &range : state.flow.blocks()->around_plastic())
-      for (int i = range.begin; i < range.end; ++i) {
-        test_bonds_of(i, true, none);
-        test_bonds_of(i, false, none);
-      }
   return found;
 }
 

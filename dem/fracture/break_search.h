@@ -37,7 +37,7 @@ public:
   void set_noted_share(double share);
 
   /// The next evaluation notes what could break.
-  void ask(Evaluation<dim> &evaluation, const PlasticFlow<dim> &flow) const;
+  void ask(Evaluation<dim> &evaluation, const InelasticStrains<dim> &strains) const;
   /// Of a state that may not stay: it notes what reaches this share of its limit.
   void ask_trial(Evaluation<dim> &evaluation, double share) const;
   /// After it: leaves out what the stresses clear of the particles that it noted.

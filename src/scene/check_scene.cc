@@ -171,6 +171,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_models(scene, f);
   check_packing(scene, f);
   check_fracture(scene.material.fracture, "/material/fracture", scene.zone, f);
+  check_plasticity(scene, f);
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;

@@ -59,6 +59,9 @@ void check_inside_zone(const Box &cut, const std::string &name, const std::strin
 void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout,
                       Findings &findings);
 
+/// Laws of flow, and what they cannot be used with.
+void check_plasticity(const Scene &scene, Findings &f);
+
 /// When the bonds of a material break; `section` is the key of its "fracture".
 void check_fracture(const FractureParameters &fracture, const std::string &section,
                     const DiscreteZone &zone, Findings &findings);

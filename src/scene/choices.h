@@ -36,6 +36,13 @@ enum class Criterion
   face_tension
 };
 
+/// What a material flows by.
+enum class PlasticityLaw
+{
+  von_mises,
+  drucker_prager
+};
+
 /// The kinematics of overlap and far field: that of the motion, or a fixed one.
 enum class RegimeChoice
 {
@@ -126,6 +133,12 @@ inline const std::vector<std::string> &words(SlotTip)
 inline const std::vector<std::string> &words(Criterion)
 {
   static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(PlasticityLaw)
+{
+  static const std::vector<std::string> list = {"von_mises", "drucker_prager"};
   return list;
 }
 

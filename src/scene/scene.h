@@ -100,6 +100,25 @@ struct FractureParameters
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
 };
 
+/// A point of a yield curve.
+struct YieldPoint
+{
+  double strain = 0, stress = 0; // -, Pa
+};
+
+struct PlasticityParameters
+{
+  PlasticityLaw law = PlasticityLaw::von_mises;
+  double hardening = 0; // Pa
+  // Of von_mises.
+  std::optional<double> yield_stress;           // Pa
+  std::optional<double> saturation, saturation_rate; // Pa, -
+  std::vector<YieldPoint> curve;
+  // Of drucker_prager.
+  std::optional<double> cohesion, friction_angle; // Pa, rad
+  double dilatancy_angle = 0;                     // rad
+};
+
 struct MaterialParameters
 {
   double youngs_modulus; // Pa
@@ -107,6 +126,7 @@ struct MaterialParameters
   double density; // kg/m^3
   double friction = 0;
   FractureParameters fracture;
+  std::optional<PlasticityParameters> plasticity;
 };
 
 /// Particles of another material: those with their centre in one of the regions. The k-th one, from

@@ -76,6 +76,25 @@ void declare_fracture(Section &s, FractureParameters &f)
   s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
 }
 
+void declare_yield_point(Section &s, YieldPoint &p)
+{
+  s.add("strain", p.strain, "accumulated plastic strain; 0 at the first point").at_least(0).at_most(10).required();
+  s.add("stress", p.stress, "yield stress there; it must not fall").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0).required();
+}
+
+void declare_plasticity(Section &s, PlasticityParameters &p)
+{
+  s.add("law", p.law, "von Mises: metals; Drucker and Prager: rock and soil, whose strength grows with pressure and which dilate", words(PlasticityLaw()));
+  s.add("yield_stress", p.yield_stress, "of von_mises: uniaxial stress at which flow begins; either this or a curve").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("hardening", p.hardening, "growth of the yield stress (of drucker_prager: of the shear strength) with the plastic strain").in("Pa").usually(0, 2e12, "GPa MPa kPa").at_least(0);
+  s.add("saturation", p.saturation, "of von_mises: Voce's Q, by how much the yield stress grows besides, saturating").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("saturation_rate", p.saturation_rate, "of von_mises: Voce's b, how fast: Q (1 - exp(-b p)) over the plastic strain p").above(0).at_most(1e6);
+  s.list("curve", p.curve, "of von_mises, in place of the yield stress and its growth: points of the curve, straight between them and level behind the last", declare_yield_point);
+  s.add("cohesion", p.cohesion, "of drucker_prager: shear strength of a plane without pressure").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
+  s.add("friction_angle", p.friction_angle, "of drucker_prager: of Coulomb's cone through the edges of triaxial compression").in("rad").usually(0.01, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.add("dilatancy_angle", p.dilatancy_angle, "of drucker_prager: by which flow swells; at most the friction angle").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
+}
+
 void declare_material(Section &s, MaterialParameters &m)
 {
   s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").usually(1e5, 2e12, "GPa MPa kPa").above(0).required();
@@ -83,6 +102,7 @@ void declare_material(Section &s, MaterialParameters &m)
   s.add("density", m.density, "mass per volume").in("kg/m^3").usually(10, 3e4, "g/cm^3 t/m^3").above(0).required();
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
+  s.section("plasticity", m.plasticity, "none", "what particles flow by; cells and the overlap stay elastic", declare_plasticity);
 }
 
 void declare_ball(Section &s, Hole &h)

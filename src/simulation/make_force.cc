@@ -15,6 +15,34 @@ namespace ligament::program
 {
 namespace
 {
+/// Coulomb's angles as slopes of the cone through the edges of triaxial compression.
+double cone_slope(double angle)
+{
+  return 2 * std::sqrt(3.) * std::sin(angle) / (3 - std::sin(angle));
+}
+
+dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
+{
+  if (!p)
+    return {};
+  if (p->law == PlasticityLaw::drucker_prager) {
+    const double angle = *p->friction_angle;
+    return dem::DruckerPrager{2 * std::sqrt(3.) * *p->cohesion * std::cos(angle) /
+                                  (3 - std::sin(angle)),
+                              p->hardening, cone_slope(angle), cone_slope(p->dilatancy_angle)};
+  }
+  dem::YieldCurve curve;
+  curve.initial = p->yield_stress.value_or(0);
+  curve.hardening = p->hardening;
+  curve.saturation = p->saturation.value_or(0);
+  curve.rate = p->saturation_rate.value_or(0);
+  for (const YieldPoint &point : p->curve) {
+    curve.strain.push_back(point.strain);
+    curve.stress.push_back(point.stress);
+  }
+  return dem::VonMises{curve};
+}
+
 dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)
 {
   dem::DemMaterial m;
@@ -23,6 +51,7 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
   m.density = parameters.density;
   m.plane = plane;
   m.friction = parameters.friction;
+  m.plasticity = plasticity_of(parameters.plasticity);
   return m;
 }
 

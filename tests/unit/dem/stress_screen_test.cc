@@ -4,7 +4,6 @@
 #include "dem/principal_tension.h"
 #include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "tests/support/von_mises.h"
 #include "tests/unit/dem/cases.h"
 
 #include <numeric>
@@ -43,11 +42,12 @@ struct Body
       for (const double y : packing.centre[1])
         number.push_back(y > 0.2 * spacing);
     }
-    auto made = std::make_unique<ManyBodyForce<dim>>(packing, Materials(all, number), loads, law);
-    if (yield_stress > 0)
-      made->set_yield(
-          std::make_unique<tests::VonMises>(material.shear_modulus(), yield_stress, 0.1));
-    return made;
+    if (yield_stress > 0) {
+      YieldCurve curve;
+      curve.initial = yield_stress, curve.hardening = 0.1;
+      all[0].plasticity = VonMises{curve};
+    }
+    return std::make_unique<ManyBodyForce<dim>>(packing, Materials(all, number), loads, law);
   }
 
   /// Uniaxial tension about the origin at this strain, and noise of every particle.
