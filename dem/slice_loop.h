@@ -228,7 +228,7 @@ private:
   template <typename Visit>
   HWY_INLINE void for_each_lane(int s, Visit &&visit) const
   {
-    const int size = std::min(slice_width, table_.n_records() - s * slice_width);
+    const int size = std::min(slice_width, table_.n_own() - s * slice_width);
     for (int l = 0; l < size; ++l)
       visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
   }

@@ -154,6 +154,11 @@ void complete(Scene &scene)
         load.kind = kind;
         load.value = value;
       }
+    for (int c = 0; c < 3 && load.periodic; ++c)
+      if (load.strain[c]) {
+        load.kind = LoadKind::displacement;
+        load.value[c] = *load.strain[c] * scene.specimen.size[int(*load.periodic)];
+      }
   }
 }
 
