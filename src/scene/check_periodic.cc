@@ -80,6 +80,13 @@ public:
     for (std::size_t k = 0; k < scene_.gauges.size(); ++k)
       if (const auto &gauge = scene_.gauges[k]; gauge.side)
         side(*gauge.side, fmt::format("/gauges/{}/side", k), gauge.side_name);
+    const auto is_jump = [](const LoadParameters &l) { return l.periodic.has_value(); };
+    if (scene_.time.stop_when == StopWhen::specimen_broken && f_.sound({"/time/stop_when"}) &&
+        std::any_of(scene_.loads.begin(), scene_.loads.end(), is_jump))
+      f_.error("/time/stop_when",
+               "\"stop_when\" in /time waits for a body in two parts, and a jump loads it",
+               "through its joined sides a body that repeats itself holds together",
+               "give a \"duration\" alone");
     const std::string loading = "/time/loading";
     if (scene_.time.has_phases() && scene_.far_field && f_.sound({loading, "/far_field"}))
       f_.error(loading,

@@ -109,6 +109,6 @@ std::vector<Result> measure()
 std::vector<Case> lab_periodic_cases()
 {
   return {{"lab_periodic", "joined sides: jumps act as homogeneous strains on every packing", false,
-           measure}};
+           [] { return measure(); }}};
 }
 } // namespace ligament::program

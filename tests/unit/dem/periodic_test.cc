@@ -394,7 +394,8 @@ TEST(PeriodicRandom, ABondThatBreaksAcrossTheSidesIsFeltOnBoth)
   const auto losses = body.law->losses();
   const double energy = body.solver->kinetic_energy(body.dt) + body.solver->potential_energy() +
                         losses.fracture + losses.friction + losses.breaking_step_error;
-  EXPECT_NEAR(energy, body.law->external_work(), 1e-9 * body.law->external_work());
+  // The rest is the law's own curvature, of the order of the strain of 1e-4 squared.
+  EXPECT_NEAR(energy, body.law->external_work(), 1e-7 * body.law->external_work());
 }
 
 TEST(PeriodicRandom, ResumesToTheBit)
