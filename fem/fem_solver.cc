@@ -467,6 +467,10 @@ bool FemSolver<dim>::is_loaded(double time) const
                           load.kind == core::BoundaryLoad<dim>::Kind::acceleration;
     return (is_given ? load.traction(time)[c.component] : prescribed(c, time)) != 0;
   };
+  for (const auto &load : loads_)
+    for (int c = 0; c < dim && load.jump_axis() >= 0; ++c)
+      if (load.value[c] && load.displacement(c, time) != 0)
+        return true;
   return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
          std::any_of(traction_components_.begin(), traction_components_.end(), acts);
 }
