@@ -22,6 +22,11 @@ struct BoundaryLoad
   };
   /// The boundary of an acceleration, which has none.
   static constexpr int whole_body = -1;
+  /// The boundary of the jump of the displacement across the periodic sides of an axis (kinds
+  /// velocity and displacement): what the image one period further has in addition.
+  static constexpr int jump_across(int axis) { return -2 - axis; }
+  /// That axis; -1: it is not such a load.
+  int jump_axis() const { return boundary <= -2 ? -2 - boundary : -1; }
   int boundary = 0;
   Kind kind = Kind::velocity;
   std::array<std::optional<double>, dim> value;

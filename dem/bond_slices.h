@@ -28,7 +28,7 @@ inline constexpr int n_stiffness = dim;
 template <int dim>
 struct SliceTable
 {
-  std::vector<int> particle;   // of each record, ascending
+  std::vector<int> particle;   // of each record, ascending; then those of images
   std::vector<int> lane;       // record of each lane times record_size; n_slices x slice_width
   std::vector<int> first_slot; // of each slice, and the end
   std::vector<int> neighbour;  // record times record_size: n_slots x slice_width
@@ -43,8 +43,11 @@ struct SliceTable
   /// record_size.
   double *set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
+  int n_images = 0; // of the records, the last ones, which are no particle's own
+
   int n_slices() const { return int(first_slot.size()) - 1; }
   int n_records() const { return int(particle.size()); }
+  int n_own() const { return n_records() - n_images; }
 };
 
 /// How near each slice, and each eight records in their order, come to particles that move:
@@ -149,6 +152,7 @@ public:
 
 private:
   void lay_out(const std::vector<int> &n_bonds_of);
+  void add_jumps(core::LargeArray &records, const SliceNearness *nearness) const;
   void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
   SliceTable<dim> table_;
@@ -156,6 +160,7 @@ private:
   mutable bool faces_at_once_ = false; // many slices had such tractions the last time
   double shear_modulus_;
   bool all_particles_;
+  std::vector<const PeriodicImage<dim> *> images_; // of the records of images
   std::vector<std::array<long, 2>> places_; // slot x slice_width + lane of both sides of each bond
 };
 } // namespace ligament::dem

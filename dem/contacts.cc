@@ -8,10 +8,13 @@ namespace ligament::dem
 namespace
 {
 template <int dim>
-Vector<dim> centre_distance(const particles::Particles<dim> &p, int i, int j)
+Vector<dim> centre_distance(const particles::Particles<dim> &p, const Bond<dim> &face)
 {
-  return get(p.reference, j) - get(p.reference, i) +
-         (get(p.displacement, j) - get(p.displacement, i));
+  Vector<dim> r = get(p.reference, face.j) - get(p.reference, face.i) +
+                  (get(p.displacement, face.j) - get(p.displacement, face.i));
+  if (face.image)
+    r += face.image->offset + face.image->jump;
+  return r;
 }
 
 /// Rotation of particle i since the state that the contact remembers.
@@ -135,7 +138,7 @@ template <int dim>
 typename Contacts<dim>::State Contacts<dim>::state(const Contact<dim> &c, const Particles &p) const
 {
   State s;
-  s.between = centre_distance<dim>(p, c.face.i, c.face.j);
+  s.between = centre_distance<dim>(p, c.face);
   s.stiffness = 2 * c.shear_modulus * c.face.area / c.face.distance;
   if (!c.is_joint()) {
     const double r = s.between.norm();
@@ -308,7 +311,9 @@ template <int dim>
 bool Contacts<dim>::has_slid(const Particles &p, double distance) const
 {
   for (const auto &c : contacts_) {
-    const Vector<dim> u = get(p.displacement, c.face.j) - get(p.displacement, c.face.i);
+    Vector<dim> u = get(p.displacement, c.face.j) - get(p.displacement, c.face.i);
+    if (c.face.image)
+      u += c.face.image->jump;
     if (u.squaredNorm() > distance * distance)
       return true;
   }

@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "dem/bond.h"
 #include "dem/materials.h"
+#include "dem/periodic_images.h"
 
 #include <array>
 #include <functional>
@@ -112,6 +113,10 @@ public:
 
   const std::vector<Contact<dim>> &all() const { return contacts_; }
 
+  /// visit(image, force on i in N) for every contact with an image.
+  template <typename Visit>
+  void for_each_across(const Particles &particles, Visit &&visit) const;
+
   /// Whether a pair of faces slid so far along each other that it may meet others.
   bool has_slid(const Particles &particles, double distance) const;
 
@@ -127,9 +132,10 @@ public:
 
   /// What contacts remember, as the table "contacts", and the energies that they took.
   void save(core::State &state, const core::Names &names) const;
-  /// Those of faces are there already; make_face(i, j, distance) is the face of one that a search
-  /// found. Contacts of particles with rows that have none themselves have ended.
-  void load(const core::State &state, const core::Names &names,
+  /// Those of faces are there already; `images` are those of the body; make_face(i, j, distance) is
+  /// the face of one that a search found. Contacts of particles with rows that have none themselves
+  /// have ended.
+  void load(const core::State &state, const core::Names &names, const PeriodicImages<dim> &images,
             const std::function<Bond<dim>(int, int, double)> &make_face);
 
 private:
@@ -157,6 +163,21 @@ private:
   bool grips_at_touch_ = false;
   core::ExactSum frictional_work_, step_error_;
 };
+
+template <int dim>
+template <typename Visit>
+void Contacts<dim>::for_each_across(const Particles &p, Visit &&visit) const
+{
+  for (const auto &c : contacts_) {
+    if (!c.face.image)
+      continue;
+    const State s = state(c, p);
+    Vector<dim> f = -c.correction * s.normal;
+    if (s.overlap > 0)
+      f += s.stiffness * (c.slip - s.overlap * s.normal);
+    visit(*c.face.image, f);
+  }
+}
 
 template <int dim>
 template <typename Visit>

@@ -118,8 +118,8 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     add(p.force, near[k], Vector<dim>(after.force - bonded[k].force));
     add(p.torque, near[k], Spin<dim>(after.torque - bonded[k].torque));
   }
-  surface_.find_reactions(p, evaluation_);
-  surface_.book_work(p, evaluation_); // nothing moved
+  find_reactions(p, evaluation_);
+  book_work(p); // nothing moved
   broken_.take_mean(p, near, before, dt());
   clear_forces_at_rest(p, evaluation_);
 }

@@ -8,9 +8,10 @@ template <int dim>
 ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const Materials &materials,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
-    : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
+    : surface_(packing, materials, loads), body_(packing, materials, surface_.walls()),
       rows_(body_), slices_(body_), strains_(packing, body_, surface_.walls(), surface_.particles()),
-      interfaces_(body_.bonds()), contacts_(packing, materials),
+      interfaces_(body_.bonds()), contacts_(packing, materials, body_.images()),
+      jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members()), evaluation_(body_), trial_(body_),
       energy_evaluation_(body_)
 {
@@ -68,6 +69,7 @@ void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 template <int dim>
 void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim> &e) const
 {
+  jumps_.show(e.has_loads);
   e.pressure.resize(body_.n_particles());
   if (strains_.has_law()) {
     // Slices come last: without a lattice they find what the particles answer.
@@ -100,7 +102,29 @@ void ManyBodyForce<dim>::find_forces(Particles &p, Evaluation<dim> &e) const
   rows_.set_forces(p, e);
   for (const auto *part : parts_)
     part->add_forces(p, e);
+  jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
   clear_forces_at_rest(p, e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::set_loads(double time)
+{
+  surface_.set_time(time);
+  jumps_.set_time(time);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) const
+{
+  surface_.find_reactions(p, e);
+  jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::book_work(const Particles &p)
+{
+  surface_.book_work(p, evaluation_);
+  jumps_.book_work(evaluation_);
 }
 
 template <int dim>
@@ -109,6 +133,7 @@ void ManyBodyForce<dim>::add_contacts(Particles &p)
   if (contacts_.all().empty())
     return;
   contacts_.act(p, dt());
+  jumps_.find_reactions(stressed(p, evaluation_), contacts_.contacts(), evaluation_);
   clear_forces_at_rest(p, evaluation_);
 }
 
@@ -141,14 +166,15 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     time_ = time;
     broken_.end_step(p, dt());
   }
-  surface_.set_time(time);
+  set_loads(time);
   surface_.wake(rest_);
+  jumps_.wake(rest_);
   search_.ask(evaluation_, strains_);
   evaluation_.may_flow = true;
   find_forces(p, evaluation_);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
-  surface_.book_work(p, evaluation_);
+  book_work(p);
   if (broken_.have_broken_at(time))
     return;
   const StressedBody<dim> state = stressed(p, evaluation_);

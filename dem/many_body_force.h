@@ -9,6 +9,7 @@
 #include "dem/interfaces.h"
 #include "dem/parts/contact_forces.h"
 #include "dem/parts/inelastic_strains.h"
+#include "dem/parts/periodic_jumps.h"
 #include "dem/parts/row_bonds.h"
 #include "dem/parts/slice_bonds.h"
 #include "dem/surface_loads.h"
@@ -104,8 +105,15 @@ public:
   /// last compute.
   Vector<dim> reaction(int load) const override { return evaluation_.reactions[load]; }
   /// Work in J of supports and tractions since the last reset_work, booked by compute().
-  double external_work() const override { return surface_.external_work(); }
-  void reset_work() override { surface_.reset_work(); }
+  double external_work() const override
+  {
+    return surface_.external_work() + jumps_.external_work();
+  }
+  void reset_work() override
+  {
+    surface_.reset_work();
+    jumps_.reset_work();
+  }
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return broken_.energy(); }
@@ -160,6 +168,10 @@ private:
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
+  /// What the loads are at a time, what they pull with, and what they did.
+  void set_loads(double time);
+  void find_reactions(const Particles &particles, Evaluation<dim> &evaluation) const;
+  void book_work(const Particles &particles);
   /// Of particles that a threshold holds at rest but that awake ones have pulled.
   void clear_forces_at_rest(Particles &particles, const Evaluation<dim> &evaluation) const;
   double dt() const { return time_ - last_time_; }
@@ -191,8 +203,10 @@ private:
   InelasticStrains<dim> strains_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
+  PeriodicJumps<dim> jumps_;
   /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
-  std::vector<ForcePart<dim> *> parts_ = {&slices_, &surface_, &strains_, &interfaces_, &contacts_};
+  std::vector<ForcePart<dim> *> parts_ = {&slices_,     &surface_,  &strains_,
+                                          &interfaces_, &contacts_, &jumps_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_;               // of the last compute()

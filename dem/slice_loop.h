@@ -190,7 +190,7 @@ public:
     for (int s = 0; s < table_.n_slices(); ++s) {
       if (is_left_out(s, Rest::pressed))
         continue;
-      const int size = std::min(slice_width, table_.n_records() - s * slice_width);
+      const int size = std::min(slice_width, table_.n_own() - s * slice_width);
       for (int lane = 0; lane < size; lane += n_lanes) {
         const typename Law::Own own(d, read(s, lane));
         hn::Vec<SliceLanes> x[dim][dim];
@@ -326,7 +326,7 @@ private:
   template <typename Visit>
   HWY_INLINE void for_each_lane(int s, Visit &&visit) const
   {
-    const int size = std::min(slice_width, table_.n_records() - s * slice_width);
+    const int size = std::min(slice_width, table_.n_own() - s * slice_width);
     for (int l = 0; l < size; ++l)
       visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
   }

@@ -78,6 +78,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
     previous = v;
     v = y / beta;
   }
+  jumps_.show(true);
   const int m = int(diagonal.size());
   off_diagonal.resize(m);
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;

@@ -19,7 +19,7 @@ template <int dim>
 FemSolver<dim>::FemSolver(Mesh<dim> mesh, const Body<dim> &body,
                           std::vector<core::BoundaryLoad<dim>> loads)
     : mesh_(std::move(mesh)), body_(body), loads_(std::move(loads)),
-      is_own_cell_(mesh_.n_cells(), 1), released_node_(mesh_.n_nodes(), 0)
+      is_own_cell_(mesh_.n_cells(), 1), released_node_(mesh_.n_nodes(), 0), jumps_(mesh_, loads_)
 {
   core::require(body.density > 0 && body.thickness > 0,
                 fmt::format("far field: density {} kg/m^3 and thickness {} m must be positive",
@@ -357,11 +357,14 @@ void FemSolver<dim>::distribute()
 {
   follow_masters(displacement);
   follow_masters(velocity);
+  jumps_.add_jumps(mesh_, displacement);
+  jumps_.add_rates(mesh_, velocity);
 }
 
 template <int dim>
 void FemSolver<dim>::add_up_forces(double time)
 {
+  jumps_.set_time(time);
   distribute();
   for (auto &f : force)
     std::fill(f.begin(), f.end(), 0.);
@@ -369,6 +372,7 @@ void FemSolver<dim>::add_up_forces(double time)
     corotated_->subtract_forces(displacement, force);
   else
     kernel_->subtract_forces(displacement, force);
+  jumps_.find_reactions(mesh_, force);
   for (auto &f : force)
     hand_to_masters(f);
   for (LoadedComponent &t : traction_components_) {
@@ -448,6 +452,9 @@ void FemSolver<dim>::book_work()
       c.old_force = c.force;
       c.old_displacement = u;
     }
+  if (!has_previous_forces_)
+    jumps_.forget();
+  external_work_ += jumps_.book_work();
   has_previous_forces_ = true;
 }
 
@@ -460,6 +467,10 @@ bool FemSolver<dim>::is_loaded(double time) const
                           load.kind == core::BoundaryLoad<dim>::Kind::acceleration;
     return (is_given ? load.traction(time)[c.component] : prescribed(c, time)) != 0;
   };
+  for (const auto &load : loads_)
+    for (int c = 0; c < dim && load.jump_axis() >= 0; ++c)
+      if (load.value[c] && load.displacement(c, time) != 0)
+        return true;
   return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
          std::any_of(traction_components_.begin(), traction_components_.end(), acts);
 }
@@ -469,7 +480,7 @@ Vector<dim> FemSolver<dim>::reaction(int load) const
 {
   const auto &l = loads_[load];
   const bool is_jump = l.kind == core::BoundaryLoad<dim>::Kind::displacement && l.history.jumps();
-  Vector<dim> sum = Vector<dim>::Zero();
+  Vector<dim> sum = jumps_.reaction(load);
   for (const auto *components : {&held_components_, &traction_components_})
     for (const LoadedComponent &c : *components)
       if (c.load == load)
@@ -549,6 +560,7 @@ Components<dim> FemSolver<dim>::halfway_velocity(double dt) const
     for (int i = 0; i < mesh_.n_nodes(); ++i)
       v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
   follow_masters(v);
+  jumps_.add_rates(mesh_, v);
   return v;
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/dashpots.h"
 #include "core/load.h"
-#include "fem/mesh.h"
+#include "fem/side_jumps.h"
 
 #include <memory>
 
@@ -100,9 +100,10 @@ public:
   /// components with the second half.
   double damp_velocities(double dt);
 
-  /// Hanging nodes take displacement and velocity of their masters.
+  /// Hanging nodes take displacement and velocity of their masters, those beyond joined sides with
+  /// the jumps of the last compute_forces.
   void distribute();
-  /// The same of any nodal field.
+  /// The same of any nodal field, without jumps.
   void follow_masters(Components<dim> &field) const;
 
   /// Elastic energy of the solver's own cells, with the displacements as they are; in J.
@@ -215,6 +216,7 @@ private:
   std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;
   core::Dashpots<dim> dashpots_;
+  SideJumps<dim> jumps_;
   double external_work_ = 0;
   double damping_rate_ = 0; // 1/s
   double step_ = 0;         // s, of the last kick; 0: none yet

@@ -47,6 +47,13 @@ BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &bod
                               std::vector<int> at_interfaces)
     : law_(law), at_interfaces_(std::move(at_interfaces))
 {
+  if (body.images().is_any())
+    body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
+      if (b.image)
+        at_images_.insert(at_images_.end(), {b.i, b.j});
+    });
+  std::sort(at_images_.begin(), at_images_.end());
+  at_images_.erase(std::unique(at_images_.begin(), at_images_.end()), at_images_.end());
   reset(body);
 }
 
@@ -159,8 +166,11 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
     return noted_share_ * strength_of(b, body.materials()) / (size_factor(b) * 2 * b.shear_i) *
            (1 - round_off);
   };
+  const auto is_at_image = [&](int i) {
+    return std::binary_search(at_images_.begin(), at_images_.end(), i);
+  };
   const auto per_volume = [&](int i) {
-    return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i)
+    return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i) || is_at_image(i)
                ? 0
                : 1 / (2 * body.materials().of(i).shear_modulus() * body.energy_weight(i) *
                       p.volume[i]);
@@ -170,9 +180,16 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
       part->for_each_moment(p, e, add);
   };
   const LatticeArrays<dim> a = e.arrays(p);
-  const std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
-                                             {body.bonds(), a, limit, per_volume, for_each_moment,
-                                              criterion().tangent, PrincipalTension<dim>::cone});
+  std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
+                                       {body.bonds(), a, limit, per_volume, for_each_moment,
+                                        criterion().tangent, PrincipalTension<dim>::cone});
+  if (!at_images_.empty()) {
+    std::vector<int> all;
+    std::copy_if(noted.begin(), noted.end(), std::back_inserter(all), [&](int i) {
+      return is_at_image(i) || std::binary_search(kept.begin(), kept.end(), i);
+    });
+    kept = std::move(all);
+  }
   auto &rows = e.noted.rows;
   std::vector<RowRange> rows_left;
   auto range = rows.begin();
@@ -275,7 +292,8 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
   std::vector<BondId> exceeding;
-  PlacesApart<dim> places(criterion().apart * state.body().spacing());
+  PlacesApart<dim> places(criterion().apart * state.body().spacing(),
+                          state.body().images().period());
   for (const auto &t : found)
     if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);

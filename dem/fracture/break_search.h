@@ -87,6 +87,7 @@ private:
 
   FractureLaw law_;
   std::vector<int> at_interfaces_; // ascending
+  std::vector<int> at_images_;     // with a bond to an image, which the screen doesn't know
   double noted_share_ = 1;         // of the limit
   double largest_size_factor_ = 1; // of the bonds
   bool one_by_one_ = false;

@@ -16,8 +16,10 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// Faces that a crack cuts touch from the start.
-  ContactForces(const packings::Packing<dim> &packing, const Materials &materials);
+  ContactForces(const packings::Packing<dim> &packing, const Materials &materials,
+                const PeriodicImages<dim> &images);
 
+  const Contacts<dim> &contacts() const { return contacts_; }
   const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
 
   /// A bond has broken: its particles lie on a surface, its face may touch.
@@ -55,6 +57,7 @@ public:
 private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
+  const PeriodicImages<dim> &images_;
   double spacing_;                            // m
   bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
   std::optional<double> looked_at_;           // s

@@ -170,6 +170,10 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     const std::string key = "/loads/" + std::to_string(k);
     if (!f.sound({key}))
       continue;
+    if (load.periodic || has_components(load.strain)) {
+      check_jump(scene, k, f);
+      continue;
+    }
     if (load.boundary < 0) // was told
       continue;
     const std::vector<std::string> kinds = kinds_of(load);

@@ -185,6 +185,7 @@ void check_scene(const Scene &scene, Findings &f)
     check_inclusions(scene, specimen, layout ? &*layout : nullptr, f);
     check_gauges(scene, specimen, f);
   }
+  check_periodic(scene, layout ? &*layout : nullptr, f);
   check_loads(scene, layout ? &*layout : nullptr, f);
   check_motion(scene, f);
   check_tools(scene, f);

@@ -88,6 +88,11 @@ bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadP
 void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &findings);
 
+/// Axes along which the body repeats itself, and what cannot stand beside them.
+void check_periodic(const Scene &scene, const Layout *layout, Findings &findings);
+/// Load number k, which is a jump across joined sides.
+void check_jump(const Scene &scene, std::size_t k, Findings &findings);
+
 /// What moves at the beginning, and what acts on every mass.
 void check_motion(const Scene &scene, Findings &findings);
 

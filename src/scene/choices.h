@@ -20,6 +20,13 @@ enum class PackingKind
   file
 };
 
+enum class Axis
+{
+  x,
+  y,
+  z
+};
+
 /// How a slot ends.
 enum class SlotTip
 {
@@ -122,6 +129,12 @@ inline const std::vector<std::string> &words(PackingKind)
 {
   static const std::vector<std::string> list = {"square", "hexagonal", "simple_cubic",
                                                 "fcc",    "random",    "file"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(Axis)
+{
+  static const std::vector<std::string> list = {"x", "y", "z"};
   return list;
 }
 

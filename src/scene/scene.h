@@ -63,6 +63,12 @@ struct Ball
   double radius = 0; // m, about the origin
 };
 
+/// An axis along which the body repeats itself: the two sides across it are one.
+struct PeriodicAxis
+{
+  Axis axis = Axis::x;
+};
+
 struct BodyFile; // src/scene/body_file.h
 
 struct Specimen
@@ -79,7 +85,15 @@ struct Specimen
   std::vector<Crack> cracks;
   std::vector<Hole> holes;
   std::vector<Notch> notches;
+  std::vector<PeriodicAxis> periodic;
 
+  bool is_periodic(int c) const
+  {
+    for (const PeriodicAxis &p : periodic)
+      if (int(p.axis) == c)
+        return true;
+    return false;
+  }
   double lower(int c) const { return centre[c] - size[c] / 2; }
   double upper(int c) const { return centre[c] + size[c] / 2; }
   Point lower() const { return {lower(0), lower(1), lower(2)}; }
@@ -270,6 +284,8 @@ struct LoadParameters
 {
   std::string side;                                     // its name
   int boundary = 0;                                     // number of the side, see side_names_of
+  std::optional<Axis> periodic;                         // in place of a side: the jump across it
+  PartialPoint strain;                                  // of that jump over the period
   PartialPoint velocity, displacement, traction, force; // m/s, m, Pa, N; one has components
   double ramp = 0;                                      // s
   History history;

@@ -55,6 +55,12 @@ void declare_specimen_ball(Section &s, Ball &b)
   s.add("radius", b.radius, "of the ball").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
 }
 
+void declare_periodic_axis(Section &s, PeriodicAxis &p)
+{
+  s.add("axis", p.axis, "along which the body repeats itself", words(Axis()));
+  s.set_shorthand("axis");
+}
+
 void declare_specimen(Section &s, Specimen &p)
 {
   s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
@@ -67,6 +73,7 @@ void declare_specimen(Section &s, Specimen &p)
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
+  s.list("periodic", p.periodic, "axes along which the box repeats itself: the two sides across each are joined, bonds and cells go on through them; in a lattice the width must fit it", declare_periodic_axis);
 }
 
 void declare_fracture(Section &s, FractureParameters &f)
@@ -221,9 +228,11 @@ void declare_history(Section &s, History &h)
 
 void declare_load(Section &s, LoadParameters &l)
 {
-  s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required();
+  s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required_unless("there is \"periodic\"");
+  s.add("periodic", l.periodic, "in place of boundary: the load is the jump of the displacement across the sides that are joined along this axis, from a point to its image one period further; components that are not given are 0", words(Axis()));
   s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
+  s.add("strain", l.strain, "for periodic: the jump over the period; along the axis the mean strain, across it the mean shear strain (tan of the angle)").usually(0, 1, "%");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
   s.add("force", l.force, "prescribed force in all, in 2D over the thickness, spread evenly over the part; null: none").in("N").usually(1e-9, 1e12, "kN MN mN");
   s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);

@@ -88,8 +88,11 @@ double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
 {
   const auto criterion = criterion_of(scene);
   return ToughnessCache().factor(toughness_key(scene, material), [&] {
-    if (scene.zone.packing == PackingKind::random)
-      return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
+    if (scene.zone.packing == PackingKind::random) {
+      auto packing = random_packing_of<dim>(scene);
+      packing.periodic = {}; // of a sample
+      return dem::calibrate_toughness<dim>(packing, material, criterion);
+    }
     const auto lattice = lattice_of<dim>(scene);
     return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
   });

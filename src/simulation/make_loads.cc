@@ -71,7 +71,8 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
                 : parameters.kind == LoadKind::displacement ? Kind::displacement
                                                             : Kind::traction;
     const bool is_force = parameters.kind == LoadKind::force;
-    load.part = is_force ? widened<dim>(scene, parameters) : part_of<dim>(parameters);
+    if (load.jump_axis() < 0)
+      load.part = is_force ? widened<dim>(scene, parameters) : part_of<dim>(parameters);
     for (int c = 0; c < dim; ++c)
       load.value[c] = parameters.value[c];
     if (is_force)

@@ -40,9 +40,12 @@ private:
   double load_displacement(const CoupledBody<dim> &body, int load, double time) const;
 
   void look_for_tool(const CoupledBody<dim> &body);
+  void look_for_jump(const CoupledBody<dim> &body);
+  Reading read_jump(const CoupledBody<dim> &body, double time) const;
 
-  int load_ = -1; // index of the load that is read
-  int tool_ = -1; // likewise
+  int load_ = -1;      // index of the load that is read
+  int tool_ = -1;      // likewise
+  int jump_axis_ = -1; // the load is a jump across the sides that are joined along it
   int component_ = 0, axis_ = 0;
   bool is_named_ = false; // a side with a name of its own: the axis is that of its component
   int opposite_ = -1;     // then: the load in the other half of the body, -1: it rests

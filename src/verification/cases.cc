@@ -48,6 +48,7 @@ std::vector<Case> all_cases()
   add(lab_hertz_cases());
   add(lab_shapes_cases());
   add(lab_kirsch_cases());
+  add(lab_periodic_cases());
   add(lab_oblique_cases());
   add(lab_ring_cases());
   add(random_scene_cases());
