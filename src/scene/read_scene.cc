@@ -154,6 +154,8 @@ void complete(Scene &scene)
         load.kind = kind;
         load.value = value;
       }
+    if (load.pressure)
+      load.kind = LoadKind::pressure;
   }
 }
 
