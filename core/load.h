@@ -30,6 +30,9 @@ struct BoundaryLoad
   int boundary = 0;
   Kind kind = Kind::velocity;
   std::array<std::optional<double>, dim> value;
+  /// Of kind traction, in place of a value, in Pa: times history.value(t), against the present
+  /// outward normal of what it acts on.
+  std::optional<double> pressure;
   TimeFunction history;
   Part<dim> part;
   /// Waves leave through this side, beside the traction (theory.md eq. (A1)); kind traction only.
@@ -39,6 +42,8 @@ struct BoundaryLoad
   /// Prescribed displacement of component c at time t, in m (kinds velocity and displacement).
   double displacement(int c, double t) const;
   double velocity(int c, double t) const;
+  /// In Pa at time t; zero where it is no pressure.
+  double pressure_at(double t) const { return pressure ? *pressure * history.value(t) : 0; }
   /// Given traction in Pa or acceleration in m/s^2; zero for components without a value.
   Vector<dim> traction(double t) const;
 };

@@ -63,8 +63,10 @@ void SurfaceLoads<dim>::add_faces(const packings::OuterFace<dim> &face, double s
   for (const Held &h : held)
     if (h.wall.prescribed.any())
       walls_.push_back(h.wall);
+  pressed_.add_face(face, shear_modulus, loads_);
   for (std::size_t l = 0; l < loads_.size(); ++l)
-    if (loads_[l].boundary == face.of.boundary && loads_[l].kind == Kind::traction)
+    if (loads_[l].boundary == face.of.boundary && loads_[l].kind == Kind::traction &&
+        !loads_[l].pressure)
       if (const auto inside = face.inside({loads_[l].part})) {
         Vector<dim> acting = Vector<dim>::Ones();
         for (const Held &h : held)
@@ -78,7 +80,7 @@ void SurfaceLoads<dim>::add_faces(const packings::OuterFace<dim> &face, double s
 template <int dim>
 std::vector<int> SurfaceLoads<dim>::particles() const
 {
-  std::vector<int> found;
+  std::vector<int> found = pressed_.particles();
   for (const auto &wall : walls_)
     found.push_back(wall.i);
   for (const auto &face : tractions_)
@@ -90,6 +92,7 @@ template <int dim>
 void SurfaceLoads<dim>::set_time(double t)
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;
+  pressed_.set_time(loads_, t);
   for (std::size_t l = 0; l < loads_.size(); ++l)
     if (loads_[l].kind == Kind::traction)
       traction_[l] = loads_[l].traction(t);
@@ -105,10 +108,10 @@ void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> *rest)
   if (!rest || rest->all_awake())
     return;
   for (int l = 0; l < n_loads(); ++l) {
-    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0)))
+    std::vector<int> loaded = pressed_.particles_under(l);
+    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0) && loaded.empty()))
       continue;
     has_begun_[l] = 1;
-    std::vector<int> loaded;
     for (const auto &wall : walls_)
       if (std::find(wall.load.begin(), wall.load.end(), l) != wall.load.end())
         loaded.push_back(wall.i);
@@ -163,6 +166,7 @@ void SurfaceLoads<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) co
     e.pressure[face.i] +=
         stiffness[face.i] * law_of(face).dilatation(traction(face, e.has_loads), a);
   }
+  pressed_.add_pressures(p, e);
 }
 
 template <int dim>
@@ -219,6 +223,7 @@ void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) c
   for (std::size_t l = 0; l < loads_.size(); ++l)
     for (int c = 0; c < dim; ++c)
       e.reactions[l][c] = reactions[l][c].value();
+  pressed_.add_reactions(p, e);
 }
 
 template <int dim>
@@ -233,6 +238,7 @@ void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
     act(walls_[w].i, wrench(walls_[w], p, e.wall_forces[w]));
   for (const auto &face : tractions_)
     act(face.i, wrench(face, p, e));
+  pressed_.add_forces(p, e);
 }
 
 template <int dim>
@@ -243,6 +249,7 @@ void SurfaceLoads<dim>::add_force_on(int i, const Particles &p, const Evaluation
     sum.force += wrench.force;
     sum.torque += wrench.torque;
   };
+  pressed_.add_force_on(i, p, e, sum);
   const auto faces = faces_of_.find(i);
   if (faces == faces_of_.end())
     return;
@@ -276,6 +283,7 @@ void SurfaceLoads<dim>::for_each_moment(const Particles &p, const Evaluation<dim
     visit(wall.i, lever(wall), force(wall, p, e));
   for (const auto &face : tractions_)
     visit(face.i, lever(face), law_of(face).force(traction(face, e.has_loads)));
+  pressed_.for_each_moment(p, e, visit);
 }
 
 template <int dim>
@@ -327,6 +335,7 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
     }
   }
   booked_ = std::move(now);
+  pressed_.book_work(p, e, work_);
 }
 
 namespace
@@ -404,6 +413,7 @@ void SurfaceLoads<dim>::save(core::State &state, const core::Names &names) const
   state["walls"] = table_of<dim>(walls_, names, {{"force", &booked_->wall_force}});
   state["loaded_faces"] = table_of<dim>(
       tractions_, names, {{"place", &booked_->place}, {"gradient", &booked_->gradient}});
+  pressed_.save(state, names);
 }
 
 template <int dim>
@@ -428,6 +438,7 @@ void SurfaceLoads<dim>::load(const core::State &state, const core::Names &names,
     }
   }
   booked_ = std::move(old);
+  pressed_.load(state, names);
 }
 
 template class SurfaceLoads<2>;

@@ -5,6 +5,7 @@
 #include "core/load.h"
 #include "dem/loaded_faces.h"
 #include "dem/parts/force_part.h"
+#include "dem/pressed_cells.h"
 #include "packings/outer_face.h"
 
 #include <map>
@@ -74,6 +75,7 @@ private:
   std::vector<core::BoundaryLoad<dim>> loads_;
   std::vector<WallFace<dim>> walls_;
   std::vector<TractionFace<dim>> tractions_;
+  PressedCells<dim> pressed_;
   /// Walls and tractions of each particle that has some.
   std::map<int, std::array<std::vector<int>, 2>> faces_of_;
   std::vector<Vector<dim>> displacement_, traction_; // of each load

@@ -4,6 +4,8 @@
 
 #include "core/dashpots.h"
 #include "core/load.h"
+#include "fem/mesh.h"
+#include "fem/pressed_faces.h"
 #include "fem/side_jumps.h"
 
 #include <memory>
@@ -186,6 +188,8 @@ private:
   /// Shares of the nodes in the part that the load acts on, in m^2; of the own cells.
   std::vector<double> loaded_areas(const core::BoundaryLoad<dim> &load) const;
   void add_body_forces();
+  void find_pressed_faces();
+  void add_pressures(double time);
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
   /// Displacement of a held component at a time in s, in m.
@@ -215,6 +219,13 @@ private:
   std::vector<double> mass_, inverse_mass_;
   std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;
+  /// A part of what a pressed face gives to a node: hanging ones hand it to their masters.
+  struct PressedShare
+  {
+    int first; // of the node's components in traction_components_
+    double share;
+  };
+  std::vector<std::pair<PressedFace<dim>, std::vector<PressedShare>>> pressed_;
   core::Dashpots<dim> dashpots_;
   SideJumps<dim> jumps_;
   double external_work_ = 0;

@@ -82,6 +82,8 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
                    Findings &findings);
 void check_part(const Scene &scene, const LoadParameters &load, const std::string &key,
                 Findings &findings);
+/// The servo of a load that has one.
+void check_servo(const Scene &scene, std::size_t load, Findings &findings);
 /// Whether the parts of the same side on which they act have an area in common.
 bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b);
 /// Whether the part keeps its distance from an overlap that ends at the same side.

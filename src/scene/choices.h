@@ -94,7 +94,8 @@ enum class LoadKind
   velocity,     // m/s
   displacement, // m
   traction,     // Pa
-  force         // N, spread over the part
+  force,        // N, spread over the part
+  pressure      // Pa, along the present normal
 };
 
 /// The shape of a rigid tool.
@@ -187,7 +188,8 @@ inline const std::vector<std::string> &words(StaticSolver)
 
 inline const std::vector<std::string> &words(LoadKind)
 {
-  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force"};
+  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force",
+                                                "pressure"};
   return list;
 }
 

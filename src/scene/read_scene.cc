@@ -170,6 +170,8 @@ void complete(Scene &scene)
         load.kind = LoadKind::displacement;
         load.value[c] = *load.strain[c] * scene.specimen.size[int(*load.periodic)];
       }
+    if (load.pressure)
+      load.kind = LoadKind::pressure;
   }
 }
 

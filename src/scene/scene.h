@@ -280,6 +280,20 @@ struct History
   bool is_given() const { return !table.empty() || pulse || cycles; }
 };
 
+/// A machine that moves so that a measured quantity follows a course.
+struct ServoParameters
+{
+  std::string gauge;            // column of a gauge; empty: the load's own mean stress
+  std::optional<double> stress; // Pa, wanted where there is no gauge
+  std::optional<double> value;  // wanted of the gauge, in the unit of its column
+  double ramp = 0;              // s
+  History history;
+  double gain = 0;          // of the gauge per m of the load's motion; 0: 1
+  double response_time = 0; // s; 0: automatic
+
+  double wanted() const { return gauge.empty() ? stress.value_or(0) : value.value_or(0); }
+};
+
 struct LoadParameters
 {
   std::string side;                                     // its name
@@ -287,9 +301,11 @@ struct LoadParameters
   std::optional<Axis> periodic;                         // in place of a side: the jump across it
   PartialPoint strain;                                  // of that jump over the period
   PartialPoint velocity, displacement, traction, force; // m/s, m, Pa, N; one has components
+  std::optional<double> pressure;                       // Pa, in place of them
   double ramp = 0;                                      // s
   History history;
-  std::optional<double> from, to; // m, along the side in 2D
+  std::optional<ServoParameters> servo; // in place of both; of a velocity, which bounds it
+  std::optional<double> from, to;       // m, along the side in 2D
   Region within;
   bool absorbing = false;             // lets waves out, beside a traction or alone
   double absorbing_layer = 0;         // m

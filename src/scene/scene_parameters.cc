@@ -226,6 +226,17 @@ void declare_history(Section &s, History &h)
   s.section("cycles", h.cycles, "none", "a sine wave about a mean", declare_cycles);
 }
 
+void declare_servo(Section &s, ServoParameters &v)
+{
+  s.add("gauge", v.gauge, "the quantity: a column of history.csv that belongs to a gauge in /gauges (its name, where it has one column); not given: the load's own force over its area, tension positive");
+  s.add("stress", v.stress, "wanted without gauge: the mean stress of the load; compression is negative").in("Pa").usually(10, 2e11, "MPa kPa GPa");
+  s.add("value", v.value, "wanted of the gauge, in the SI unit of its column; reached with the course's 1");
+  s.add("ramp", v.ramp, "time over which the wanted value grows").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  declare_history(s.section("history", "course of the wanted value in time, as for loads"), v.history);
+  s.add("gain", v.gain, "by how much the gauge's column rises when the load moves by 1 m along its velocity, roughly; 0: 1, as for a distance between points that the whole specimen's elongation opens");
+  s.add("response_time", v.response_time, "within which the machine answers; 0: four transits of a shear wave through the specimen's longest edge, times its slenderness").in("s").usually(1e-12, 1e3, "us ms ns").at_least(0);
+}
+
 void declare_load(Section &s, LoadParameters &l)
 {
   s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required_unless("there is \"periodic\"");
@@ -235,8 +246,10 @@ void declare_load(Section &s, LoadParameters &l)
   s.add("strain", l.strain, "for periodic: the jump over the period; along the axis the mean strain, across it the mean shear strain (tan of the angle)").usually(0, 1, "%");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
   s.add("force", l.force, "prescribed force in all, in 2D over the thickness, spread evenly over the part; null: none").in("N").usually(1e-9, 1e12, "kN MN mN");
+  s.add("pressure", l.pressure, "prescribed pressure along the present normal of the surface, which it follows; positive presses").in("Pa").usually(10, 2e11, "MPa kPa GPa");
   s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
   declare_history(s.section("history", "course of the load in time, as a factor on its value, in place of a ramp: one of a table, a pulse, cycles"), l.history);
+  s.section("servo", l.servo, "none", "steers the load so that a measured quantity follows a course: it moves along its velocity, at most as fast, either way; in place of ramp and history", declare_servo);
   s.add("from", l.from, "the load acts on a part of the side: from this coordinate along it; not set: from its end").in("m").usually(0, 1e4, "mm um").only_in(2);
   s.add("to", l.to, "to this one; not set: to its end; a force may act at a point, from = to").in("m").usually(0, 1e4, "mm um").only_in(2);
   declare_region_of(s.section("within", "the load acts on the part of the side within a box or a ball"), l.within);

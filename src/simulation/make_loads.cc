@@ -79,7 +79,9 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
       for (auto &component : load.value)
         if (component)
           *component /= loaded_area<dim>(scene, load);
-    load.history = time_function_of(parameters.history, parameters.ramp);
+    load.pressure = parameters.pressure;
+    load.history = parameters.servo ? core::TimeFunction(core::Steered())
+                                    : time_function_of(parameters.history, parameters.ramp);
     load.absorbing = parameters.absorbing;
     load.absorbing_layer = parameters.absorbing_layer;
     loads.push_back(load);

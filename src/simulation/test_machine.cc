@@ -63,6 +63,11 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
         load_ = int(l);
         component_ = c;
       }
+  for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
+    if (body.loads[l].pressure && body.loads[l].boundary < 2 * dim) {
+      load_ = int(l);
+      component_ = body.loads[l].boundary / 2;
+    }
   if (load_ < 0) {
     look_for_tool(body);
     return;

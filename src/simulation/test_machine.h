@@ -14,7 +14,8 @@ struct Reading
 };
 
 /// Reads the first load that has a component: its largest one is the axis of the test. Without such
-/// a load it reads the first tool that is driven, its force and its way.
+/// a load it reads the first pressure on a side of the box, or else the first tool that is driven,
+/// its force and its way.
 /// On a side with a name of its own the axis is that of the component, the area that of the box
 /// around the specimen across it, and the displacement is against the load in the other half.
 /// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
