@@ -217,7 +217,7 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
                         screen,
                         breaking.strength / (2 * shear_modulus_),
                         breaking.tangent,
-                        breaking.per_cosine()};
+                        breaking.measure};
   long n_reached = 0;
   sweep.n_reached = &n_reached;
   sweep.faces_too = faces_too;

@@ -10,8 +10,8 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                                   const FractureLaw &fracture)
     : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
       rows_(body_), slices_(body_), interfaces_(body_.bonds()), contacts_(packing, materials),
-      search_(fracture, body_, interfaces_.members()), evaluation_(body_), trial_(body_),
-      energy_evaluation_(body_)
+      search_(fracture, body_, interfaces_.members(), packing.global_id), evaluation_(body_),
+      trial_(body_), energy_evaluation_(body_)
 {
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();

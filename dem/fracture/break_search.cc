@@ -44,9 +44,14 @@ void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particle
 
 template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
-                              std::vector<int> at_interfaces)
+                              std::vector<int> at_interfaces,
+                              const std::vector<std::int64_t> &names)
     : law_(law), at_interfaces_(std::move(at_interfaces))
 {
+  const auto &of = law_.strengths;
+  if (law_.strength.scatter.modulus > 0 ||
+      std::any_of(of.begin(), of.end(), [](const auto &s) { return s.scatter.modulus > 0; }))
+    names_ = names.empty() ? particles::GlobalIds(body.n_particles()) : particles::GlobalIds(names);
   reset(body);
 }
 
@@ -56,7 +61,7 @@ void BreakSearch<dim>::set_strength(double strength, const BondedBody<dim> &body
   core::require(strength > 0, "the strength must be positive");
   if (!can_break())
     law_.criterion = FractureLaw::Criterion::maximum_tension;
-  law_.strength = strength;
+  law_.strength.value = strength;
   reset(body);
 }
 
@@ -72,11 +77,41 @@ template <int dim>
 void BreakSearch<dim>::reset(const BondedBody<dim> &body)
 {
   screen_.clear();
-  largest_size_factor_ = 1;
-  if (law_.whole_face > 0)
-    body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
-      largest_size_factor_ = std::max(largest_size_factor_, size_factor(b));
-    });
+  measures_.clear();
+  most_weakened_ = 1;
+  if (!can_break())
+    return;
+  const Materials &materials = body.materials();
+  for (int m = 0; m < int(materials.all().size()); ++m)
+    measures_.push_back(measure_of(strength_in(m), materials.all()[m]));
+  one_measure_ = std::all_of(measures_.begin(), measures_.end(),
+                             [&](const auto &m) { return m == measures_[0]; });
+  if (law_.whole_face <= 0 && !names_)
+    return;
+  body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
+    double scatter = 1;
+    if (names_)
+      scatter =
+          std::min(scatter_of(b, materials.number(b.i)), scatter_of(b, materials.number(b.j)));
+    most_weakened_ = std::max(most_weakened_, size_factor(b) / scatter);
+  });
+}
+
+template <int dim>
+StressMeasure BreakSearch<dim>::measure_of(const FaceStrength &strength,
+                                           const DemMaterial &material) const
+{
+  if (criterion().measure)
+    return criterion().measure(strength, material);
+  StressMeasure largest_principal;
+  largest_principal.residual = BreakScreen::per_cosine(criterion().tangent);
+  return largest_principal;
+}
+
+template <int dim>
+double BreakSearch<dim>::scatter_of(const Bond<dim> &b, int material) const
+{
+  return strength_in(material).scatter.factor((*names_)[b.i], (*names_)[b.j], b.area);
 }
 
 template <int dim>
@@ -86,26 +121,32 @@ double BreakSearch<dim>::size_factor(const Bond<dim> &b) const
 }
 
 template <int dim>
+double BreakSearch<dim>::strength_of(const Bond<dim> &b, int material) const
+{
+  const double value = strength_in(material).value;
+  return names_ ? value * scatter_of(b, material) : value;
+}
+
+template <int dim>
 double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materials) const
 {
-  const auto &of = law_.strengths;
-  return of.empty() ? law_.strength
-                    : std::min(of[materials.number(b.i)], of[materials.number(b.j)]);
+  const int i = materials.number(b.i), j = materials.number(b.j);
+  return i == j ? strength_of(b, i) : std::min(strength_of(b, i), strength_of(b, j));
 }
 
 template <int dim>
 BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
 {
-  double least = law_.strength;
+  double least = law_.strength.value;
   const Materials &materials = body.materials();
   if (of_table) // in terms of the first material's bonds
     for (std::size_t m = 0; m < materials.all().size(); ++m)
-      least = std::min(least, (law_.strengths.empty() ? law_.strength : law_.strengths[m]) *
-                                  materials.base().shear_modulus() /
+      least = std::min(least, strength_in(int(m)).value * materials.base().shear_modulus() /
                                   materials.all()[m].shear_modulus());
   constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  return {share * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
-          criterion().clearing != Clearing::by_face};
+  return {share * least / most_weakened_ * criterion().least_share * (1 - round_off),
+          criterion().tangent, criterion().clearing != Clearing::by_face && one_measure_,
+          measures_[0].times(criterion().least_share)};
 }
 
 // The screen of stresses doesn't know plastic strains.
@@ -115,7 +156,8 @@ void BreakSearch<dim>::ask(Evaluation<dim> &e, const PlasticFlow<dim> &flow) con
   if (can_break())
     e.look =
         BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
-                  criterion().clearing == Clearing::by_stress && !flow.has_flowed(), noted_share_};
+                  criterion().clearing == Clearing::by_stress && one_measure_ && !flow.has_flowed(),
+                  noted_share_};
 }
 
 template <int dim>
@@ -134,11 +176,14 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
   const double normal = t.traction.dot(t.normal);
-  if (normal <= 0 || !state.body().edge().may_break(b))
+  const bool presses = normal <= 0;
+  if ((presses && !criterion().breaks_under_pressure()) || !state.body().edge().may_break(b))
     return t;
   const double shear = (t.traction - normal * t.normal).norm();
-  t.utilisation = size_factor(b) * (normal + criterion().tangent * shear) /
-                  strength_of(b, state.body().materials());
+  const double bound = criterion().breaks_under_pressure()
+                           ? (presses ? shear : t.traction.norm()) / criterion().least_share
+                           : normal + criterion().tangent * shear;
+  t.utilisation = size_factor(b) * bound / strength_of(b, state.body().materials());
   return t;
 }
 
@@ -157,7 +202,7 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   constexpr double round_off = 1e-7;
   const auto limit = [&](const Bond<dim> &b) {
     return noted_share_ * strength_of(b, body.materials()) / (size_factor(b) * 2 * b.shear_i) *
-           (1 - round_off);
+           criterion().least_share * (1 - round_off);
   };
   const auto per_volume = [&](int i) {
     return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i)
@@ -170,9 +215,10 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
       part->for_each_moment(p, e, add);
   };
   const LatticeArrays<dim> a = e.arrays(p);
-  const std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
-                                             {body.bonds(), a, limit, per_volume, for_each_moment,
-                                              criterion().tangent, PrincipalTension<dim>::cone});
+  const std::vector<int> kept =
+      screen_.keep(noted, e.noted.own_terms,
+                   {body.bonds(), a, limit, per_volume, for_each_moment, criterion().tangent,
+                    PrincipalTension<dim>::cone, measures_[0].times(criterion().least_share)});
   auto &rows = e.noted.rows;
   std::vector<RowRange> rows_left;
   auto range = rows.begin();
@@ -248,16 +294,32 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
     return stress[std::lower_bound(few.begin(), few.end(), i) - few.begin()];
   };
   for (auto &t : bonds) {
-    constexpr double round_off = 1e-12;
-    const double size = size_factor(t.bond),
-                 strength = strength_of(t.bond, state.body().materials());
     LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
     if (criterion().needs_stress)
       face.stress = (of(t.bond.i) + of(t.bond.j)) / 2;
-    t.utilisation = size * criterion().bound(face) / strength;
-    if (t.utilisation >= least * (1 - round_off))
-      t.utilisation = size * criterion().tension(face) / strength;
+    const Materials &materials = state.body().materials();
+    if (one_measure_) {
+      face.measure = measures_[0];
+      t.utilisation = utilisation(face, t.bond, strength_of(t.bond, materials), least);
+      continue;
+    }
+    t.utilisation = 0;
+    for (const int i : {t.bond.i, t.bond.j}) {
+      const int m = materials.number(i);
+      face.measure = measures_[m];
+      t.utilisation =
+          std::max(t.utilisation, utilisation(face, t.bond, strength_of(t.bond, m), least));
+    }
   }
+}
+
+template <int dim>
+double BreakSearch<dim>::utilisation(const LoadedFace<dim> &face, const Bond<dim> &b,
+                                     double strength, double least) const
+{
+  constexpr double round_off = 1e-12;
+  const double size = size_factor(b), bound = size * criterion().bound(face) / strength;
+  return bound >= least * (1 - round_off) ? size * criterion().tension(face) / strength : bound;
 }
 
 template <int dim>

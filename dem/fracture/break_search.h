@@ -10,14 +10,14 @@ namespace ligament::dem
 {
 using particles::Utilisation, particles::Watch;
 
-/// A bond under tension as a criterion looks at it.
+/// A loaded bond as a criterion looks at it.
 template <int dim>
 struct BondTension
 {
   BondId id;
   Bond<dim> bond;
   Vector<dim> normal, traction; // of the face at present; Pa
-  double utilisation;           // tension over strength, or a bound of it; 0 without tension
+  double utilisation;           // tension over strength, or a bound of it; 0: cannot break
 };
 
 template <int dim>
@@ -26,11 +26,14 @@ class BreakSearch
 public:
   using Particles = particles::Particles<dim>;
 
-  /// Particles `at_interfaces` have bonds to another material.
-  BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces);
+  /// Particles `at_interfaces` have bonds to another material; names of all particles that no
+  /// numbering changes (empty: their indices), which scatter of strengths reads.
+  BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces,
+              const std::vector<std::int64_t> &names);
 
   const FractureLaw &law() const { return law_; }
   bool can_break() const { return law_.criterion != FractureLaw::Criterion::none; }
+  bool breaks_under_pressure() const { return can_break() && criterion().breaks_under_pressure(); }
   /// By maximum tension if there was no criterion; in Pa.
   void set_strength(double strength, const BondedBody<dim> &body);
   /// See ForceReport::set_noted_share.
@@ -72,7 +75,15 @@ private:
   const CriterionIn<dim> &criterion() const { return law_.criterion.template in<dim>(); }
   /// What the kernels look for; of the table's bonds in terms of the first material's.
   BreakScreen screen(const BondedBody<dim> &body, double share, bool of_table) const;
-  /// Of a bond in Pa.
+  const FaceStrength &strength_in(int material) const
+  {
+    return law_.strengths.empty() ? law_.strength : law_.strengths[material];
+  }
+  StressMeasure measure_of(const FaceStrength &strength, const DemMaterial &material) const;
+  /// Of a bond; only where some scatter.
+  double scatter_of(const Bond<dim> &bond, int material) const;
+  /// Of a bond in Pa, if it were of one material; and the smaller one of both sides.
+  double strength_of(const Bond<dim> &bond, int material) const;
   double strength_of(const Bond<dim> &bond, const Materials &materials) const;
   double size_factor(const Bond<dim> &bond) const;
   /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
@@ -84,11 +95,16 @@ private:
   /// something not smaller and below it may stand instead.
   void find_tensions(std::vector<BondTension<dim>> &bonds, const StressedBody<dim> &state,
                      double least) const;
+  double utilisation(const LoadedFace<dim> &face, const Bond<dim> &bond, double strength,
+                     double least) const;
 
   FractureLaw law_;
-  std::vector<int> at_interfaces_; // ascending
-  double noted_share_ = 1;         // of the limit
-  double largest_size_factor_ = 1; // of the bonds
+  std::vector<StressMeasure> measures_;       // of each material
+  bool one_measure_ = true;                   // they are all the same
+  std::optional<particles::GlobalIds> names_; // where strengths scatter
+  std::vector<int> at_interfaces_;            // ascending
+  double noted_share_ = 1;                    // of the limit
+  double most_weakened_ = 1; // largest size factor of a bond over what scatter leaves of it
   bool one_by_one_ = false;
   StressScreen<dim> screen_;
 };
