@@ -37,5 +37,7 @@ struct FractureLaw
   std::vector<FaceStrength> strengths = {};
   /// m^2, thickness included: the whole face of size factors, eq. (D12b); 0: size doesn't matter.
   double whole_face = 0;
+  /// Of each material; empty: `criterion` for all. Bonds between two obey both.
+  std::vector<Criterion> criteria = {};
 };
 } // namespace ligament::dem

@@ -46,23 +46,15 @@ template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
                               std::vector<int> at_interfaces,
                               const std::vector<std::int64_t> &names)
-    : law_(law), at_interfaces_(std::move(at_interfaces))
+    : criteria_(law, body, names), at_interfaces_(std::move(at_interfaces))
 {
-  const auto &of = law_.strengths;
-  if (law_.strength.scatter.modulus > 0 ||
-      std::any_of(of.begin(), of.end(), [](const auto &s) { return s.scatter.modulus > 0; }))
-    names_ = names.empty() ? particles::GlobalIds(body.n_particles()) : particles::GlobalIds(names);
-  reset(body);
 }
 
 template <int dim>
 void BreakSearch<dim>::set_strength(double strength, const BondedBody<dim> &body)
 {
-  core::require(strength > 0, "the strength must be positive");
-  if (!can_break())
-    law_.criterion = FractureLaw::Criterion::maximum_tension;
-  law_.strength.value = strength;
-  reset(body);
+  criteria_.set_strength(strength, body);
+  screen_.clear();
 }
 
 template <int dim>
@@ -76,77 +68,16 @@ void BreakSearch<dim>::set_noted_share(double share)
 template <int dim>
 void BreakSearch<dim>::reset(const BondedBody<dim> &body)
 {
+  criteria_.reset(body);
   screen_.clear();
-  measures_.clear();
-  most_weakened_ = 1;
-  if (!can_break())
-    return;
-  const Materials &materials = body.materials();
-  for (int m = 0; m < int(materials.all().size()); ++m)
-    measures_.push_back(measure_of(strength_in(m), materials.all()[m]));
-  one_measure_ = std::all_of(measures_.begin(), measures_.end(),
-                             [&](const auto &m) { return m == measures_[0]; });
-  if (law_.whole_face <= 0 && !names_)
-    return;
-  body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
-    double scatter = 1;
-    if (names_)
-      scatter =
-          std::min(scatter_of(b, materials.number(b.i)), scatter_of(b, materials.number(b.j)));
-    most_weakened_ = std::max(most_weakened_, size_factor(b) / scatter);
-  });
 }
 
 template <int dim>
-StressMeasure BreakSearch<dim>::measure_of(const FaceStrength &strength,
-                                           const DemMaterial &material) const
+BreakLook BreakSearch<dim>::look_at(const Materials &materials, double share,
+                                    bool cleared_by_stress) const
 {
-  if (criterion().measure)
-    return criterion().measure(strength, material);
-  StressMeasure largest_principal;
-  largest_principal.residual = BreakScreen::per_cosine(criterion().tangent);
-  return largest_principal;
-}
-
-template <int dim>
-double BreakSearch<dim>::scatter_of(const Bond<dim> &b, int material) const
-{
-  return strength_in(material).scatter.factor((*names_)[b.i], (*names_)[b.j], b.area);
-}
-
-template <int dim>
-double BreakSearch<dim>::size_factor(const Bond<dim> &b) const
-{
-  return law_.whole_face > 0 && can_break() ? criterion().size_factor(b.area / law_.whole_face) : 1;
-}
-
-template <int dim>
-double BreakSearch<dim>::strength_of(const Bond<dim> &b, int material) const
-{
-  const double value = strength_in(material).value;
-  return names_ ? value * scatter_of(b, material) : value;
-}
-
-template <int dim>
-double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materials) const
-{
-  const int i = materials.number(b.i), j = materials.number(b.j);
-  return i == j ? strength_of(b, i) : std::min(strength_of(b, i), strength_of(b, j));
-}
-
-template <int dim>
-BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
-{
-  double least = law_.strength.value;
-  const Materials &materials = body.materials();
-  if (of_table) // in terms of the first material's bonds
-    for (std::size_t m = 0; m < materials.all().size(); ++m)
-      least = std::min(least, strength_in(int(m)).value * materials.base().shear_modulus() /
-                                  materials.all()[m].shear_modulus());
-  constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  return {share * least / most_weakened_ * criterion().least_share * (1 - round_off),
-          criterion().tangent, criterion().clearing != Clearing::by_face && one_measure_,
-          measures_[0].times(criterion().least_share)};
+  return {criteria_.screen(materials, share, false), criteria_.screen(materials, share, true),
+          cleared_by_stress, share};
 }
 
 // The screen of stresses doesn't know plastic strains.
@@ -154,17 +85,15 @@ template <int dim>
 void BreakSearch<dim>::ask(Evaluation<dim> &e, const PlasticFlow<dim> &flow) const
 {
   if (can_break())
-    e.look =
-        BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
-                  criterion().clearing == Clearing::by_stress && one_measure_ && !flow.has_flowed(),
-                  noted_share_};
+    e.look = look_at(e.body.materials(), noted_share_,
+                     criteria_.clear_by_stress() && !flow.has_flowed());
 }
 
 template <int dim>
 void BreakSearch<dim>::ask_trial(Evaluation<dim> &e, double share) const
 {
   if (can_break())
-    e.look = BreakLook{screen(e.body, share, false), screen(e.body, share, true), false, share};
+    e.look = look_at(e.body.materials(), share, false);
 }
 
 template <int dim>
@@ -175,15 +104,8 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
-  const double normal = t.traction.dot(t.normal);
-  const bool presses = normal <= 0;
-  if ((presses && !criterion().breaks_under_pressure()) || !state.body().edge().may_break(b))
-    return t;
-  const double shear = (t.traction - normal * t.normal).norm();
-  const double bound = criterion().breaks_under_pressure()
-                           ? (presses ? shear : t.traction.norm()) / criterion().least_share
-                           : normal + criterion().tangent * shear;
-  t.utilisation = size_factor(b) * bound / strength_of(b, state.body().materials());
+  if (state.body().edge().may_break(b))
+    t.utilisation = criteria_.bound(b, t.normal, t.traction, state.body().materials());
   return t;
 }
 
@@ -201,8 +123,7 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   const BondedBody<dim> &body = e.body;
   constexpr double round_off = 1e-7;
   const auto limit = [&](const Bond<dim> &b) {
-    return noted_share_ * strength_of(b, body.materials()) / (size_factor(b) * 2 * b.shear_i) *
-           criterion().least_share * (1 - round_off);
+    return noted_share_ * criteria_.limit(b, body.materials()) / (2 * b.shear_i) * (1 - round_off);
   };
   const auto per_volume = [&](int i) {
     return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i)
@@ -217,8 +138,8 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   const LatticeArrays<dim> a = e.arrays(p);
   const std::vector<int> kept =
       screen_.keep(noted, e.noted.own_terms,
-                   {body.bonds(), a, limit, per_volume, for_each_moment, criterion().tangent,
-                    PrincipalTension<dim>::cone, measures_[0].times(criterion().least_share)});
+                   {body.bonds(), a, limit, per_volume, for_each_moment, criteria_.tangent(),
+                    PrincipalTension<dim>::cone, criteria_.measure()});
   auto &rows = e.noted.rows;
   std::vector<RowRange> rows_left;
   auto range = rows.begin();
@@ -284,7 +205,7 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
                                      const StressedBody<dim> &state, double least) const
 {
   std::vector<int> few;
-  if (criterion().needs_stress)
+  if (criteria_.need_stress())
     for (const auto &t : bonds)
       few.insert(few.end(), {t.bond.i, t.bond.j});
   std::sort(few.begin(), few.end());
@@ -295,31 +216,10 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
   };
   for (auto &t : bonds) {
     LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
-    if (criterion().needs_stress)
+    if (criteria_.need_stress())
       face.stress = (of(t.bond.i) + of(t.bond.j)) / 2;
-    const Materials &materials = state.body().materials();
-    if (one_measure_) {
-      face.measure = measures_[0];
-      t.utilisation = utilisation(face, t.bond, strength_of(t.bond, materials), least);
-      continue;
-    }
-    t.utilisation = 0;
-    for (const int i : {t.bond.i, t.bond.j}) {
-      const int m = materials.number(i);
-      face.measure = measures_[m];
-      t.utilisation =
-          std::max(t.utilisation, utilisation(face, t.bond, strength_of(t.bond, m), least));
-    }
+    t.utilisation = criteria_.utilisation(face, t.bond, state.body().materials(), least);
   }
-}
-
-template <int dim>
-double BreakSearch<dim>::utilisation(const LoadedFace<dim> &face, const Bond<dim> &b,
-                                     double strength, double least) const
-{
-  constexpr double round_off = 1e-12;
-  const double size = size_factor(b), bound = size * criterion().bound(face) / strength;
-  return bound >= least * (1 - round_off) ? size * criterion().tension(face) / strength : bound;
 }
 
 template <int dim>
@@ -337,14 +237,14 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
   find_tensions(found, state, 1);
   keep_exceeding();
   sort_by_ids(found, state.particles); // few are left
-  const bool all_at_once = criterion().apart == 0;
+  const bool all_at_once = criteria_.apart() == 0;
   if (!all_at_once || one_by_one_)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
   std::vector<BondId> exceeding;
-  PlacesApart<dim> places(criterion().apart * state.body().spacing());
+  PlacesApart<dim> places(criteria_.apart() * state.body().spacing());
   for (const auto &t : found)
     if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);

@@ -2,7 +2,7 @@
 // kernels says that they could hold.
 #pragma once
 
-#include "dem/fracture_law.h"
+#include "dem/fracture/bond_criteria.h"
 #include "dem/stress_screen.h"
 #include "dem/stressed_body.h"
 
@@ -31,9 +31,9 @@ public:
   BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces,
               const std::vector<std::int64_t> &names);
 
-  const FractureLaw &law() const { return law_; }
-  bool can_break() const { return law_.criterion != FractureLaw::Criterion::none; }
-  bool breaks_under_pressure() const { return can_break() && criterion().breaks_under_pressure(); }
+  const FractureLaw &law() const { return criteria_.law(); }
+  bool can_break() const { return criteria_.can_break(); }
+  bool breaks_under_pressure() const { return criteria_.break_under_pressure(); }
   /// By maximum tension if there was no criterion; in Pa.
   void set_strength(double strength, const BondedBody<dim> &body);
   /// See ForceReport::set_noted_share.
@@ -72,20 +72,7 @@ public:
   void reset(const BondedBody<dim> &body);
 
 private:
-  const CriterionIn<dim> &criterion() const { return law_.criterion.template in<dim>(); }
-  /// What the kernels look for; of the table's bonds in terms of the first material's.
-  BreakScreen screen(const BondedBody<dim> &body, double share, bool of_table) const;
-  const FaceStrength &strength_in(int material) const
-  {
-    return law_.strengths.empty() ? law_.strength : law_.strengths[material];
-  }
-  StressMeasure measure_of(const FaceStrength &strength, const DemMaterial &material) const;
-  /// Of a bond; only where some scatter.
-  double scatter_of(const Bond<dim> &bond, int material) const;
-  /// Of a bond in Pa, if it were of one material; and the smaller one of both sides.
-  double strength_of(const Bond<dim> &bond, int material) const;
-  double strength_of(const Bond<dim> &bond, const Materials &materials) const;
-  double size_factor(const Bond<dim> &bond) const;
+  BreakLook look_at(const Materials &materials, double share, bool cleared_by_stress) const;
   /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond,
                                 const StressedBody<dim> &state) const;
@@ -95,16 +82,10 @@ private:
   /// something not smaller and below it may stand instead.
   void find_tensions(std::vector<BondTension<dim>> &bonds, const StressedBody<dim> &state,
                      double least) const;
-  double utilisation(const LoadedFace<dim> &face, const Bond<dim> &bond, double strength,
-                     double least) const;
 
-  FractureLaw law_;
-  std::vector<StressMeasure> measures_;       // of each material
-  bool one_measure_ = true;                   // they are all the same
-  std::optional<particles::GlobalIds> names_; // where strengths scatter
-  std::vector<int> at_interfaces_;            // ascending
-  double noted_share_ = 1;                    // of the limit
-  double most_weakened_ = 1; // largest size factor of a bond over what scatter leaves of it
+  BondCriteria<dim> criteria_;
+  std::vector<int> at_interfaces_; // ascending
+  double noted_share_ = 1;         // of the limit
   bool one_by_one_ = false;
   StressScreen<dim> screen_;
 };

@@ -33,7 +33,12 @@ enum class Criterion
 {
   none,
   maximum_tension,
-  face_tension
+  face_tension,
+  principal_stress,
+  von_mises,
+  drucker_prager,
+  mohr_coulomb,
+  energy
 };
 
 /// The kinematics of overlap and far field: that of the motion, or a fixed one.
@@ -125,7 +130,9 @@ inline const std::vector<std::string> &words(SlotTip)
 }
 inline const std::vector<std::string> &words(Criterion)
 {
-  static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  static const std::vector<std::string> list = {
+      "none",      "maximum_tension", "face_tension", "principal_stress",
+      "von_mises", "drucker_prager",  "mohr_coulomb", "energy"};
   return list;
 }
 

@@ -205,7 +205,60 @@ void expect_all_found(const Packing<dim> &packing)
       }
     }
 }
+
+/// Two materials that differ in their criteria alone: bonds between them obey both.
+template <int dim>
+void expect_both_criteria(const Packing<dim> &packing)
+{
+  using Criterion = FractureLaw::Criterion;
+  const DemMaterial material{3., 0.3, 1, PlaneMode::strain, 0};
+  std::vector<int> number;
+  for (const double x : packing.centre[0])
+    number.push_back(x > 0);
+  const auto laws = tensor_laws();
+  for (const Matrix<dim> &load : loads<dim>()) {
+    const auto p = state<dim>(packing, material, 3e-3 * load, 0.3);
+    oracle::ManyBodyOracle<dim> oracle(packing, 3., 0.3);
+    auto q = p;
+    oracle.compute(q);
+    for (std::size_t first = 0; first < laws.size(); ++first) {
+      const TensorLaw &a = laws[first], &b = laws[(first + 1) % laws.size()];
+      std::vector<double> share(packing.faces.size(), 0.);
+      oracle.for_each_stressed_face(p, [&](std::size_t f, const Matrix<dim> &stress,
+                                           const Vector<dim> &n, const Vector<dim> &t) {
+        for (const int i : {packing.faces[f].i, packing.faces[f].j}) {
+          if (first == 0 && number[i] == 1)
+            continue; // that half has no criterion
+          const auto of = (number[i] == 0 ? a : b).plain_of(material);
+          share[f] = std::max(share[f], oracle::share_of_face<dim>(of, stress, n, t));
+        }
+      });
+      const double most = *std::max_element(share.begin(), share.end());
+      if (most == 0)
+        continue;
+      for (const double part : {0.6, 0.9999}) {
+        FractureLaw law{a.criterion, a.at(part * most).strength};
+        law.criteria = {a.criterion, first == 0 ? Criterion(Criterion::none) : b.criterion};
+        law.strengths = {a.at(part * most).strength, b.at(part * most).strength};
+        ManyBodyForce<dim> force(packing, Materials({material, material}, number), {}, law);
+        auto moved = p;
+        force.compute(moved, 0);
+        EXPECT_EQ(broken_faces(force), breaking_faces(packing, share, part * most))
+            << a.plain.criterion << " " << part << "\n"
+            << load;
+      }
+    }
+  }
+}
 } // namespace
+
+TEST(TensorCriteria, TwoInOneBody)
+{
+  expect_both_criteria<2>(lattice<2>(Kind::hexagonal, 18, 0));
+  expect_both_criteria<2>(random_packing<2>(13));
+  expect_both_criteria<3>(lattice<3>(Kind::fcc, 6, 0));
+  expect_both_criteria<3>(random_packing<3>(5));
+}
 
 TEST(TensorCriteria, StrengthsOfHomogeneousBodiesAreTheLawsOnAnyPacking)
 {
