@@ -260,7 +260,7 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
                         nearness};
   sweep.strain = breaking.strength / (2 * shear_modulus_);
   sweep.tangent = breaking.tangent;
-  sweep.per_cosine = breaking.per_cosine();
+  sweep.measure = breaking.measure;
   long n_reached = 0;
   sweep.n_reached = &n_reached;
   sweep.faces_too = faces_too;

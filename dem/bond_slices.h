@@ -69,7 +69,8 @@ struct SliceSweep
   std::vector<int> *exceeded;
   const SliceNearness *nearness = nullptr; // null: all slices are swept
   double *energy = nullptr;                // of the particles, J
-  double strain = 0, tangent = 0, per_cosine = 1; // strength / 2G and angle of BreakScreen
+  double strain = 0, tangent = 0;        // strength / 2G and angle of BreakScreen
+  StressMeasure measure = {};            // of BreakScreen
   int first_record = 0, end_record = -1; // what is loaded, from a multiple of slice_width; -1: all
   bool faces_at_once = false; // faces of all particles are looked at together with their forces
   long *n_reached = nullptr;  // grows by the slices with a traction that reaches the limit

@@ -112,7 +112,7 @@ template <int dim>
 Contact<dim> Contacts<dim>::make(const Bond<dim> &face, bool from_face) const
 {
   const auto [first, second] = std::minmax({ids_[face.i], ids_[face.j]});
-  Contact<dim> c{{first, second, 0}, face, from_face, 0, 0, 0};
+  Contact<dim> c{{first, second, 0}, face, from_face, face.distance, 0, 0, 0};
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
   c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
                               materials_.of(face.j).shear_modulus(), c.share_i);
@@ -247,6 +247,28 @@ void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
   correct_step(c, s, dt, p);
   if (c.correction != 0)
     add_force(c, s, -c.correction * s.normal, p);
+  const double shift = c.own_distance - c.face.distance;
+  if (shift != 0 && s.overlap <= 0 && s.overlap + shift <= 0) { // open either way
+    c.face.distance = c.own_distance;
+    c.last_overlap = state(c, p).overlap;
+  }
+}
+
+template <int dim>
+void Contacts<dim>::take_over(std::size_t k, const Vector<dim> &force, const Particles &p)
+{
+  Contact<dim> &c = contacts_[k];
+  const State s = state(c, p);
+  const double pressure = -force.dot(s.normal);
+  if (pressure <= 0)
+    return;
+  const double at_distance = s.stiffness * c.face.distance; // N/m times m, whatever the distance
+  c.face.distance = s.between.norm() / (1 - pressure / at_distance);
+  const double stiffness = at_distance / c.face.distance;
+  c.slip = (force + pressure * s.normal) / stiffness;
+  const double most = c.friction * pressure / stiffness, carried = c.slip.norm();
+  if (carried > most)
+    c.slip *= most / carried;
 }
 
 template <int dim>
@@ -297,6 +319,12 @@ double Contacts<dim>::compression_energy(const Contact<dim> &c, const Particles 
 {
   const State s = state(c, p);
   return s.overlap > 0 ? 0.5 * s.stiffness * s.overlap * s.overlap : 0.;
+}
+
+template <int dim>
+double Contacts<dim>::slip_energy(const Contact<dim> &c, const Particles &p) const
+{
+  return 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
 }
 
 template <int dim>

@@ -22,6 +22,7 @@ struct Contact
   std::array<std::int64_t, 3> name;
   Bond<dim> face;       // reference geometry of the face, if it had one
   bool from_face;       // was a face of the packing; false: found by the search, or passed on
+  double own_distance;  // m, of the face; its present one is another while it bears a bond's load
   double share_i;       // q_i / r0: the contact point lies at share_i r from i
   double shear_modulus; // Pa, of both sides in series
   double friction;      // Coulomb's coefficient
@@ -86,7 +87,10 @@ public:
   /// forces of everything else are there already; dt (s) is the step. Calling it again in the same
   /// state changes neither.
   void add_forces(Particles &particles, double dt);
-  /// The same for one contact, by its place in all().
+  /// A contact whose bond broke while `force` (N, on its first particle) pressed it together bears
+  /// of it what friction can. It presses so until it opens for the first time.
+  void take_over(std::size_t k, const Vector<dim> &force, const Particles &particles);
+  /// The same as add_forces for one contact, by its place in all().
   void add_force(std::size_t k, Particles &particles, double dt);
 
   /// Adds forces and torques of a state that may not stay, after the slips of the last
@@ -97,8 +101,9 @@ public:
   /// now on faces grip as soon as they touch without pressure, lest the slip of a long way be lost.
   void forget_steps();
 
-  /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
+  /// Energy of one contact, in J: of its compression, of its elastic slip, and both.
   double compression_energy(const Contact<dim> &contact, const Particles &particles) const;
+  double slip_energy(const Contact<dim> &contact, const Particles &particles) const;
   double energy(const Contact<dim> &contact, const Particles &particles) const;
 
   double frictional_work() const { return frictional_work_.value(); }

@@ -136,7 +136,7 @@ long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   const auto squared = [](double value) { return value * value; };
   s.constants.strength = force(breaking.strength);
   s.constants.tangent = breaking.tangent;
-  s.constants.per_cosine = breaking.per_cosine();
+  s.constants.measure = breaking.measure;
   s.constants.limit2 = squared(force(breaking.least_traction()));
   s.exceeded = &exceeded;
   s.by_particle = by_particle && !ranges;

@@ -4,6 +4,7 @@
 #include "core/large_array.h"
 #include "dem/bond_network.h"
 #include "dem/inelastic/inelastic_sweep.h"
+#include "dem/stress_measure.h"
 #include "particles/rest_blocks.h"
 
 #include <cmath>
@@ -40,7 +41,7 @@ struct LatticeConstants
   double twist = 0;      // k_t - k_b, N m
   double strength = 0;   // times S, N: of BreakScreen; infinite when nothing breaks
   double tangent = 0;    // of BreakScreen
-  double per_cosine = 1; // of BreakScreen
+  StressMeasure measure; // of BreakScreen
   double limit2 = 0;     // force^2 on a face, N^2: of what is looked for first
 };
 
@@ -52,18 +53,23 @@ inline constexpr int most_lanes = 8;
 using RowRange = particles::ParticleRange;
 
 /// Bonds that could break: those under sigma + tangent |tau| >= strength with sigma > 0, the normal
-/// and the tangential traction of the face.
+/// and the tangential traction of the face; with a tangent below 0 those under
+/// max(sigma, 0)^2 + tau^2 >= strength^2.
 struct BreakScreen
 {
   double strength = 0; // Pa; 0: nothing breaks
   double tangent = 0;
-  /// Whether nothing breaks either that eq. (D12d) keeps below the strength.
+  /// Whether nothing breaks either that the measure keeps below the strength, eq. (D12d) or (D12f).
   bool by_particle = true;
+  StressMeasure measure = {};
 
   /// 1 over the cosine of the angle with that tangent.
-  double per_cosine() const { return std::sqrt(1 + tangent * tangent); }
+  static double per_cosine(double tangent)
+  {
+    return tangent < 0 ? 1 : std::sqrt(1 + tangent * tangent);
+  }
   /// No traction below this one, in any direction, reaches the strength.
-  double least_traction() const { return strength / per_cosine(); }
+  double least_traction() const { return strength / per_cosine(tangent); }
 };
 
 /// State and intermediate results of the rows at work, one stream per number; it slides along the

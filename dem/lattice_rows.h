@@ -54,9 +54,9 @@ struct BondMask
   }
 };
 
-/// Particles with a face that could break by eq. (D12d), from sums over all their faces of products
-/// of levers (of length 1) and forces, of moments, and of forces^2 (twice). Particles that miss a
-/// face or have turned far are those with a force that reaches the limit.
+/// Particles with a face that could break by eq. (D12d) or (D12f), from sums over all their faces
+/// of products of levers (of length 1) and forces, of moments, and of forces^2 (twice). Particles
+/// that miss a face or have turned far are those with a force that reaches the limit.
 template <int n_dir, int dim, typename D, typename Stress, typename Moment, typename V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> not_cleared(D d, const LatticeConstants<dim> &c, const BondMask<D> &mask,
                                    V angle, Stress stress, const Moment &moment, V twice_force2)
@@ -67,7 +67,7 @@ HWY_INLINE hn::Mask<D> not_cleared(D d, const LatticeConstants<dim> &c, const Bo
   stress.finish(moment, hn::Set(d, share));
   // The sum of |t - S n|^2: the sum of n n is that of the unit tensor.
   const V residual2 = hn::NegMulAdd(hn::Set(d, 1 / share), stress.square(), force2);
-  const V bound = tension_bound(stress, residual2, most_turn, c.per_cosine);
+  const V bound = tension_bound(stress, residual2, most_turn, c.measure);
   const auto known = hn::And(mask.all(2 * n_dir), hn::Lt(angle, hn::Set(d, most_turn)));
   const auto cleared = hn::And(known, hn::Lt(bound, hn::Set(d, c.strength)));
   return hn::AndNot(cleared, hn::Ge(force2, hn::Set(d, c.limit2)));

@@ -94,6 +94,15 @@ std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) cons
   return found;
 }
 
+template <int dim>
+Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
+{
+  const StressedBody<dim> state = stressed(p, evaluation_);
+  const Vector<dim> force = state.force(b, state.motion(b));
+  const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
+  return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
+}
+
 // Only the neighbours of the bonds feel the break: what acts on them is summed bond by bond before
 // it and after it.
 template <int dim>
@@ -110,8 +119,12 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   }
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
+    const Vector<dim> pressing =
+        search_.breaks_under_pressure() ? pressing_force(b, p) : Vector<dim>(Vector<dim>::Zero());
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
-    broken_.add(b, p, time_, energy_before - energy - contacts_.act_broken(strains_.stretched(b), p, dt()));
+    broken_.add(b, p, time_,
+                energy_before - energy -
+                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()));
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);

@@ -12,8 +12,8 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
       rows_(body_), slices_(body_), strains_(packing, body_, surface_.walls(), surface_.particles()),
       interfaces_(body_.bonds()), contacts_(packing, materials, body_.images()),
       jumps_(body_, loads),
-      search_(fracture, body_, interfaces_.members()), evaluation_(body_), trial_(body_),
-      energy_evaluation_(body_)
+      search_(fracture, body_, interfaces_.members(), packing.global_id), evaluation_(body_),
+      trial_(body_), energy_evaluation_(body_)
 {
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();

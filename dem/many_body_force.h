@@ -177,6 +177,8 @@ private:
   double dt() const { return time_ - last_time_; }
 
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
+  /// Of a bond on its first particle, in N, where it presses; else 0.
+  Vector<dim> pressing_force(const Bond<dim> &bond, const Particles &particles) const;
   /// Particles whose forces these bonds enter, by the pressures of others, too; ascending. Without
   /// those that a threshold holds at rest.
   std::vector<int> near(const std::vector<BondId> &bonds) const;

@@ -382,7 +382,7 @@ private:
   }
 
   /// Which particles of a vector have a bond that could break: by eq. (D12c), and where the stress
-  /// of a particle is known, by its own term of (D12d).
+  /// of a particle is known, by its own term of (D12d) or (D12f).
   class Look
   {
     using V = hn::Vec<SliceLanes>;
@@ -418,7 +418,7 @@ private:
         return lane_bits(d, found_);
       const V per_volume = hn::LoadU(d, table_.per_volume.data() + first_lane_);
       stress_.finish(moment_, per_volume);
-      const V principal = stress_.largest_principal();
+      const V value = value_of(sweep_.measure, stress_);
       auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
       for (const double *at = kept_; at != end_;) {
         typename Law::Face face;
@@ -426,7 +426,8 @@ private:
           number = hn::Load(d, at);
           at += n_lanes;
         });
-        const auto bound = bound_reaches(d, face, stress_, principal, strain_, sweep_.tangent);
+        const auto bound =
+            bound_reaches(d, face, stress_, value, strain_, sweep_.tangent, sweep_.measure);
         if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
           not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
       }

@@ -44,8 +44,9 @@ void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particle
 
 template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
-                              std::vector<int> at_interfaces)
-    : law_(law), at_interfaces_(std::move(at_interfaces))
+                              std::vector<int> at_interfaces,
+                              const std::vector<std::int64_t> &names)
+    : criteria_(law, body, names), at_interfaces_(std::move(at_interfaces))
 {
   if (body.images().is_any())
     body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
@@ -54,17 +55,13 @@ BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &bod
     });
   std::sort(at_images_.begin(), at_images_.end());
   at_images_.erase(std::unique(at_images_.begin(), at_images_.end()), at_images_.end());
-  reset(body);
 }
 
 template <int dim>
 void BreakSearch<dim>::set_strength(double strength, const BondedBody<dim> &body)
 {
-  core::require(strength > 0, "the strength must be positive");
-  if (!can_break())
-    law_.criterion = FractureLaw::Criterion::maximum_tension;
-  law_.strength = strength;
-  reset(body);
+  criteria_.set_strength(strength, body);
+  screen_.clear();
 }
 
 template <int dim>
@@ -78,41 +75,16 @@ void BreakSearch<dim>::set_noted_share(double share)
 template <int dim>
 void BreakSearch<dim>::reset(const BondedBody<dim> &body)
 {
+  criteria_.reset(body);
   screen_.clear();
-  largest_size_factor_ = 1;
-  if (law_.whole_face > 0)
-    body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
-      largest_size_factor_ = std::max(largest_size_factor_, size_factor(b));
-    });
 }
 
 template <int dim>
-double BreakSearch<dim>::size_factor(const Bond<dim> &b) const
+BreakLook BreakSearch<dim>::look_at(const Materials &materials, double share,
+                                    bool cleared_by_stress) const
 {
-  return law_.whole_face > 0 && can_break() ? criterion().size_factor(b.area / law_.whole_face) : 1;
-}
-
-template <int dim>
-double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materials) const
-{
-  const auto &of = law_.strengths;
-  return of.empty() ? law_.strength
-                    : std::min(of[materials.number(b.i)], of[materials.number(b.j)]);
-}
-
-template <int dim>
-BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
-{
-  double least = law_.strength;
-  const Materials &materials = body.materials();
-  if (of_table) // in terms of the first material's bonds
-    for (std::size_t m = 0; m < materials.all().size(); ++m)
-      least = std::min(least, (law_.strengths.empty() ? law_.strength : law_.strengths[m]) *
-                                  materials.base().shear_modulus() /
-                                  materials.all()[m].shear_modulus());
-  constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  return {share * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
-          criterion().clearing != Clearing::by_face};
+  return {criteria_.screen(materials, share, false), criteria_.screen(materials, share, true),
+          cleared_by_stress, share};
 }
 
 // The screen of stresses doesn't know strains of the particles' own.
@@ -120,16 +92,15 @@ template <int dim>
 void BreakSearch<dim>::ask(Evaluation<dim> &e, const InelasticStrains<dim> &strains) const
 {
   if (can_break())
-    e.look =
-        BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
-                  criterion().clearing == Clearing::by_stress && !strains.has_begun(), noted_share_};
+    e.look = look_at(e.body.materials(), noted_share_,
+                     criteria_.clear_by_stress() && !strains.has_begun());
 }
 
 template <int dim>
 void BreakSearch<dim>::ask_trial(Evaluation<dim> &e, double share) const
 {
   if (can_break())
-    e.look = BreakLook{screen(e.body, share, false), screen(e.body, share, true), false, share};
+    e.look = look_at(e.body.materials(), share, false);
 }
 
 template <int dim>
@@ -140,12 +111,8 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
-  const double normal = t.traction.dot(t.normal);
-  if (normal <= 0 || !state.body().edge().may_break(b))
-    return t;
-  const double shear = (t.traction - normal * t.normal).norm();
-  t.utilisation = size_factor(b) * (normal + criterion().tangent * shear) /
-                  strength_of(b, state.body().materials());
+  if (state.body().edge().may_break(b))
+    t.utilisation = criteria_.bound(b, t.normal, t.traction, state.body().materials());
   return t;
 }
 
@@ -163,8 +130,7 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   const BondedBody<dim> &body = e.body;
   constexpr double round_off = 1e-7;
   const auto limit = [&](const Bond<dim> &b) {
-    return noted_share_ * strength_of(b, body.materials()) / (size_factor(b) * 2 * b.shear_i) *
-           (1 - round_off);
+    return noted_share_ * criteria_.limit(b, body.materials()) / (2 * b.shear_i) * (1 - round_off);
   };
   const auto is_at_image = [&](int i) {
     return std::binary_search(at_images_.begin(), at_images_.end(), i);
@@ -182,7 +148,8 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   const LatticeArrays<dim> a = e.arrays(p);
   std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
                                        {body.bonds(), a, limit, per_volume, for_each_moment,
-                                        criterion().tangent, PrincipalTension<dim>::cone});
+                                        criteria_.tangent(), PrincipalTension<dim>::cone,
+                                        criteria_.measure()});
   if (!at_images_.empty()) {
     std::vector<int> all;
     std::copy_if(noted.begin(), noted.end(), std::back_inserter(all), [&](int i) {
@@ -248,7 +215,7 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
                                      const StressedBody<dim> &state, double least) const
 {
   std::vector<int> few;
-  if (criterion().needs_stress)
+  if (criteria_.need_stress())
     for (const auto &t : bonds)
       few.insert(few.end(), {t.bond.i, t.bond.j});
   std::sort(few.begin(), few.end());
@@ -258,15 +225,10 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
     return stress[std::lower_bound(few.begin(), few.end(), i) - few.begin()];
   };
   for (auto &t : bonds) {
-    constexpr double round_off = 1e-12;
-    const double size = size_factor(t.bond),
-                 strength = strength_of(t.bond, state.body().materials());
     LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
-    if (criterion().needs_stress)
+    if (criteria_.need_stress())
       face.stress = (of(t.bond.i) + of(t.bond.j)) / 2;
-    t.utilisation = size * criterion().bound(face) / strength;
-    if (t.utilisation >= least * (1 - round_off))
-      t.utilisation = size * criterion().tension(face) / strength;
+    t.utilisation = criteria_.utilisation(face, t.bond, state.body().materials(), least);
   }
 }
 
@@ -285,14 +247,14 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
   find_tensions(found, state, 1);
   keep_exceeding();
   sort_by_ids(found, state.particles); // few are left
-  const bool all_at_once = criterion().apart == 0;
+  const bool all_at_once = criteria_.apart() == 0;
   if (!all_at_once || one_by_one_)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
   std::vector<BondId> exceeding;
-  PlacesApart<dim> places(criterion().apart * state.body().spacing(),
+  PlacesApart<dim> places(criteria_.apart() * state.body().spacing(),
                           state.body().images().period());
   for (const auto &t : found)
     if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))

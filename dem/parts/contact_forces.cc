@@ -54,11 +54,15 @@ const Contact<dim> &ContactForces<dim>::add_broken(const Bond<dim> &b)
 }
 
 template <int dim>
-double ContactForces<dim>::act_broken(const Bond<dim> &b, Particles &p, double dt)
+double ContactForces<dim>::act_broken(const Bond<dim> &b, const Vector<dim> &pressing, Particles &p,
+                                      double dt)
 {
   const Contact<dim> &contact = add_broken(b);
-  contacts_.add_force(&contact - all().data(), p, dt);
-  return contacts_.compression_energy(contact, p);
+  const std::size_t k = &contact - all().data();
+  if (!pressing.isZero(0))
+    contacts_.take_over(k, b.i == contact.face.i ? pressing : Vector<dim>(-pressing), p);
+  contacts_.add_force(k, p, dt);
+  return contacts_.compression_energy(contact, p) + contacts_.slip_energy(contact, p);
 }
 
 template <int dim>

@@ -24,8 +24,10 @@ public:
 
   /// A bond has broken: its particles lie on a surface, its face may touch.
   const Contact<dim> &add_broken(const Bond<dim> &bond);
-  /// The same; adds the force of the contact, too, and returns its energy in J.
-  double act_broken(const Bond<dim> &bond, Particles &particles, double dt);
+  /// The same; adds the force of the contact, too, and returns its energy in J. `pressing`: the
+  /// bond's force on its first particle (N) where that is to go on; 0 otherwise.
+  double act_broken(const Bond<dim> &bond, const Vector<dim> &pressing, Particles &particles,
+                    double dt);
 
   /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
   /// faces have slid.

@@ -63,8 +63,8 @@ void check_inclusions(const Scene &scene, const Box &specimen, const Layout *lay
 void check_plasticity(const Scene &scene, Findings &f);
 
 /// When the bonds of a material break; `section` is the key of its "fracture".
-void check_fracture(const FractureParameters &fracture, const std::string &section,
-                    const DiscreteZone &zone, Findings &findings);
+void check_fracture(const MaterialParameters &material, const std::string &section,
+                    const Scene &scene, Findings &findings);
 
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);

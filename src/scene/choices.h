@@ -40,7 +40,12 @@ enum class Criterion
 {
   none,
   maximum_tension,
-  face_tension
+  face_tension,
+  principal_stress,
+  von_mises,
+  drucker_prager,
+  mohr_coulomb,
+  energy
 };
 
 /// What a material flows by.
@@ -146,7 +151,9 @@ inline const std::vector<std::string> &words(SlotTip)
 }
 inline const std::vector<std::string> &words(Criterion)
 {
-  static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  static const std::vector<std::string> list = {
+      "none",      "maximum_tension", "face_tension", "principal_stress",
+      "von_mises", "drucker_prager",  "mohr_coulomb", "energy"};
   return list;
 }
 

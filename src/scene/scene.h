@@ -107,11 +107,32 @@ struct Specimen
   bool has_own_box() const { return !outline.empty() || ball || !file.empty(); }
 };
 
+/// Scatter of the strengths of faces.
+struct WeibullParameters
+{
+  double modulus = 0;
+  std::optional<double> reference_area; // m^2
+  int seed = 1;
+};
+
 struct FractureParameters
 {
   Criterion criterion = Criterion::none;
   std::optional<double> strength;  // Pa
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
+  // Of the criteria that have more than one strength.
+  std::optional<double> compressive_strength; // Pa
+  std::optional<double> cohesion;             // Pa
+  std::optional<double> friction_angle;       // rad
+  std::optional<WeibullParameters> weibull;
+
+  /// Cohesion of mohr_coulomb in Pa, given or from the compressive strength; with a friction angle.
+  double plane_cohesion() const
+  {
+    return cohesion ? *cohesion
+                    : *compressive_strength * (1 - std::sin(*friction_angle)) /
+                          (2 * std::cos(*friction_angle));
+  }
 };
 
 /// A point of a yield curve.

@@ -76,11 +76,22 @@ void declare_specimen(Section &s, Specimen &p)
   s.list("periodic", p.periodic, "axes along which the box repeats itself: the two sides across each are joined, bonds and cells go on through them; in a lattice the width must fit it", declare_periodic_axis);
 }
 
+void declare_weibull(Section &s, WeibullParameters &w)
+{
+  s.add("modulus", w.modulus, "of Weibull's distribution: 5 for rock, 10 to 20 for ceramics; their standard deviation is about 1.2 / modulus").above(1).at_most(1000).required();
+  s.add("reference_area", w.reference_area, "area of the face whose mean strength is the given one, larger ones are weaker; in 2D the thickness counts; not given: the mean is the same for all").in("m^2").usually(1e-18, 1, "mm^2 um^2").above(0);
+  s.add("seed", w.seed, "which scatter").at_least(0).at_most(1000000000);
+}
+
 void declare_fracture(Section &s, FractureParameters &f)
 {
-  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing", words(Criterion()));
-  s.add("strength", f.strength, "tension at which a bond breaks; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or a measure of the stress tensors of its particles with the traction of its face (largest principal stress, von Mises, Drucker-Prager, Mohr-Coulomb, elastic energy); or nothing", words(Criterion()));
+  s.add("strength", f.strength, "uniaxial tension at which a bond breaks, of mohr_coulomb its cut-off in tension; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
+  s.add("compressive_strength", f.compressive_strength, "of drucker_prager, and of mohr_coulomb in place of the cohesion: uniaxial compression at which bonds break").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("cohesion", f.cohesion, "of mohr_coulomb: shear at which a plane without normal stress fails").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
+  s.add("friction_angle", f.friction_angle, "of mohr_coulomb: by whose tangent a pressure adds to the shear that a plane bears; broken faces rub with \"friction\"").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.section("weibull", f.weibull, "none", "scatter of the strengths of faces, which a face has from the names of its particles alone", declare_weibull);
 }
 
 void declare_yield_point(Section &s, YieldPoint &p)

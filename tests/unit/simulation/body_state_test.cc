@@ -207,6 +207,23 @@ TEST(BodyState, ASlidingClosedCrackGoesOnToTheLastBit)
                         60, 500, 1);
 }
 
+// Faces break under pressure by strengths that scatter: contacts take over, keep their distances and
+// slips.
+TEST(BodyState, FacesThatFailUnderPressureGoOnToTheLastBit)
+{
+  for (const char *criterion :
+       {R"("mohr_coulomb", "cohesion": 2e-3, "friction_angle": 0.5)",
+        R"("drucker_prager", "compressive_strength": 4e-3)"}) {
+    SCOPED_TRACE(criterion);
+    expect_same_course<2>({"/far_field=none", friction,
+                           std::string(R"(/material/fracture={"criterion": )") + criterion +
+                               R"(, "strength": 2e-3, "weibull": {"modulus": 8, "seed": 3}})",
+                           R"(/loads=[{"boundary": "top", "velocity": [2e-3, -2e-3], "ramp": 50},
+                  {"boundary": "bottom", "velocity": [-2e-3, 2e-3], "ramp": 50}])"},
+                          60, 260, 20);
+  }
+}
+
 // Fast enough that pieces fly and hit others.
 TEST(BodyState, FragmentsThatHitAgainGoOnToTheLastBit)
 {
