@@ -22,9 +22,17 @@ struct BoundaryLoad
   };
   /// The boundary of an acceleration, which has none.
   static constexpr int whole_body = -1;
+  /// The boundary of the jump of the displacement across the periodic sides of an axis (kinds
+  /// velocity and displacement): what the image one period further has in addition.
+  static constexpr int jump_across(int axis) { return -2 - axis; }
+  /// That axis; -1: it is not such a load.
+  int jump_axis() const { return boundary <= -2 ? -2 - boundary : -1; }
   int boundary = 0;
   Kind kind = Kind::velocity;
   std::array<std::optional<double>, dim> value;
+  /// Of kind traction, in place of a value, in Pa: times history.value(t), against the present
+  /// outward normal of what it acts on.
+  std::optional<double> pressure;
   TimeFunction history;
   Part<dim> part;
   /// Waves leave through this side, beside the traction (theory.md eq. (A1)); kind traction only.
@@ -34,6 +42,8 @@ struct BoundaryLoad
   /// Prescribed displacement of component c at time t, in m (kinds velocity and displacement).
   double displacement(int c, double t) const;
   double velocity(int c, double t) const;
+  /// In Pa at time t; zero where it is no pressure.
+  double pressure_at(double t) const { return pressure ? *pressure * history.value(t) : 0; }
   /// Given traction in Pa or acceleration in m/s^2; zero for components without a value.
   Vector<dim> traction(double t) const;
 };

@@ -1,6 +1,8 @@
 // How a load grows, swings and ends in time: values without unit, with integral and rate.
 #pragma once
 
+#include "core/steered_course.h"
+
 #include <array>
 #include <variant>
 #include <vector>
@@ -95,8 +97,14 @@ public:
   bool jumps() const { return value(0) != 0; }
   /// It never falls: between its corners nothing turns.
   bool is_ramp() const { return std::holds_alternative<Ramp>(form_); }
+  /// What a servo tells where to go; null: it is known from the beginning.
+  SteeredCourse *steered() const
+  {
+    const Steered *form = std::get_if<Steered>(&form_);
+    return form ? form->course.get() : nullptr;
+  }
 
 private:
-  std::variant<Ramp, TimeTable, Pulse, Cycles> form_;
+  std::variant<Ramp, TimeTable, Pulse, Cycles, Steered> form_;
 };
 } // namespace ligament::core

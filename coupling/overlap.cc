@@ -314,8 +314,10 @@ Overlap<dim>::shape_gradients(const Cell &cell, const Vector<dim> &x) const
 template <int dim>
 particles::CoupledEdge<dim> Overlap<dim>::coupled_edge(const Components<dim> &displacement) const
 {
-  particles::CoupledEdge<dim> coupled{edge, {}, {}};
+  particles::CoupledEdge<dim> coupled{edge, {}, {}, {}};
   std::vector<int> open; // members
+  for (const Member &member : members)
+    coupled.members.push_back(member.particle);
   for (std::size_t k = 0; k < members.size(); ++k)
     if (members[k].open) {
       open.push_back(int(k));

@@ -5,17 +5,28 @@
 
 namespace ligament::dem
 {
+/// How the image of a particle differs from it, so many periods away along each axis.
+template <int dim>
+struct PeriodicImage
+{
+  std::array<int, dim> periods = {};
+  Vector<dim> offset = Vector<dim>::Zero(); // m, of its reference
+  Vector<dim> jump = Vector<dim>::Zero();   // m, of its displacement, at present
+  const PeriodicImage *opposite = nullptr;
+};
+
 template <int dim>
 struct Bond
 {
   int i, j;
-  Vector<dim> normal;              // unit, i -> j, reference
-  Vector<dim> lever_i, lever_j;    // m, centre to face point, reference
-  double area, distance;           // S in m^2, r0 in m
-  double bending, twist;           // k_b, k_t in N m, weight included
-  double weight = 1;               // share of the pair's energy that counts
-  double shear_i = 0, shear_j = 0; // G of both sides, Pa
-  bool joins_materials = false;    // of different elastic constants
+  Vector<dim> normal;                        // unit, i -> j, reference
+  Vector<dim> lever_i, lever_j;              // m, centre to face point, reference
+  double area, distance;                     // S in m^2, r0 in m
+  double bending, twist;                     // k_b, k_t in N m, weight included
+  double weight = 1;                         // share of the pair's energy that counts
+  double shear_i = 0, shear_j = 0;           // G of both sides, Pa
+  bool joins_materials = false;              // of different elastic constants
+  const PeriodicImage<dim> *image = nullptr; // its side j is this image of j; null: j itself
 };
 
 /// Relative motion of a bonded face.
@@ -24,7 +35,7 @@ struct BondMotion
 {
   Vector<dim> a_i, a_j; // m, present levers
   Vector<dim> du;       // m, Du of theory.md eq. (D8b)
-  Vector<dim> elastic;  // m, Du without its plastic part
+  Vector<dim> elastic;  // m, Du without what strains of the particles take
 
   BondMotion(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j,
              const Vector<dim> &u_i, const Vector<dim> &u_j)
@@ -34,6 +45,8 @@ struct BondMotion
     a_i = bond.lever_i + change_i;
     a_j = bond.lever_j + change_j;
     du = (u_j - u_i) + (change_j - change_i);
+    if (bond.image)
+      du += bond.image->jump;
     elastic = du;
   }
 };

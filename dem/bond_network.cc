@@ -110,7 +110,8 @@ Bond<dim> BondNetwork<dim>::make_bond(const packings::Face<dim> &face, const Mat
 }
 
 template <int dim>
-BondNetwork<dim>::BondNetwork(const packings::Packing<dim> &packing, const Materials &materials)
+BondNetwork<dim>::BondNetwork(const packings::Packing<dim> &packing, const Materials &materials,
+                              const PeriodicImages<dim> *images)
     : lattice_shear_modulus_(materials.base().shear_modulus()), mask_(packing.size(), 0)
 {
   const DemMaterial &material = materials.base();
@@ -133,12 +134,14 @@ BondNetwork<dim>::BondNetwork(const packings::Packing<dim> &packing, const Mater
     if (face.cracked)
       continue;
     ++n_bonds_;
+    const auto *const image = images ? images->of(face.image) : nullptr;
     const int direction =
-        off_lattice[face.i] || off_lattice[face.j] ? -1 : lattice_direction(face, packing);
+        image || off_lattice[face.i] || off_lattice[face.j] ? -1 : lattice_direction(face, packing);
     if (direction < 0) {
       if (materials.differ(face.i, face.j))
         between_materials_.push_back(int(irregular_.size()));
       irregular_.push_back(make_bond(face, materials, packing.thickness));
+      irregular_.back().image = image;
       continue;
     }
     const int k = place[direction];

@@ -4,6 +4,7 @@
 
 #include "dem/bond.h"
 #include "dem/materials.h"
+#include "dem/periodic_images.h"
 #include "packings/packing.h"
 
 #include <algorithm>
@@ -45,8 +46,10 @@ class BondNetwork
 {
 public:
   /// Bonds of all faces that aren't cracked. Those of other materials than the first one, and all
-  /// bonds of particles that have a bond to another material, are in the table.
-  BondNetwork(const packings::Packing<dim> &packing, const Materials &materials);
+  /// bonds of particles that have a bond to another material, are in the table, as are bonds to
+  /// images; `images` must outlive the network.
+  BondNetwork(const packings::Packing<dim> &packing, const Materials &materials,
+              const PeriodicImages<dim> *images = nullptr);
 
   int n_particles() const { return int(mask_.size()); }
   int n_directions() const { return int(directions_.size()); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace ligament::dem
@@ -36,6 +37,19 @@ BondSlices<dim>::BondSlices(const BondNetwork<dim> &bonds, double shear_modulus,
     }
   lay_out(n_bonds_of);
 
+  // A neighbour beyond a joined side has a record of its own: its displacement is another.
+  std::map<std::pair<const PeriodicImage<dim> *, int>, int> image_record;
+  const auto neighbour = [&](int particle, const PeriodicImage<dim> *image) {
+    if (!image)
+      return record_of[particle];
+    const auto [place, is_new] = image_record.insert({{image, particle}, table_.n_records()});
+    if (is_new) {
+      table_.particle.push_back(particle);
+      images_.push_back(image);
+      ++table_.n_images;
+    }
+    return place->second;
+  };
   std::vector<long> next(table_.n_records());
   for (std::size_t l = 0; l < table_.lane.size() && long(l) < table_.n_records(); ++l)
     next[table_.lane[l] / record_size] =
@@ -43,7 +57,9 @@ BondSlices<dim>::BondSlices(const BondNetwork<dim> &bonds, double shear_modulus,
   places_.resize(n_bonds);
   bonds.for_each_irregular([&](BondId id, const Bond<dim> &b) {
     for (const bool is_i : {true, false}) {
-      const int own = record_of[is_i ? b.i : b.j], other = record_of[is_i ? b.j : b.i];
+      const int own = record_of[is_i ? b.i : b.j];
+      const int other =
+          is_i ? neighbour(b.j, b.image) : neighbour(b.i, b.image ? b.image->opposite : nullptr);
       places_[id.index][is_i ? 0 : 1] = next[own];
       set_bond(next[own], b, is_i, other * record_size);
       next[own] += slice_width;
@@ -62,7 +78,7 @@ void BondSlices<dim>::set_volumes(const BondNetwork<dim> &bonds, const std::vect
     shear_modulus[b.i] = shear_modulus[b.j] = b.shear_i;
   });
   table_.per_volume.assign(table_.lane.size(), 0);
-  for (int l = 0; l < table_.n_records(); ++l) {
+  for (int l = 0; l < table_.n_own(); ++l) {
     const int i = table_.particle[table_.lane[l] / record_size];
     if (std::abs(covered[i] - volume[i]) < 1e-9 * volume[i])
       table_.per_volume[l] =
@@ -147,7 +163,7 @@ SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges) co
   std::vector<std::uint8_t> of(table_.n_records(), 0);
   const auto set = [&](const particles::ParticleRanges &some, int value) {
     auto range = some.begin();
-    for (int r = 0; r < table_.n_records(); ++r) {
+    for (int r = 0; r < table_.n_own(); ++r) {
       const int i = table_.particle[r];
       while (range != some.end() && range->end <= i)
         ++range;
@@ -158,14 +174,18 @@ SliceNearness BondSlices<dim>::nearness(const particles::AwakeRanges &ranges) co
   set(ranges.turned, Rest::turned);
   set(ranges.pressed, Rest::pressed);
   set(ranges.stepped, Rest::awake);
+  const auto own_end = table_.particle.begin() + table_.n_own();
+  for (int r = table_.n_own(); r < table_.n_records(); ++r)
+    of[r] = of[std::lower_bound(table_.particle.begin(), own_end, table_.particle[r]) -
+               table_.particle.begin()];
   SliceNearness nearness;
   nearness.slice.assign(table_.n_slices(), 0);
-  nearness.records.assign(table_.n_slices(), 0);
+  nearness.records.assign((table_.n_records() + slice_width - 1) / slice_width, 0);
   const auto raise = [&](std::uint8_t &to, int record) { to = std::max(to, of[record]); };
-  for (int l = 0; l < table_.n_records(); ++l) {
+  for (int l = 0; l < table_.n_own(); ++l)
     raise(nearness.slice[l / slice_width], table_.lane[l] / record_size);
-    raise(nearness.records[l / slice_width], l);
-  }
+  for (int r = 0; r < table_.n_records(); ++r)
+    raise(nearness.records[r / slice_width], r);
   return nearness;
 }
 
@@ -180,6 +200,19 @@ void BondSlices<dim>::load(const LatticeArrays<dim> &arrays, core::LargeArray &r
     records = core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
   }
   load_records({table_, arrays, records.data(), 0, false, nullptr, nearness});
+  add_jumps(records, nearness);
+}
+
+template <int dim>
+void BondSlices<dim>::add_jumps(core::LargeArray &records, const SliceNearness *nearness) const
+{
+  for (int k = 0; k < table_.n_images; ++k) {
+    const int r = table_.n_own() + k;
+    if (nearness && nearness->records[r / slice_width] < particles::RestBlocks<dim>::turned)
+      continue;
+    for (int c = 0; c < dim; ++c) // displacements come first
+      records.data()[long(r) * record_size + c] += images_[k]->jump[c];
+  }
 }
 
 template <int dim>
@@ -192,10 +225,23 @@ void BondSlices<dim>::add_pressures(const LatticeArrays<dim> &arrays, core::Larg
 }
 
 template <int dim>
+void BondSlices<dim>::add_strains(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                                  const InelasticSweep<dim> &inelastic,
+                                  const SliceNearness *nearness) const
+{
+  if (empty())
+    return;
+  SliceSweep<dim> sweep{table_, arrays, records.data(), 0, false, nullptr, nearness};
+  sweep.inelastic = &inelastic;
+  sweep.responds = all_particles_;
+  ligament::dem::add_strains(sweep);
+}
+
+template <int dim>
 void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
-                             const TractionScreen &screen, core::LargeArray &records,
-                             std::vector<int> &exceeded, const SliceNearness *nearness,
-                             bool faces_too) const
+                             core::LargeArray &records, std::vector<int> &exceeded,
+                             const SliceNearness *nearness, bool faces_too,
+                             const InelasticSweep<dim> *strained) const
 {
   exceeded.clear();
   if (empty())
@@ -211,18 +257,24 @@ void BondSlices<dim>::forces(const LatticeArrays<dim> &arrays, const BreakScreen
                         squared(breaking.least_traction()),
                         all_particles_,
                         &exceeded,
-                        nearness,
-                        nullptr,
-                        squared(screen.traction),
-                        screen,
-                        breaking.strength / (2 * shear_modulus_),
-                        breaking.tangent,
-                        breaking.per_cosine()};
+                        nearness};
+  sweep.strain = breaking.strength / (2 * shear_modulus_);
+  sweep.tangent = breaking.tangent;
+  sweep.measure = breaking.measure;
   long n_reached = 0;
   sweep.n_reached = &n_reached;
   sweep.faces_too = faces_too;
   sweep.by_particle = breaking.by_particle;
   sweep.faces_at_once = faces_at_once_ && faces_too && breaking.strength > 0;
+  if (strained) {
+    const long n = table_.n_records();
+    if (!strain_records_.data())
+      strain_records_ =
+          core::LargeArray((n + slice_width) * record_size, n > several_pages / record_size);
+    sweep.inelastic = strained;
+    sweep.strain_records = strain_records_.data();
+    load_strains(sweep);
+  }
   add_slice_forces(sweep);
   if (breaking.strength > 0)
     faces_at_once_ = 2 * n_reached > table_.n_slices();

@@ -28,7 +28,7 @@ inline constexpr int n_stiffness = dim;
 template <int dim>
 struct SliceTable
 {
-  std::vector<int> particle;   // of each record, ascending
+  std::vector<int> particle;   // of each record, ascending; then those of images
   std::vector<int> lane;       // record of each lane times record_size; n_slices x slice_width
   std::vector<int> first_slot; // of each slice, and the end
   std::vector<int> neighbour;  // record times record_size: n_slots x slice_width
@@ -43,8 +43,11 @@ struct SliceTable
   /// record_size.
   double *set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
+  int n_images = 0; // of the records, the last ones, which are no particle's own
+
   int n_slices() const { return int(first_slot.size()) - 1; }
   int n_records() const { return int(particle.size()); }
+  int n_own() const { return n_records() - n_images; }
 };
 
 /// How near each slice, and each eight records in their order, come to particles that move:
@@ -66,14 +69,16 @@ struct SliceSweep
   std::vector<int> *exceeded;
   const SliceNearness *nearness = nullptr; // null: all slices are swept
   double *energy = nullptr;                // of the particles, J
-  double screen2 = never;                  // (traction / 2G)^2 at which the screen marks
-  TractionScreen screen = {};
-  double strain = 0, tangent = 0, per_cosine = 1; // strength / 2G and angle of BreakScreen
+  double strain = 0, tangent = 0;        // strength / 2G and angle of BreakScreen
+  StressMeasure measure = {};            // of BreakScreen
   int first_record = 0, end_record = -1; // what is loaded, from a multiple of slice_width; -1: all
   bool faces_at_once = false; // faces of all particles are looked at together with their forces
   long *n_reached = nullptr;  // grows by the slices with a traction that reaches the limit
   bool faces_too = true;      // false: notes all particles with a traction that reaches the limit
   bool by_particle = true;    // of BreakScreen
+  const InelasticSweep<dim> *inelastic = nullptr; // null: all particles are elastic
+  bool responds = false;            // there is no lattice: particles flow in add_strains()
+  double *strain_records = nullptr; // e of each record; null: nothing has flowed
 
   static constexpr double never = 1e200; // the square of a strain that no bond reaches
 };
@@ -84,6 +89,13 @@ void load_records(const SliceSweep<3> &sweep);
 /// Adds lambda theta of the bonds to arrays.pressure.
 void add_pressures(const SliceSweep<2> &sweep);
 void add_pressures(const SliceSweep<3> &sweep);
+/// In place of it where particles may flow: what the bonds add to the strains of the open cells;
+/// without a lattice the particles' response at once.
+void add_strains(const SliceSweep<2> &sweep);
+void add_strains(const SliceSweep<3> &sweep);
+/// Fills the strain records.
+void load_strains(const SliceSweep<2> &sweep);
+void load_strains(const SliceSweep<3> &sweep);
 /// Forces and torques at arrays.pressure; notes the particles with a bond that could break.
 void add_slice_forces(const SliceSweep<2> &sweep);
 void add_slice_forces(const SliceSweep<3> &sweep);
@@ -121,26 +133,35 @@ public:
   void add_pressures(const LatticeArrays<dim> &arrays, core::LargeArray &records,
                      const SliceNearness *nearness = nullptr) const;
 
-  /// Adds the forces at arrays.pressure. Replaces `exceeded` by particles among which are those of
-  /// all bonds that could break; its strength is that of a bond of the base material. The screen's
-  /// marks are set for both particles of a bond. Without `faces_too` it looks at nothing but the
-  /// size of the tractions.
-  void forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
-              const TractionScreen &screen, core::LargeArray &records, std::vector<int> &exceeded,
-              const SliceNearness *nearness = nullptr, bool faces_too = true) const;
+  /// In place of it where particles may flow; see the function beside SliceSweep.
+  void add_strains(const LatticeArrays<dim> &arrays, core::LargeArray &records,
+                   const InelasticSweep<dim> &inelastic,
+                   const SliceNearness *nearness = nullptr) const;
 
-  /// Adds to each particle's energy (J) its half of every bond's.
+  /// Adds the forces at arrays.pressure. Replaces `exceeded` by particles among which are those of
+  /// all bonds that could break; its strength is that of a bond of the base material. Without
+  /// `faces_too` it looks at nothing but the size of the tractions. `strained`: the strains of their
+  /// own that particles have; null: none has any.
+  void forces(const LatticeArrays<dim> &arrays, const BreakScreen &breaking,
+              core::LargeArray &records, std::vector<int> &exceeded,
+              const SliceNearness *nearness = nullptr, bool faces_too = true,
+              const InelasticSweep<dim> *strained = nullptr) const;
+
+  /// Adds to each particle's energy (J) its half of every bond's, as if it had no strain of its own.
   void add_energies(const LatticeArrays<dim> &arrays, core::LargeArray &records,
                     double *energy) const;
 
 private:
   void lay_out(const std::vector<int> &n_bonds_of);
+  void add_jumps(core::LargeArray &records, const SliceNearness *nearness) const;
   void set_bond(long place, const Bond<dim> &bond, bool is_i, int neighbour);
 
   SliceTable<dim> table_;
+  mutable core::LargeArray strain_records_; // scratch
   mutable bool faces_at_once_ = false; // many slices had such tractions the last time
   double shear_modulus_;
   bool all_particles_;
+  std::vector<const PeriodicImage<dim> *> images_; // of the records of images
   std::vector<std::array<long, 2>> places_; // slot x slice_width + lane of both sides of each bond
 };
 } // namespace ligament::dem

@@ -7,8 +7,10 @@ namespace ligament::dem
 template <int dim>
 BondedBody<dim>::BondedBody(const packings::Packing<dim> &packing, const Materials &materials,
                             const std::vector<WallFace<dim>> &walls)
-    : spacing_(packing.spacing), materials_(materials), bonds_(packing, materials),
-      boundary_faces_(packing.boundary_faces), lambda_per_volume_(packing.size())
+    : spacing_(packing.spacing), materials_(materials),
+      images_(std::make_unique<PeriodicImages<dim>>(packing.period)),
+      bonds_(packing, materials, images_.get()), boundary_faces_(packing.boundary_faces),
+      lambda_per_volume_(packing.size())
 {
   materials_.base().check();
   if (bonds_.n_directions() == 0)

@@ -24,6 +24,8 @@ public:
   bool has_dilatation() const { return !materials_.has_no_dilatation(); }
   bool is_plane_strain() const { return dim == 2 && materials_.base().plane == PlaneMode::strain; }
   const BondNetwork<dim> &bonds() const { return bonds_; }
+  /// Those beyond joined sides.
+  PeriodicImages<dim> &images() const { return *images_; }
   int n_particles() const { return bonds_.n_particles(); }
   const std::vector<packings::BoundaryFace<dim>> &boundary_faces() const { return boundary_faces_; }
   /// m^3; empty: a lattice's.
@@ -63,6 +65,7 @@ private:
 
   double spacing_;
   Materials materials_;
+  std::unique_ptr<PeriodicImages<dim>> images_;
   BondNetwork<dim> bonds_;
   std::vector<packings::BoundaryFace<dim>> boundary_faces_;
   std::vector<double> volumes_;

@@ -9,8 +9,9 @@
 namespace ligament::dem
 {
 template <int dim>
-ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double face_area)
-    : flanks_(packing), spacing_(packing.spacing), skin_(packing.spacing / 4),
+ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double face_area,
+                                  const PeriodicImages<dim> *images)
+    : images_(images), flanks_(packing), spacing_(packing.spacing), skin_(packing.spacing / 4),
       face_area_(face_area), largest_(packing.spacing), diameter_(packing.diameter),
       on_surface_(packing.size(), 0)
 {
@@ -34,10 +35,23 @@ void ContactSearch<dim>::add_surface_particle(int i)
 }
 
 template <int dim>
-double ContactSearch<dim>::rest_distance(const Particles &p, int i, int j) const
+double ContactSearch<dim>::rest_distance(const Particles &p, int i, const Partner &partner) const
 {
-  return std::min((diameter(i) + diameter(j)) / 2,
-                  (get(p.reference, i) - get(p.reference, j)).norm());
+  const auto &[j, image] = partner;
+  Vector<dim> r = get(p.reference, i) - get(p.reference, j);
+  if (image)
+    r -= image->offset;
+  return std::min((diameter(i) + diameter(j)) / 2, r.norm());
+}
+
+template <int dim>
+Vector<dim> ContactSearch<dim>::place_of(const Particles &p, const Partner &partner)
+{
+  const auto &[j, image] = partner;
+  Vector<dim> x = get(p.reference, j) + get(p.displacement, j);
+  if (image)
+    x += image->offset + image->jump;
+  return x;
 }
 
 template <int dim>
@@ -72,9 +86,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
 
   // Cells of the size of the reach; the key mixes the cell's integer coordinates.
   using Cell = std::array<std::int64_t, dim>;
-  const auto position = [&](int i) -> Vector<dim> {
-    return get(p.reference, i) + get(p.displacement, i);
-  };
+  const auto position = [&](int i) { return place_of(p, {i, nullptr}); };
   const auto cell_of = [&](const Vector<dim> &x) {
     Cell c;
     for (int a = 0; a < dim; ++a)
@@ -87,11 +99,22 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
       h = (h ^ std::uint64_t(v)) * 0x9e3779b97f4a7c15ull;
     return h;
   };
-  std::unordered_map<std::uint64_t, std::vector<int>> cells;
+  std::unordered_map<std::uint64_t, std::vector<Partner>> cells;
   for (const int i : surface_)
-    cells[hash(cell_of(position(i)))].push_back(i);
+    cells[hash(cell_of(position(i)))].push_back({i, nullptr});
+  // No two images of a particle are near the same one: pairs are known by their particles alone.
+  if (images_)
+    images_->for_each([&](const PeriodicImage<dim> *image) {
+      for (const int i : surface_)
+        cells[hash(cell_of(place_of(p, {i, image})))].push_back({i, image});
+    });
 
-  std::vector<std::pair<int, int>> found;
+  struct Pair
+  {
+    int i;
+    Partner j;
+  };
+  std::vector<Pair> found;
   int neighbours = 1;
   for (int a = 0; a < dim; ++a)
     neighbours *= 3;
@@ -105,35 +128,44 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
       const auto it = cells.find(hash(c));
       if (it == cells.end())
         continue;
-      for (const int j : it->second)
-        if (p.global_id[i] < p.global_id[j] &&
-            (position(j) - x).norm() < rest_distance(p, i, j) + 2 * skin_ &&
+      for (const Partner &other : it->second)
+        if (const int j = other.particle;
+            p.global_id[i] < p.global_id[j] &&
+            (place_of(p, other) - x).norm() < rest_distance(p, i, other) + 2 * skin_ &&
             !known.count(key(i, j)) && !flanks_.face_each_other(i, j))
-          found.push_back({i, j});
+          found.push_back({i, other});
     }
     bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
   }
-  std::sort(found.begin(), found.end(), [&](const auto &a, const auto &b) {
-    return std::pair(p.global_id[a.first], p.global_id[a.second]) <
-           std::pair(p.global_id[b.first], p.global_id[b.second]);
-  });
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  for (const auto &[i, j] : found) {
-    if (known.count(key(i, j)))
+  const auto names = [&](const Pair &pair) {
+    return std::pair(p.global_id[pair.i], p.global_id[pair.j.particle]);
+  };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const Pair &a, const Pair &b) { return names(a) < names(b); });
+  found.erase(std::unique(found.begin(), found.end(),
+                          [&](const Pair &a, const Pair &b) { return names(a) == names(b); }),
+              found.end());
+  for (const auto &[i, other] : found) {
+    if (known.count(key(i, other.particle)))
       continue;
-    const double apart = (position(j) - position(i)).norm();
-    contacts.add(face_between(i, j, std::min(rest_distance(p, i, j), apart)), false);
+    const double apart = (place_of(p, other) - position(i)).norm();
+    contacts.add(
+        face_between(i, other.particle, std::min(rest_distance(p, i, other), apart), other.image),
+        false);
   }
 }
 
 template <int dim>
-Bond<dim> ContactSearch<dim>::face_between(int i, int j, double distance) const
+Bond<dim> ContactSearch<dim>::face_between(int i, int j, double distance,
+                                           const PeriodicImage<dim> *image) const
 {
   const double size = (diameter(i) + diameter(j)) / 2;
   const Vector<dim> n = Vector<dim>::Unit(0), lever = distance * diameter(i) / (2 * size) * n;
-  return {
+  Bond<dim> face{
       i,        j, n, lever, lever - distance * n, face_area_ * std::pow(size / spacing_, dim - 1),
       distance, 0, 0};
+  face.image = image;
+  return face;
 }
 
 template <int dim>

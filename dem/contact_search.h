@@ -16,7 +16,9 @@ public:
   /// New contacts have the mean diameter of their particles as distance (d on lattices), or the
   /// distance in the reference or at present where that is less, and a face in proportion to
   /// `face_area` (m^2), which belongs to d. They press with nothing when they are found.
-  ContactSearch(const packings::Packing<dim> &packing, double face_area);
+  /// `images` (null: none) must outlive it.
+  ContactSearch(const packings::Packing<dim> &packing, double face_area,
+                const PeriodicImages<dim> *images = nullptr);
 
   /// Particle i lies on a surface from now on; the next search is due at once.
   void add_surface_particle(int i);
@@ -30,7 +32,8 @@ public:
 
   /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
   /// proportion to the diameters; its normal is not known.
-  Bond<dim> face_between(int i, int j, double distance) const;
+  Bond<dim> face_between(int i, int j, double distance,
+                         const PeriodicImage<dim> *image = nullptr) const;
 
   /// Where the surface particles were at the last search, as the table "searched".
   void save(core::State &state, const core::Names &names) const;
@@ -38,11 +41,21 @@ public:
   void load(const core::State &state, const core::Names &names);
 
 private:
+  /// A particle, or an image of it.
+  struct Partner
+  {
+    int particle;
+    const PeriodicImage<dim> *image;
+  };
+
   bool has_moved(const Particles &particles) const;
   double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
   /// Centre distance at which two particles touch.
-  double rest_distance(const Particles &particles, int i, int j) const;
+  double rest_distance(const Particles &particles, int i, const Partner &partner) const;
+  /// At present, of the image.
+  static Vector<dim> place_of(const Particles &particles, const Partner &partner);
 
+  const PeriodicImages<dim> *images_;
   CutFlanks<dim> flanks_;
   double spacing_, skin_, face_area_, largest_;
   std::vector<double> diameter_;

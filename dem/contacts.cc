@@ -8,10 +8,13 @@ namespace ligament::dem
 namespace
 {
 template <int dim>
-Vector<dim> centre_distance(const particles::Particles<dim> &p, int i, int j)
+Vector<dim> centre_distance(const particles::Particles<dim> &p, const Bond<dim> &face)
 {
-  return get(p.reference, j) - get(p.reference, i) +
-         (get(p.displacement, j) - get(p.displacement, i));
+  Vector<dim> r = get(p.reference, face.j) - get(p.reference, face.i) +
+                  (get(p.displacement, face.j) - get(p.displacement, face.i));
+  if (face.image)
+    r += face.image->offset + face.image->jump;
+  return r;
 }
 
 /// Rotation of particle i since the state that the contact remembers.
@@ -109,7 +112,7 @@ template <int dim>
 Contact<dim> Contacts<dim>::make(const Bond<dim> &face, bool from_face) const
 {
   const auto [first, second] = std::minmax({ids_[face.i], ids_[face.j]});
-  Contact<dim> c{{first, second, 0}, face, from_face, 0, 0, 0};
+  Contact<dim> c{{first, second, 0}, face, from_face, face.distance, 0, 0, 0};
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
   c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
                               materials_.of(face.j).shear_modulus(), c.share_i);
@@ -135,7 +138,7 @@ template <int dim>
 typename Contacts<dim>::State Contacts<dim>::state(const Contact<dim> &c, const Particles &p) const
 {
   State s;
-  s.between = centre_distance<dim>(p, c.face.i, c.face.j);
+  s.between = centre_distance<dim>(p, c.face);
   s.stiffness = 2 * c.shear_modulus * c.face.area / c.face.distance;
   if (!c.is_joint()) {
     const double r = s.between.norm();
@@ -244,6 +247,28 @@ void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
   correct_step(c, s, dt, p);
   if (c.correction != 0)
     add_force(c, s, -c.correction * s.normal, p);
+  const double shift = c.own_distance - c.face.distance;
+  if (shift != 0 && s.overlap <= 0 && s.overlap + shift <= 0) { // open either way
+    c.face.distance = c.own_distance;
+    c.last_overlap = state(c, p).overlap;
+  }
+}
+
+template <int dim>
+void Contacts<dim>::take_over(std::size_t k, const Vector<dim> &force, const Particles &p)
+{
+  Contact<dim> &c = contacts_[k];
+  const State s = state(c, p);
+  const double pressure = -force.dot(s.normal);
+  if (pressure <= 0)
+    return;
+  const double at_distance = s.stiffness * c.face.distance; // N/m times m, whatever the distance
+  c.face.distance = s.between.norm() / (1 - pressure / at_distance);
+  const double stiffness = at_distance / c.face.distance;
+  c.slip = (force + pressure * s.normal) / stiffness;
+  const double most = c.friction * pressure / stiffness, carried = c.slip.norm();
+  if (carried > most)
+    c.slip *= most / carried;
 }
 
 template <int dim>
@@ -297,6 +322,12 @@ double Contacts<dim>::compression_energy(const Contact<dim> &c, const Particles 
 }
 
 template <int dim>
+double Contacts<dim>::slip_energy(const Contact<dim> &c, const Particles &p) const
+{
+  return 0.5 * state(c, p).stiffness * c.slip.squaredNorm();
+}
+
+template <int dim>
 double Contacts<dim>::energy(const Contact<dim> &c, const Particles &p) const
 {
   const State s = state(c, p);
@@ -308,7 +339,9 @@ template <int dim>
 bool Contacts<dim>::has_slid(const Particles &p, double distance) const
 {
   for (const auto &c : contacts_) {
-    const Vector<dim> u = get(p.displacement, c.face.j) - get(p.displacement, c.face.i);
+    Vector<dim> u = get(p.displacement, c.face.j) - get(p.displacement, c.face.i);
+    if (c.face.image)
+      u += c.face.image->jump;
     if (u.squaredNorm() > distance * distance)
       return true;
   }

@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "dem/bond.h"
 #include "dem/materials.h"
+#include "dem/periodic_images.h"
 
 #include <array>
 #include <functional>
@@ -21,6 +22,7 @@ struct Contact
   std::array<std::int64_t, 3> name;
   Bond<dim> face;       // reference geometry of the face, if it had one
   bool from_face;       // was a face of the packing; false: found by the search, or passed on
+  double own_distance;  // m, of the face; its present one is another while it bears a bond's load
   double share_i;       // q_i / r0: the contact point lies at share_i r from i
   double shear_modulus; // Pa, of both sides in series
   double friction;      // Coulomb's coefficient
@@ -85,7 +87,10 @@ public:
   /// forces of everything else are there already; dt (s) is the step. Calling it again in the same
   /// state changes neither.
   void add_forces(Particles &particles, double dt);
-  /// The same for one contact, by its place in all().
+  /// A contact whose bond broke while `force` (N, on its first particle) pressed it together bears
+  /// of it what friction can. It presses so until it opens for the first time.
+  void take_over(std::size_t k, const Vector<dim> &force, const Particles &particles);
+  /// The same as add_forces for one contact, by its place in all().
   void add_force(std::size_t k, Particles &particles, double dt);
 
   /// Adds forces and torques of a state that may not stay, after the slips of the last
@@ -96,8 +101,9 @@ public:
   /// now on faces grip as soon as they touch without pressure, lest the slip of a long way be lost.
   void forget_steps();
 
-  /// Energy of one contact, in J: of its compression, and with that of its elastic slip.
+  /// Energy of one contact, in J: of its compression, of its elastic slip, and both.
   double compression_energy(const Contact<dim> &contact, const Particles &particles) const;
+  double slip_energy(const Contact<dim> &contact, const Particles &particles) const;
   double energy(const Contact<dim> &contact, const Particles &particles) const;
 
   double frictional_work() const { return frictional_work_.value(); }
@@ -111,6 +117,10 @@ public:
   void for_each_moment(const Particles &particles, Visit &&visit) const;
 
   const std::vector<Contact<dim>> &all() const { return contacts_; }
+
+  /// visit(image, force on i in N) for every contact with an image.
+  template <typename Visit>
+  void for_each_across(const Particles &particles, Visit &&visit) const;
 
   /// Whether a pair of faces slid so far along each other that it may meet others.
   bool has_slid(const Particles &particles, double distance) const;
@@ -127,9 +137,10 @@ public:
 
   /// What contacts remember, as the table "contacts", and the energies that they took.
   void save(core::State &state, const core::Names &names) const;
-  /// Those of faces are there already; make_face(i, j, distance) is the face of one that a search
-  /// found. Contacts of particles with rows that have none themselves have ended.
-  void load(const core::State &state, const core::Names &names,
+  /// Those of faces are there already; `images` are those of the body; make_face(i, j, distance) is
+  /// the face of one that a search found. Contacts of particles with rows that have none themselves
+  /// have ended.
+  void load(const core::State &state, const core::Names &names, const PeriodicImages<dim> &images,
             const std::function<Bond<dim>(int, int, double)> &make_face);
 
 private:
@@ -157,6 +168,21 @@ private:
   bool grips_at_touch_ = false;
   core::ExactSum frictional_work_, step_error_;
 };
+
+template <int dim>
+template <typename Visit>
+void Contacts<dim>::for_each_across(const Particles &p, Visit &&visit) const
+{
+  for (const auto &c : contacts_) {
+    if (!c.face.image)
+      continue;
+    const State s = state(c, p);
+    Vector<dim> f = -c.correction * s.normal;
+    if (s.overlap > 0)
+      f += s.stiffness * (c.slip - s.overlap * s.normal);
+    visit(*c.face.image, f);
+  }
+}
 
 template <int dim>
 template <typename Visit>

@@ -45,7 +45,7 @@ constexpr std::int64_t is_known = 1, is_from_face = 2, has_overlap = 4; // flags
 template <int dim>
 void Contacts<dim>::save(core::State &state, const core::Names &names) const
 {
-  std::vector<std::int64_t> keys, i, j, flags;
+  std::vector<std::int64_t> keys, i, j, flags, image;
   std::vector<double> overlap;
   std::map<std::string, std::vector<double>> numbers;
   for (const Contact<dim> &c : contacts_) {
@@ -56,6 +56,7 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
                     (c.from_face ? is_from_face : std::int64_t(0)) |
                     (c.last_overlap ? has_overlap : std::int64_t(0)));
     overlap.push_back(c.last_overlap.value_or(0));
+    image.push_back(PeriodicImages<dim>::number_of(c.face.image));
     for_each_number<dim>(
         c, [&](const std::string &column, double value) { numbers[column].push_back(value); });
   }
@@ -64,6 +65,9 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
   table.add("j", j);
   table.add("flags", flags);
   table.add("last_overlap", overlap);
+  if (std::any_of(contacts_.begin(), contacts_.end(),
+                  [](const Contact<dim> &c) { return c.face.image; }))
+    table.add("image", image);
   for (const auto &[column, values] : numbers)
     table.add(column, values);
   state["contacts"] = std::move(table);
@@ -73,11 +77,13 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
 
 template <int dim>
 void Contacts<dim>::load(const core::State &state, const core::Names &names,
+                         const PeriodicImages<dim> &images,
                          const std::function<Bond<dim>(int, int, double)> &make_face)
 {
   const core::Table &table = core::table(state, "contacts");
   const auto i = table.integers("i"), j = table.integers("j"), flags = table.integers("flags");
   const auto overlap = table.reals("last_overlap");
+  const auto image = table.has("image") ? table.integers("image") : std::vector<std::int64_t>();
   std::map<std::string, std::vector<double>> numbers;
   for (const std::string &column : table.columns())
     numbers[column] = table.reals(column);
@@ -98,6 +104,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
                          : make(make_face(here, there, numbers.at("distance")[r]), false);
     c.name = name;
     c.face.j = there;
+    if (!image.empty())
+      c.face.image = images.of(int(image[r]));
     c.from_face = flags[r] & is_from_face;
     c.known = flags[r] & is_known;
     c.last_overlap = flags[r] & has_overlap ? std::optional(overlap[r]) : std::nullopt;
@@ -117,8 +125,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
 
 template void Contacts<2>::save(core::State &, const core::Names &) const;
 template void Contacts<3>::save(core::State &, const core::Names &) const;
-template void Contacts<2>::load(const core::State &, const core::Names &,
+template void Contacts<2>::load(const core::State &, const core::Names &, const PeriodicImages<2> &,
                                 const std::function<Bond<2>(int, int, double)> &);
-template void Contacts<3>::load(const core::State &, const core::Names &,
+template void Contacts<3>::load(const core::State &, const core::Names &, const PeriodicImages<3> &,
                                 const std::function<Bond<3>(int, int, double)> &);
 } // namespace ligament::dem

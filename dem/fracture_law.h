@@ -1,9 +1,14 @@
 // When a bond breaks: the criterion and its strengths.
 #pragma once
 
+#include "dem/fracture/drucker_prager.h"
 #include "dem/fracture/face_tension.h"
 #include "dem/fracture/maximum_tension.h"
+#include "dem/fracture/mohr_coulomb.h"
 #include "dem/fracture/opening_tension.h"
+#include "dem/fracture/principal_stress.h"
+#include "dem/fracture/strain_energy.h"
+#include "dem/fracture/von_mises.h"
 #include "dem/laws/cohesive.h"
 
 #include <vector>
@@ -19,17 +24,24 @@ struct FractureLaw
     static constexpr CriterionRef none{};
     static constexpr CriterionRef face_tension = dem::criterion<FaceTension>();
     static constexpr CriterionRef maximum_tension = dem::criterion<MaximumTension>();
+    static constexpr CriterionRef principal_stress = dem::criterion<PrincipalStress>();
+    static constexpr CriterionRef von_mises = dem::criterion<VonMises>();
+    static constexpr CriterionRef drucker_prager = dem::criterion<DruckerPrager>();
+    static constexpr CriterionRef mohr_coulomb = dem::criterion<MohrCoulomb>();
+    static constexpr CriterionRef energy = dem::criterion<StrainEnergy>();
     static constexpr CriterionRef opening_tension = dem::criterion<OpeningTension>();
 
     constexpr Criterion(CriterionRef criterion = none) : CriterionRef(criterion) {}
   };
   Criterion criterion = Criterion::none;
-  double strength = 0; // Pa
-  /// Pa, of each material where a body has several; empty: `strength` for all. A bond between two
-  /// breaks at the smaller one.
-  std::vector<double> strengths = {};
+  FaceStrength strength = 0.;
+  /// Of each material where a body has several; empty: `strength` for all. A bond between two
+  /// breaks when it does so in one of them.
+  std::vector<FaceStrength> strengths = {};
   /// m^2, thickness included: the whole face of size factors, eq. (D12b); 0: size doesn't matter.
   double whole_face = 0;
+  /// Of each material; empty: `criterion` for all. Bonds between two obey both.
+  std::vector<Criterion> criteria = {};
   /// G_c in J per m^2 of projected crack, theory.md section 1.13, of each material where a body has
   /// several; with 0 a bond breaks at once. A bond between two takes the smaller one.
   double energy = 0;
@@ -41,6 +53,21 @@ struct FractureLaw
   {
     return energy > 0 ||
            std::any_of(energies.begin(), energies.end(), [](double g) { return g > 0; });
+  }
+  /// Of a bond between materials of these numbers.
+  double energy_of(int a, int b) const
+  {
+    return energies.empty() ? energy : std::min(energies[a], energies[b]);
+  }
+  /// Faces that soften begin and end under tension alone, at strengths that are known beforehand.
+  bool can_soften() const
+  {
+    const auto opens = [](Criterion c) {
+      return c == Criterion::opening_tension || c == Criterion::maximum_tension;
+    };
+    const auto scatters = [](const FaceStrength &s) { return s.scatter.modulus > 0; };
+    return opens(criterion) && std::all_of(criteria.begin(), criteria.end(), opens) &&
+           !scatters(strength) && std::none_of(strengths.begin(), strengths.end(), scatters);
   }
 };
 } // namespace ligament::dem

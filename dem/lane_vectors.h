@@ -161,7 +161,8 @@ HWY_INLINE std::uint32_t lane_bits(D d, hn::Mask<D> mask)
 }
 
 /// Where the force f on a face has a tension, and sigma + tangent |tau| of it times the face
-/// reaches `strength`; along `normal`, of any length. To 1e-7 where tau is small.
+/// reaches `strength`; along `normal`, of any length. To 1e-7 where tau is small. With a tangent
+/// below 0 where max(sigma, 0)^2 + tau^2 reaches strength^2, or a little less.
 template <typename D, typename Vector, typename V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> reaches(D d, const Vector &f, const Vector &normal, V strength,
                                double tangent)
@@ -169,6 +170,13 @@ HWY_INLINE hn::Mask<D> reaches(D d, const Vector &f, const Vector &normal, V str
   const V zero = hn::Zero(d);
   const V tension = add_dot(f, normal, zero), length2 = add_dot(normal, normal, zero);
   const V shear2 = hn::NegMulAdd(tension, tension, hn::Mul(add_dot(f, f, zero), length2));
+  if (tangent < 0) {
+    constexpr double round_off = 1e-14;
+    const V force2 = hn::Mul(add_dot(f, f, zero), length2);
+    const V freed2 = hn::IfThenElse(hn::Gt(tension, zero), force2,
+                                    hn::MulAdd(hn::Set(d, round_off), force2, shear2));
+    return hn::Ge(freed2, hn::Mul(hn::Mul(strength, strength), length2));
+  }
   const V reached = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(shear2, zero)), tension);
   return hn::And(hn::Gt(tension, zero), hn::Ge(reached, hn::Mul(strength, hn::Sqrt(length2))));
 }

@@ -104,20 +104,24 @@ RowSweep<dim> LatticeKernel<dim>::sweep(const LatticeArrays<dim> &arrays,
 
 template <int dim>
 void LatticeKernel<dim>::dilatation(const LatticeArrays<dim> &arrays,
-                                    const std::vector<RowSegment> &segments,
-                                    RowWindow &window) const
+                                    const std::vector<RowSegment> &segments, RowWindow &window,
+                                    const InelasticSweep<dim> *inelastic) const
 {
-  if (constants_.n_directions > 0)
-    sweep_rows(sweep(arrays, segments, window));
+  if (constants_.n_directions == 0)
+    return;
+  RowSweep<dim> s = sweep(arrays, segments, window);
+  s.inelastic = inelastic;
+  s.volumetric = s.volumetric || inelastic;
+  sweep_rows(s);
 }
 
 template <int dim>
 long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
                                 const std::vector<RowSegment> &segments,
-                                const BreakScreen &breaking, const TractionScreen &screen,
-                                RowWindow &window, std::vector<RowRange> &exceeded,
+                                const BreakScreen &breaking, RowWindow &window,
+                                std::vector<RowRange> &exceeded,
                                 const particles::AwakeRanges *ranges, bool by_particle,
-                                bool faces_too) const
+                                bool faces_too, const InelasticSweep<dim> *inelastic) const
 {
   exceeded.clear();
   if (constants_.n_directions == 0)
@@ -132,12 +136,13 @@ long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
   const auto squared = [](double value) { return value * value; };
   s.constants.strength = force(breaking.strength);
   s.constants.tangent = breaking.tangent;
-  s.constants.per_cosine = breaking.per_cosine();
-  s.constants.limit2 = squared(std::min(force(breaking.least_traction()), force(screen.traction)));
-  s.screen = screen;
+  s.constants.measure = breaking.measure;
+  s.constants.limit2 = squared(force(breaking.least_traction()));
   s.exceeded = &exceeded;
-  s.by_particle = by_particle && !ranges && screen.traction == 0;
+  s.by_particle = by_particle && !ranges;
   s.faces_too = faces_too;
+  s.inelastic = inelastic;
+  s.volumetric = s.volumetric || inelastic;
   long n_looked = 0;
   s.n_looked = &n_looked;
   sweep_rows(s);
@@ -147,13 +152,15 @@ long LatticeKernel<dim>::forces(const LatticeArrays<dim> &arrays,
 template <int dim>
 void LatticeKernel<dim>::energies(const LatticeArrays<dim> &arrays,
                                   const std::vector<RowSegment> &segments, RowWindow &window,
-                                  double *energy) const
+                                  double *energy, const InelasticSweep<dim> *inelastic) const
 {
   if (constants_.n_directions == 0)
     return;
   RowSweep<dim> s = sweep(arrays, segments, window);
   s.with_forces = true;
   s.energy = energy;
+  s.inelastic = inelastic;
+  s.volumetric = s.volumetric || inelastic;
   sweep_rows(s);
 }
 

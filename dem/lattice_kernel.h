@@ -3,6 +3,8 @@
 
 #include "core/large_array.h"
 #include "dem/bond_network.h"
+#include "dem/inelastic/inelastic_sweep.h"
+#include "dem/stress_measure.h"
 #include "particles/rest_blocks.h"
 
 #include <cmath>
@@ -39,7 +41,7 @@ struct LatticeConstants
   double twist = 0;      // k_t - k_b, N m
   double strength = 0;   // times S, N: of BreakScreen; infinite when nothing breaks
   double tangent = 0;    // of BreakScreen
-  double per_cosine = 1; // of BreakScreen
+  StressMeasure measure; // of BreakScreen
   double limit2 = 0;     // force^2 on a face, N^2: of what is looked for first
 };
 
@@ -50,31 +52,24 @@ inline constexpr int most_lanes = 8;
 
 using RowRange = particles::ParticleRange;
 
-/// Which blocks of particles [b block, (b + 1) block) have a bond under a traction,
-/// in any direction, of at least `traction` (Pa): their marks are set, others are left alone. A
-/// lattice bond marks the block of its first particle at least.
-struct TractionScreen
-{
-  double traction = 0; // Pa; 0: nothing is marked
-  std::uint8_t *marks = nullptr;
-
-  void mark(int i) const { marks[i / block] = 1; }
-  static constexpr int block = 256;
-};
-
 /// Bonds that could break: those under sigma + tangent |tau| >= strength with sigma > 0, the normal
-/// and the tangential traction of the face.
+/// and the tangential traction of the face; with a tangent below 0 those under
+/// max(sigma, 0)^2 + tau^2 >= strength^2.
 struct BreakScreen
 {
   double strength = 0; // Pa; 0: nothing breaks
   double tangent = 0;
-  /// Whether nothing breaks either that eq. (D12d) keeps below the strength.
+  /// Whether nothing breaks either that the measure keeps below the strength, eq. (D12d) or (D12f).
   bool by_particle = true;
+  StressMeasure measure = {};
 
   /// 1 over the cosine of the angle with that tangent.
-  double per_cosine() const { return std::sqrt(1 + tangent * tangent); }
+  static double per_cosine(double tangent)
+  {
+    return tangent < 0 ? 1 : std::sqrt(1 + tangent * tangent);
+  }
   /// No traction below this one, in any direction, reaches the strength.
-  double least_traction() const { return strength / per_cosine(); }
+  double least_traction() const { return strength / per_cosine(tangent); }
 };
 
 /// State and intermediate results of the rows at work, one stream per number; it slides along the
@@ -130,10 +125,10 @@ struct RowSweep
   std::vector<RowRange> *exceeded;
   RowWindow *window;
   double *energy = nullptr; // in place of forces: of each particle's forward bonds, J
-  TractionScreen screen = {};
   bool by_particle = false; // how bonds that could break are looked for, see LatticeKernel::forces
   bool faces_too = true;    // by particle: faces of what isn't cleared, too
   long *n_looked = nullptr; // grows by the particles that were looked at
+  const InelasticSweep<dim> *inelastic = nullptr; // null: all particles are elastic
 
   /// Particles that the window must hold at least.
   long window_length() const { return window_length_for(reach); }
@@ -158,9 +153,10 @@ public:
   const LatticeConstants<dim> &constants() const { return constants_; }
 
   /// pressure = lambda_i theta_i of the lattice bonds, on top of what other particles have; left
-  /// alone where there is no lattice.
+  /// alone where there is no lattice. With `inelastic` the open cells have what is not the
+  /// lattice's, and particles flow.
   void dilatation(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-                  RowWindow &window) const;
+                  RowWindow &window, const InelasticSweep<dim> *inelastic) const;
 
   /// The same, and force and torque of the lattice bonds; overwrites, but leaves them alone where
   /// there is no lattice. With `ranges` only of the particles that are stepped, and the pressures
@@ -168,18 +164,18 @@ public:
   /// among which are those with a bond that could break: its first particle, or one of both; ranges
   /// don't overlap. Returns how many particles it looked at more closely for that. `by_particle` it
   /// looks at the stresses of the particles, not at the tractions on each face: slower where
-  /// tractions are small, but it clears bodies under homogeneous stress below the strength. Neither
-  /// together with `ranges` nor with a screen. Without `faces_too` it leaves what it doesn't clear
+  /// tractions are small, but it clears bodies under homogeneous stress below the strength. Not
+  /// together with `ranges`. Without `faces_too` it leaves what it doesn't clear
   /// by particle to the caller: cells that miss a face are noted where they bear much.
   long forces(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-              const BreakScreen &breaking, const TractionScreen &screen, RowWindow &window,
-              std::vector<RowRange> &exceeded, const particles::AwakeRanges *ranges = nullptr,
-              bool by_particle = false, bool faces_too = true) const;
+              const BreakScreen &breaking, RowWindow &window, std::vector<RowRange> &exceeded,
+              const particles::AwakeRanges *ranges = nullptr, bool by_particle = false,
+              bool faces_too = true, const InelasticSweep<dim> *inelastic = nullptr) const;
 
   /// Pressures as dilatation() has them, and the elastic energy in J of each particle's forward
   /// bonds, bending and twist included, volumes not.
   void energies(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,
-                RowWindow &window, double *energy) const;
+                RowWindow &window, double *energy, const InelasticSweep<dim> *inelastic) const;
 
 private:
   RowSweep<dim> sweep(const LatticeArrays<dim> &arrays, const std::vector<RowSegment> &segments,

@@ -5,6 +5,7 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/inelastic/own_stress.h"
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
 #include "dem/laws/bending.h"
@@ -19,19 +20,21 @@ namespace ligament::dem::HWY_NAMESPACE
 /// With h = (R - I) n and v = q S/r, the force on a face is
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
 /// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
-/// particle are the two numbers of h and of g along n and along its normal.
-template <int n_dir, long stride_>
+/// particle are the two numbers of h and of g along n and along its normal. Strains of their own
+/// take 2G S/r q R e n from g, eq. (D22), of which the matrix is kept.
+template <int n_dir, long stride_, bool inelastic_>
 class Bonds2d
 {
 public:
   static constexpr long stride = stride_;
-  static constexpr int n_streams = 9;
+  static constexpr bool inelastic = inelastic_;
+  static constexpr int n_streams = inelastic_ ? 10 : 9;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds2d(const RowSweep<2> &sweep)
       : a_(sweep.arrays),
         c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
-        volumetric_(sweep.volumetric)
+        volumetric_(sweep.volumetric), inelastic_sweep_(sweep.inelastic)
   {
   }
 
@@ -51,6 +54,8 @@ public:
     cosine_minus_1_and_sine(d, angle, c, s);
     const Pair<hn::Vec<D>> h{c, s};
     store(d, h, at + h_ * stride);
+    if (inelastic)
+      return;
     if (volumetric_)
       hn::StoreU(hn::Zero(d), d, at + other_ * stride);
     else
@@ -88,6 +93,68 @@ public:
     store(d, law_.part_along(vp, h), at + g_ * stride);
   }
 
+  /// The same of particles with strains of their own, which flow behind `done`.
+  template <typename D>
+  HWY_INLINE void strain(D d, long i, const Offsets &offsets, int done) const
+  {
+    using V = hn::Vec<D>;
+    prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    const BondMask<D> mask(d, a_.mask, i);
+    const V zero = hn::Zero(d);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    Pair<V> sum[2] = {{zero, zero}, {zero, zero}}; // of Du (x) n, column by column
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto h = along<k, h_>(d, at);
+      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
+      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
+      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+      const auto n = normal(d, k);
+      sum[0] = mul_add(n.x, e, sum[0]);
+      sum[1] = mul_add(n.y, e, sum[1]);
+    });
+    const auto h = load(d, at + h_ * stride); // cos - 1, sin
+    V turned[2][2], x[2][2];                  // R^T sum; times S q / r
+    const V factor = hn::Set(d, law_.volumetric);
+    for (int b = 0; b < 2; ++b) {
+      turned[0][b] = hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y)));
+      turned[1][b] = hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y)));
+      for (int a = 0; a < 2; ++a)
+        x[a][b] = hn::Mul(factor, turned[a][b]);
+    }
+    const InARow<2, D> place{i};
+    const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
+    const Response<2, D, InARow<2, D>> response(
+        d, *inelastic_sweep_, place, fresh,
+        OwnStress<2, D>(d, *inelastic_sweep_, place, x,
+                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const V p = response.pressure, vp = law_.pressing(p);
+    hn::StoreU(p, d, a_.pressure + i);
+    V torque = hn::Mul(vp, hn::Sub(turned[0][1], turned[1][0]));
+    const auto part = law_.part_along(vp, h); // of the matrix [x -y; y x]
+    V g[2][2] = {{part.x, hn::Neg(part.y)}, {part.y, part.x}};
+    if (response.is_strained) {
+      const auto &e = response.strain;
+      const V shear_half = hn::Set(d, law_.shear_half);
+      const auto moved = [&](int a, int b) HWY_ATTR { // X e
+        return hn::MulAdd(turned[a][0], e(0, b), hn::Mul(turned[a][1], e(1, b)));
+      };
+      torque = hn::MulAdd(shear_half, hn::Sub(moved(1, 0), moved(0, 1)), torque);
+      for (int b = 0; b < 2; ++b) { // R e
+        const V along = e(0, b), across = e(1, b);
+        g[0][b] = hn::NegMulAdd(
+            shear_half, hn::Add(along, hn::NegMulAdd(h.y, across, hn::Mul(h.x, along))), g[0][b]);
+        g[1][b] = hn::NegMulAdd(
+            shear_half, hn::Add(across, hn::MulAdd(h.y, along, hn::Mul(h.x, across))), g[1][b]);
+      }
+    }
+    hn::StoreU(torque, d, at + moment_ * stride);
+    for (int k = 0; k < 4; ++k)
+      hn::StoreU(g[k / 2][k % 2], d, at + matrix(k) * stride);
+  }
+
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
   /// reaches the limit; or, by particle, with any face that eq. (D12d) does not clear.
   template <bool by_particle, typename D>
@@ -107,10 +174,9 @@ public:
     for_directions([&](auto direction) HWY_ATTR {
       constexpr int k = decltype(direction)::value;
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto g = along<k, g_>(d, at);
-      const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + along<k, g_>(d, f)), k);
-      const auto t_b =
-          masked(mask, law_.force(u - displacement(d, b), along<k, g_>(d, b) + g), n_dir + k);
+      const auto g = part<k>(d, at);
+      const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + part<k>(d, f)), k);
+      const auto t_b = masked(mask, law_.force(u - displacement(d, b), part<k>(d, b) + g), n_dir + k);
       const auto net = t_f - t_b, both = t_f + t_b, a = normal(d, k) + along<k, h_>(d, at);
       force = force + net;
       torque = add_cross(a, both, torque);
@@ -130,7 +196,9 @@ public:
         return hn::Ge(largest, hn::Set(d, c_.limit2));
     }();
     torque = law_.torque(torque);
-    if (volumetric_)
+    if constexpr (inelastic)
+      torque = hn::Add(torque, hn::LoadU(d, at + moment_ * stride));
+    else if (volumetric_)
       torque = law_.add_torque_of_pressure(hn::LoadU(d, a_.pressure + i),
                                            hn::LoadU(d, at + moment_ * stride), torque);
     torque = bending(d).add_torque(bend, torque);
@@ -191,7 +259,7 @@ private:
   {
     const auto t = masked(mask,
                           law_.force(displacement(d, to) - displacement(d, from),
-                                     along<k, g_>(d, from) + along<k, g_>(d, to)),
+                                     part<k>(d, from) + part<k>(d, to)),
                           bit);
     const auto n = normal(d, k);
     const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
@@ -240,38 +308,60 @@ private:
     return {hn::NegMulAdd(part.y, n.y, hn::Mul(part.x, n.x)),
             hn::MulAdd(part.y, n.x, hn::Mul(part.x, n.y))};
   }
+  /// g of direction k.
+  template <int k, typename D>
+  HWY_INLINE Pair<hn::Vec<D>> part(D d, const double *at) const
+  {
+    if constexpr (inelastic) {
+      const auto n = normal(d, k);
+      const auto g = [&](int m) HWY_ATTR { return hn::LoadU(d, at + matrix(m) * stride); };
+      return {hn::MulAdd(g(0), n.x, hn::Mul(g(1), n.y)), hn::MulAdd(g(2), n.x, hn::Mul(g(3), n.y))};
+    } else
+      return along<k, g_>(d, at);
+  }
   template <typename Mask, typename V>
   static HWY_INLINE Pair<V> masked(const Mask &mask, const Pair<V> &v, int k)
   {
     return {mask(v.x, k), mask(v.y, k)};
   }
 
-  // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the
-  // lattice's.
+  // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the lattice's; of
+  // inelastic ones own torque in place of the sum, and four numbers of g.
   static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7, other_ = 8;
+  static constexpr int matrix(int k) { return k < 2 ? g_ + k : moment_ - 1 + k; }
 
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;
   LatticeBonds law_;
   bool volumetric_;
+  const InelasticSweep<2> *inelastic_sweep_;
   double *w_ = nullptr; // origin of the window
 };
 
-template <int n_dir>
+template <int n_dir, bool inelastic>
 void sweep_rows_of(const RowSweep<2> &sweep)
 {
   if (2 * sweep.window_length() <= RowWindow::close)
-    RowPipeline<Bonds2d<n_dir, RowWindow::close>, 2>(sweep).run();
+    RowPipeline<Bonds2d<n_dir, RowWindow::close, inelastic>, 2>(sweep).run();
   else
-    RowPipeline<Bonds2d<n_dir, RowWindow::wide>, 2>(sweep).run();
+    RowPipeline<Bonds2d<n_dir, RowWindow::wide, inelastic>, 2>(sweep).run();
+}
+
+template <bool inelastic>
+void sweep_rows_of(const RowSweep<2> &sweep)
+{
+  if (sweep.constants.n_directions == 2)
+    sweep_rows_of<2, inelastic>(sweep);
+  else
+    sweep_rows_of<3, inelastic>(sweep);
 }
 
 void sweep_rows_2d(const RowSweep<2> &sweep)
 {
-  if (sweep.constants.n_directions == 2)
-    sweep_rows_of<2>(sweep);
+  if (sweep.inelastic)
+    sweep_rows_of<true>(sweep);
   else
-    sweep_rows_of<3>(sweep);
+    sweep_rows_of<false>(sweep);
 }
 
 void sines(const double *angle, double *cosine_minus_1, double *sine, int n)

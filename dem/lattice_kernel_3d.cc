@@ -5,6 +5,7 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
+#include "dem/inelastic/own_stress.h"
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
 #include "dem/laws/bending.h"
@@ -31,23 +32,53 @@ struct Basis<6>
                                      {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}};
 };
 
+/// R - I of a quaternion.
+template <typename V>
+struct Change
+{
+  Triple<V> x, y, z; // columns
+
+  HWY_INLINE explicit Change(const Quaternion<V> &q)
+  {
+    const auto &v = q.v;
+    const Triple<V> two = v + v;
+    const V xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
+    const V xy = hn::Mul(two.x, v.y), xz = hn::Mul(two.x, v.z), yz = hn::Mul(two.y, v.z);
+    const V wx = hn::Mul(two.x, q.w), wy = hn::Mul(two.y, q.w), wz = hn::Mul(two.z, q.w);
+    x = {hn::Neg(hn::Add(yy, zz)), hn::Add(xy, wz), hn::Sub(xz, wy)};
+    y = {hn::Sub(xy, wz), hn::Neg(hn::Add(xx, zz)), hn::Add(yz, wx)};
+    z = {hn::Add(xz, wy), hn::Sub(yz, wx), hn::Neg(hn::Add(xx, yy))};
+  }
+  HWY_INLINE Triple<V> of(const Triple<V> &a) const
+  {
+    return mul_add(a.x, x, mul_add(a.y, y, a.z * z));
+  }
+  /// (R^T - I) a
+  HWY_INLINE Triple<V> of_inverse(const Triple<V> &a) const
+  {
+    return {dot(x, a), dot(y, a), dot(z, a)};
+  }
+};
+
 /// theory.md eqs. (D4), (D6), (D8b), (D8c) for vectors of particles that are neighbours in a row.
 /// With h = (R - I) n and v = q S/r, the force on a face is
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h:
 /// linear in h, which three directions give for all, and formed by the same operations from either
-/// end, so that pair forces cancel exactly.
-template <int n_dir, long stride_>
+/// end, so that pair forces cancel exactly. Strains of their own take 2G S/r q R e n from g,
+/// eq. (D22).
+template <int n_dir, long stride_, bool inelastic_>
 class Bonds3d
 {
 public:
   static constexpr long stride = stride_;
+  static constexpr bool inelastic = inelastic_;
   static constexpr int n_streams = 29;
   using Offsets = NeighbourOffsets<n_dir>;
 
   HWY_INLINE explicit Bonds3d(const RowSweep<3> &sweep)
       : a_(sweep.arrays),
         c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
-        volumetric_(sweep.volumetric)
+        volumetric_(sweep.volumetric), inelastic_sweep_(sweep.inelastic)
   {
   }
 
@@ -64,20 +95,12 @@ public:
     for (int c = 0; c < 4; ++c)
       hn::StoreU(hn::LoadU(d, a_.rotation[c] + i), d, at + (q_ + c) * stride);
     const auto q = quaternion(d, at);
-    const auto &v = q.v;
-    if (volumetric_)
+    if (volumetric_ && !inelastic)
       hn::StoreU(hn::Zero(d), d, at + other_ * stride);
-    const Triple<hn::Vec<D>> two = v + v;
-    const auto xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
-    const auto xy = hn::Mul(two.x, v.y), xz = hn::Mul(two.x, v.z), yz = hn::Mul(two.y, v.z);
-    const auto wx = hn::Mul(two.x, q.w), wy = hn::Mul(two.y, q.w), wz = hn::Mul(two.z, q.w);
-    // Columns of R - I.
-    const Triple<hn::Vec<D>> x{hn::Neg(hn::Add(yy, zz)), hn::Add(xy, wz), hn::Sub(xz, wy)};
-    const Triple<hn::Vec<D>> y{hn::Sub(xy, wz), hn::Neg(hn::Add(xx, zz)), hn::Add(yz, wx)};
-    const Triple<hn::Vec<D>> z{hn::Add(xz, wy), hn::Sub(yz, wx), hn::Neg(hn::Add(xx, yy))};
+    const Change<hn::Vec<D>> change(q);
     for (int m = 0; m < 3; ++m) {
       const auto n = normal(d, Basis<n_dir>::direction[m]);
-      const auto h = mul_add(n.x, x, mul_add(n.y, y, n.z * z));
+      const auto h = change.of(n);
       store(d, h, at + (h_ + 3 * m) * stride);
       if (!volumetric_)
         store(d, law_.part(h), at + (g_ + 3 * m) * stride);
@@ -118,6 +141,78 @@ public:
           d,
           law_.part(vp, normal(d, Basis<n_dir>::direction[m]), load(d, at + (h_ + 3 * m) * stride)),
           at + (g_ + 3 * m) * stride);
+  }
+
+  /// The same of particles with strains of their own, which flow behind `done`.
+  template <typename D>
+  HWY_INLINE void strain(D d, long i, const Offsets &offsets, int done) const
+  {
+    using V = hn::Vec<D>;
+    using V3 = Triple<V>;
+    prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    const BondMask<D> mask(d, a_.mask, i);
+    const V zero = hn::Zero(d);
+    double *const at = w_ + i;
+    const auto u = displacement(d, at);
+    // Sum of Du (x) n, column by column.
+    V3 sum[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    for_directions([&](auto direction) HWY_ATTR {
+      constexpr int k = decltype(direction)::value;
+      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+      const auto h = along<k, h_>(d, at);
+      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
+      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
+      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+      const auto n = normal(d, k);
+      sum[0] = mul_add(n.x, e, sum[0]);
+      sum[1] = mul_add(n.y, e, sum[1]);
+      sum[2] = mul_add(n.z, e, sum[2]);
+    });
+    const Change<V> change(quaternion(d, at));
+    V turned[3][3], x[3][3]; // R^T sum; times S q / r
+    const V factor = hn::Set(d, law_.volumetric);
+    for (int b = 0; b < 3; ++b) {
+      const V3 own = sum[b] + change.of_inverse(sum[b]);
+      turned[0][b] = own.x, turned[1][b] = own.y, turned[2][b] = own.z;
+      for (int a = 0; a < 3; ++a)
+        x[a][b] = hn::Mul(factor, turned[a][b]);
+    }
+    const InARow<3, D> place{i};
+    const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
+    const Response<3, D, InARow<3, D>> response(
+        d, *inelastic_sweep_, place, fresh,
+        OwnStress<3, D>(d, *inelastic_sweep_, place, x,
+                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const V p = response.pressure, vp = law_.pressing(p);
+    hn::StoreU(p, d, a_.pressure + i);
+    const V shear_half = hn::Set(d, law_.shear_half);
+    const auto &e = response.strain;
+    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = k q X e - v p X.
+    const auto y = [&](int a, int b) HWY_ATTR {
+      V own = hn::Neg(hn::Mul(vp, turned[a][b]));
+      if (response.is_strained)
+        own = hn::MulAdd(shear_half,
+                         hn::MulAdd(turned[a][0], e(0, b),
+                                    hn::MulAdd(turned[a][1], e(1, b),
+                                               hn::Mul(turned[a][2], e(2, b)))),
+                         own);
+      return own;
+    };
+    const V3 torque{hn::Sub(y(2, 1), y(1, 2)), hn::Sub(y(0, 2), y(2, 0)),
+                    hn::Sub(y(1, 0), y(0, 1))};
+    store(d, torque + change.of(torque), at + moment_ * stride);
+    for (int m = 0; m < 3; ++m) {
+      const auto n = normal(d, Basis<n_dir>::direction[m]);
+      V3 g = law_.part(vp, n, load(d, at + (h_ + 3 * m) * stride));
+      if (response.is_strained) {
+        const auto row = [&](int a) HWY_ATTR {
+          return hn::MulAdd(e(a, 0), n.x, hn::MulAdd(e(a, 1), n.y, hn::Mul(e(a, 2), n.z)));
+        };
+        const V3 en{row(0), row(1), row(2)};
+        g = neg_mul_add(shear_half, en + change.of(en), g);
+      }
+      store(d, g, at + (g_ + 3 * m) * stride);
+    }
   }
 
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
@@ -165,7 +260,9 @@ public:
         return hn::Ge(largest, hn::Set(d, c_.limit2));
     }();
     torque = law_.torque(torque);
-    if (volumetric_)
+    if constexpr (inelastic)
+      torque = torque + load(d, at + moment_ * stride);
+    else if (volumetric_)
       torque = law_.add_torque_of_pressure(hn::LoadU(d, a_.pressure + i),
                                            load(d, at + moment_ * stride), torque);
     torque = bending.add_torque(q, hn::Set(d, 2 * c_.bending), hn::Set(d, 2 * c_.twist), torque);
@@ -297,32 +394,42 @@ private:
     return {mask(v.x, k), mask(v.y, k), mask(v.z, k)};
   }
 
-  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du, pressure
-  // beside the lattice's.
+  // First streams: displacement, quaternion, h and g of the basis, sum of a x Du (inelastic: own
+  // torque), pressure beside the lattice's.
   static constexpr int u_ = 0, q_ = 3, h_ = 7, g_ = 16, moment_ = 25, other_ = 28;
 
   LatticeArrays<3> a_;
   LatticeConstants<3> c_;
   LatticeBonds law_;
   bool volumetric_;
+  const InelasticSweep<3> *inelastic_sweep_;
   double *w_ = nullptr; // origin of the window
 };
 
-template <int n_dir>
+template <int n_dir, bool inelastic>
 void sweep_rows_of(const RowSweep<3> &sweep)
 {
   if (2 * sweep.window_length() <= RowWindow::close)
-    RowPipeline<Bonds3d<n_dir, RowWindow::close>, 3>(sweep).run();
+    RowPipeline<Bonds3d<n_dir, RowWindow::close, inelastic>, 3>(sweep).run();
   else
-    RowPipeline<Bonds3d<n_dir, RowWindow::wide>, 3>(sweep).run();
+    RowPipeline<Bonds3d<n_dir, RowWindow::wide, inelastic>, 3>(sweep).run();
+}
+
+template <bool inelastic>
+void sweep_rows_of(const RowSweep<3> &sweep)
+{
+  if (sweep.constants.n_directions == 3)
+    sweep_rows_of<3, inelastic>(sweep);
+  else
+    sweep_rows_of<6, inelastic>(sweep);
 }
 
 void sweep_rows_3d(const RowSweep<3> &sweep)
 {
-  if (sweep.constants.n_directions == 3)
-    sweep_rows_of<3>(sweep);
+  if (sweep.inelastic)
+    sweep_rows_of<true>(sweep);
   else
-    sweep_rows_of<6>(sweep);
+    sweep_rows_of<false>(sweep);
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -54,9 +54,9 @@ struct BondMask
   }
 };
 
-/// Particles with a face that could break by eq. (D12d), from sums over all their faces of products
-/// of levers (of length 1) and forces, of moments, and of forces^2 (twice). Particles that miss a
-/// face or have turned far are those with a force that reaches the limit.
+/// Particles with a face that could break by eq. (D12d) or (D12f), from sums over all their faces
+/// of products of levers (of length 1) and forces, of moments, and of forces^2 (twice). Particles
+/// that miss a face or have turned far are those with a force that reaches the limit.
 template <int n_dir, int dim, typename D, typename Stress, typename Moment, typename V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> not_cleared(D d, const LatticeConstants<dim> &c, const BondMask<D> &mask,
                                    V angle, Stress stress, const Moment &moment, V twice_force2)
@@ -67,7 +67,7 @@ HWY_INLINE hn::Mask<D> not_cleared(D d, const LatticeConstants<dim> &c, const Bo
   stress.finish(moment, hn::Set(d, share));
   // The sum of |t - S n|^2: the sum of n n is that of the unit tensor.
   const V residual2 = hn::NegMulAdd(hn::Set(d, 1 / share), stress.square(), force2);
-  const V bound = tension_bound(stress, residual2, most_turn, c.per_cosine);
+  const V bound = tension_bound(stress, residual2, most_turn, c.measure);
   const auto known = hn::And(mask.all(2 * n_dir), hn::Lt(angle, hn::Set(d, most_turn)));
   const auto cleared = hn::And(known, hn::Lt(bound, hn::Set(d, c.strength)));
   return hn::AndNot(cleared, hn::Ge(force2, hn::Set(d, c.limit2)));
@@ -211,7 +211,7 @@ private:
         bonds_.set_window(sweep_.window->origin());
         // Overlapping vectors stay within this piece: what lies before may have left the window.
         for_each_vector(turned_, turned_, end, [&](auto d, long i) HWY_ATTR { bonds_.turn(d, i); });
-        if (sweep_.volumetric)
+        if (sweep_.volumetric && !Bonds::inelastic)
           take_other_pressures(turned_, end);
         turned_ = end;
       }
@@ -232,8 +232,14 @@ private:
   HWY_INLINE void dilatation(const PieceCursor &piece)
   {
     const typename Bonds::Offsets offsets(piece.segment());
-    for_each_vector(piece.first, piece.begin, piece.end,
-                    [&](auto d, long i) HWY_ATTR { bonds_.dilatation(d, i, offsets); });
+    int done = piece.begin; // those before have flowed
+    for_each_vector(piece.first, piece.begin, piece.end, [&](auto d, long i) HWY_ATTR {
+      if constexpr (Bonds::inelastic)
+        bonds_.strain(d, i, offsets, done);
+      else
+        bonds_.dilatation(d, i, offsets);
+      done = int(i) + int(hn::Lanes(d));
+    });
   }
 
   template <bool by_particle>
@@ -250,17 +256,12 @@ private:
     });
   }
 
-  /// Where there is something to look at: marks of the screen, and particles with bonds that could
-  /// break.
+  /// Where there is something to look at: particles with bonds that could break.
   template <bool by_particle, typename D>
   HWY_INLINE void note(D d, long i, const typename Bonds::Offsets &offsets, hn::Mask<D> look,
                        const RowRange &range)
   {
     *sweep_.n_looked += range.end - range.begin;
-    if (sweep_.screen.traction > 0) {
-      sweep_.screen.mark(range.begin);
-      sweep_.screen.mark(range.end - 1);
-    }
     if (!std::isfinite(sweep_.constants.strength))
       return;
     auto found = look;

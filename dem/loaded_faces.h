@@ -20,7 +20,6 @@ struct WallFace
   Vector<dim> prescribed;    // 1 where the component is prescribed, 0 where it is free
   std::array<int, dim> load; // number of the load that prescribes the component, or -1
   double shear_modulus;      // Pa, of the particle
-  Vector<dim> plastic = Vector<dim>::Zero(); // m, what no traction answers of Du
 };
 
 /// Outer face under a given traction (theory.md, loaded outer faces).

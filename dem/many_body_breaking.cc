@@ -22,9 +22,9 @@ double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) c
   if (b.joins_materials)
     return 0;
   const auto m = stressed(p, evaluation_).motion(b);
-  const Vector<dim> elastic = m.elastic - cohesive_.opening(b, p);
-  return law_of(b).twice_energy(elastic) / 2 + bending_energy(b, p) -
-         cohesive_.lost_bending_energy(b, p);
+  const Vector<dim> du = m.du - cohesive_.opening(b, p);
+  return law_of(b).twice_energy(du) / 2 + bending_energy(b, p) -
+         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p);
 }
 
 template <int dim>
@@ -60,11 +60,12 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   const auto m = stressed(p, evaluation_).motion(b);
   const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
     return (b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0)) -
-           flow_.flowed_volume(b, i);
+           strains_.flowed_volume(b, i);
   };
   const Vector<dim> du = m.du - cohesive_.opening(b, p);
   const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, du, m.a_i)),
                                                         std::pair(b.j, share(b.j, -du, m.a_j))};
+  const std::array<double, 2> before = {pressure[b.i], pressure[b.j]};
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] = pressure[i] / stiffness[i] - share; // theta_i V_i for a moment
@@ -72,6 +73,8 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] *= stiffness[i];
+  strains_.forget_face(b, b.i, p, before[0], pressure[b.i]);
+  strains_.forget_face(b, b.j, p, before[1], pressure[b.j]);
   if (at_interface)
     interfaces_.add_pressures(p, evaluation_);
   return local_energy(b, p) - bond_energy(b, p);
@@ -127,6 +130,15 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
   return at_once;
 }
 
+template <int dim>
+Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
+{
+  const StressedBody<dim> state = stressed(p, evaluation_);
+  const Vector<dim> force = state.force(b, state.motion(b));
+  const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
+  return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
+}
+
 // Only the neighbours of the bonds feel the break: what acts on them is summed bond by bond before
 // it and after it.
 template <int dim>
@@ -143,21 +155,26 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   }
   for (const BondId &id : bonds) {
     Bond<dim> b = body_.bonds().bond(id);
+    const Vector<dim> pressing =
+        search_.breaks_under_pressure() ? pressing_force(b, p) : Vector<dim>(Vector<dim>::Zero());
     const auto *const face = cohesive_.find(b, p);
     const bool softened = face != nullptr;
     const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
     if (softened) // touches as it is now: after a slide that is not where it was bonded
       b.distance = std::min(b.distance, centre_distance(b, p));
-    broken_.add(b, p, time_, energy_before - energy - contacts_.act_broken(b, p, dt()), of_opening);
+    broken_.add(b, p, time_,
+                energy_before - energy -
+                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()),
+                of_opening);
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);
     add(p.force, near[k], Vector<dim>(after.force - bonded[k].force));
     add(p.torque, near[k], Spin<dim>(after.torque - bonded[k].torque));
   }
-  surface_.find_reactions(p, evaluation_);
-  surface_.book_work(p, evaluation_); // nothing moved
+  find_reactions(p, evaluation_);
+  book_work(p); // nothing moved
   broken_.take_mean(p, near, before, dt());
   cohesive_.take_up(p, evaluation_);
   clear_forces_at_rest(p, evaluation_);

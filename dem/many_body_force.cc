@@ -8,18 +8,28 @@ template <int dim>
 ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const Materials &materials,
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
-    : surface_(packing, materials, std::move(loads)), body_(packing, materials, surface_.walls()),
-      rows_(body_), slices_(body_), cohesive_(body_, fracture.softening, fracture.mode_ratio),
-      interfaces_(body_.bonds()), contacts_(packing, materials),
-      search_(fracture, body_, interfaces_.members(), cohesive_), evaluation_(body_), trial_(body_),
-      energy_evaluation_(body_)
+    : surface_(packing, materials, loads), body_(packing, materials, surface_.walls()),
+      rows_(body_), slices_(body_),
+      strains_(packing, body_, surface_.walls(), surface_.particles()),
+      cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_.bonds()),
+      contacts_(packing, materials, body_.images()), jumps_(body_, loads),
+      search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
+      evaluation_(body_), trial_(body_), energy_evaluation_(body_)
 {
   core::require(interfaces_.empty() || !fracture.softens(),
                 "/material/fracture/energy: faces that soften need a body of one elastic material; "
                 "give the inclusions the material's \"youngs_modulus\" and \"poissons_ratio\", or "
                 "leave out \"energy\"");
+  core::require(!fracture.softens() || fracture.can_soften(),
+                "faces soften under maximum tension alone, at strengths that do not scatter");
+  core::require(!fracture.softens() || !strains_.has_law(),
+                "faces of a body that flows don't soften");
+  core::require(!fracture.softens() || !body_.images().is_any(),
+                "faces of a body with joined sides don't soften");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
+  core::require(!strains_.has_law() || interfaces_.empty(),
+                "a body that flows is of one elastic material");
 }
 
 template <int dim>
@@ -36,7 +46,7 @@ void ManyBodyForce<dim>::find_other_particles()
 template <int dim>
 void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 {
-  core::require(broken_.all().empty() && !flow_.has_law(),
+  core::require(broken_.all().empty() && !strains_.has_law(),
                 "energy weights are set on an intact, elastic body");
   body_.set_energy_weights(weights);
   slices_ = SliceBonds<dim>(body_);
@@ -48,18 +58,9 @@ void ManyBodyForce<dim>::set_energy_weights(const std::vector<double> &weights)
 template <int dim>
 void ManyBodyForce<dim>::set_coupled_edge(const Particles &p, particles::CoupledEdge<dim> edge)
 {
+  strains_.keep_elastic(edge.members);
   body_.set_edge(EdgeCells<dim>(std::move(edge), body_.boundary_faces(), body_.materials(), p,
                                 body_.energy_weights()));
-}
-
-template <int dim>
-void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
-{
-  core::require(!fracture().softens(), "faces of a body that flows cannot soften");
-  core::require(interfaces_.empty(),
-                "plastic flow needs a body of one elastic material with its whole energy");
-  core::require(!rest_ || rest_->is_exact(), "what is held at rest by a threshold could yield");
-  flow_.set_law(std::move(law), body_, rows_.constants(), surface_.particles());
 }
 
 // The pressures at interfaces are solved for together: one that moves moves all, if by next to
@@ -67,7 +68,7 @@ void ManyBodyForce<dim>::set_yield(std::unique_ptr<const YieldLaw> law)
 template <int dim>
 void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 {
-  core::require(!rest || !flow_.has_law() || rest->is_exact(),
+  core::require(!rest || !strains_.has_law() || rest->is_exact(),
                 "what is held at rest by a threshold could yield");
   rest_ = rest;
   evaluation_.rest = rest;
@@ -79,7 +80,16 @@ void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 template <int dim>
 void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim> &e) const
 {
+  jumps_.show(e.has_loads);
   e.pressure.resize(body_.n_particles());
+  if (strains_.has_law()) {
+    // Slices come last: without a lattice they find what the particles answer.
+    e.inelastic = strains_.begin(e.may_flow, time_);
+    e.inelastic->energy = e.own_energy;
+    surface_.add_strains(p, e);
+    slices_.add_strains(p, e);
+    return;
+  }
   if (body_.has_dilatation())
     for (const int i : body_.other_particles())
       e.pressure[i] = 0;
@@ -100,22 +110,46 @@ template <int dim>
 void ManyBodyForce<dim>::find_forces(Particles &p, Evaluation<dim> &e) const
 {
   find_other_pressures(p, e);
+  find_forces_under(p, e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_forces_under(Particles &p, Evaluation<dim> &e) const
+{
   rows_.set_forces(p, e);
   for (const auto *part : parts_)
     part->add_forces(p, e);
+  jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
   clear_forces_at_rest(p, e);
 }
 
 template <int dim>
 void ManyBodyForce<dim>::find_forces_of_step(Particles &p)
 {
-  Evaluation<dim> &e = evaluation_;
-  find_other_pressures(p, e);
-  cohesive_.open(p, time_, e);
-  rows_.set_forces(p, e);
-  for (const auto *part : parts_)
-    part->add_forces(p, e);
-  clear_forces_at_rest(p, e);
+  find_other_pressures(p, evaluation_);
+  cohesive_.open(p, time_, evaluation_);
+  find_forces_under(p, evaluation_);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::set_loads(double time)
+{
+  surface_.set_time(time);
+  jumps_.set_time(time);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) const
+{
+  surface_.find_reactions(p, e);
+  jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::book_work(const Particles &p)
+{
+  surface_.book_work(p, evaluation_);
+  jumps_.book_work(evaluation_);
 }
 
 template <int dim>
@@ -124,6 +158,7 @@ void ManyBodyForce<dim>::add_contacts(Particles &p)
   if (contacts_.all().empty())
     return;
   contacts_.act(p, dt());
+  jumps_.find_reactions(stressed(p, evaluation_), contacts_.contacts(), evaluation_);
   clear_forces_at_rest(p, evaluation_);
 }
 
@@ -156,15 +191,15 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     time_ = time;
     broken_.end_step(p, dt());
   }
-  surface_.set_time(time);
+  set_loads(time);
   surface_.wake(rest_);
-  search_.ask(evaluation_, flow_);
-  flow_.ask(evaluation_);
+  jumps_.wake(rest_);
+  search_.ask(evaluation_, strains_);
+  evaluation_.may_flow = true;
   find_forces_of_step(p);
-  flow(p);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
-  surface_.book_work(p, evaluation_);
+  book_work(p);
   if (broken_.have_broken_at(time) || began_at_ == time)
     return;
   const StressedBody<dim> state = stressed(p, evaluation_);
@@ -176,54 +211,20 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
 }
 
 template <int dim>
-void ManyBodyForce<dim>::flow(Particles &p)
-{
-  const auto increments = flow_.increments(p, time_, evaluation_, surface_);
-  if (increments.empty())
-    return;
-  surface_.book_work(p, evaluation_); // with the reactions before
-  core::ExactSum taken;
-  add_flowing_energy(p, 1, taken);
-  const int n_before = flow_.blocks()->n_plastic_blocks();
-  flow_.add(increments, p);
-  if (flow_.blocks()->n_plastic_blocks() > n_before)
-    find_other_particles();
-  surface_.set_plastic([&](int i) { return flow_.blocks()->strain(i); });
-  search_.ask(evaluation_, flow_);
-  find_forces(p, evaluation_);
-  add_flowing_energy(p, -1, taken);
-  flow_.book(taken);
-}
-
-// Energy that leaves at fixed positions; the leap-frog's invariant counts the kinetic energy with
-// the force in it, so that of the force's change belongs to the balance.
-template <int dim>
-void ManyBodyForce<dim>::add_flowing_energy(const Particles &p, int sign, core::ExactSum &sum)
-{
-  energy_.assign(body_.n_particles(), 0.);
-  surface_.add_energies(p, evaluation_, energy_);
-  const auto of_particle = [&](int i) {
-    const double power =
-        get(p.velocity, i).dot(get(p.force, i)) + get(p.spin, i).dot(get(p.torque, i));
-    return sign *
-           (energy_[i] + body_.volume_energy(i, evaluation_.pressure[i]) + 0.5 * dt() * power);
-  };
-  sum.merge(particles::block_sum(p.part.owned, of_particle));
-  for (const double of_bonds : evaluation_.plastic_energy)
-    sum.add(sign * of_bonds);
-}
-
-template <int dim>
 double ManyBodyForce<dim>::potential_energy(const Particles &p) const
 {
   Evaluation<dim> &e = energy_evaluation_;
+  own_energy_.assign(strains_.has_law() ? body_.n_particles() : 0, 0.);
+  e.own_energy = own_energy_.data();
   find_other_pressures(p, e);
   rows_.set_energies(p, e, energy_);
   for (const auto *part : parts_)
     part->add_energies(p, e, energy_);
-  return particles::block_sum(
-             p.part.owned,
-             [&](int i) { return energy_[i] + body_.volume_energy(i, e.pressure[i]); })
+  return particles::block_sum(p.part.owned,
+                              [&](int i) {
+                                return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
+                                       (own_energy_.empty() ? 0 : own_energy_[i]);
+                              })
       .value();
 }
 
@@ -272,6 +273,28 @@ void ManyBodyForce<dim>::softening(const Particles &p, std::vector<double> &shar
       share[i] = std::max(share[i], std::min(face.opening.damage, 1.));
       opening[i] = std::max(opening[i], face.opening.jump.norm());
     }
+}
+
+template <int dim>
+Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
+                                                      const std::vector<Watch> &watch) const
+{
+  Utilisation<dim> most;
+  if (!can_flow())
+    return most;
+  std::vector<int> watched;
+  for (int i = 0; i < p.size(); ++i)
+    if (watch[i] == Watch::watched)
+      watched.push_back(i);
+  const auto stress = stressed(p, evaluation_).stresses_of(watched);
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    const int i = watched[k];
+    const double zz = body_.is_plane_strain() ? evaluation_.pressure[i] : 0;
+    const double share = flow_share<dim>(materials().of(i).plasticity, stress[k], zz);
+    if (share > most.share)
+      most = {share, get(p.reference, i)};
+  }
+  return most;
 }
 
 template <int dim>

@@ -9,7 +9,8 @@
 #include "dem/interfaces.h"
 #include "dem/parts/cohesive_faces.h"
 #include "dem/parts/contact_forces.h"
-#include "dem/parts/plastic_flow.h"
+#include "dem/parts/inelastic_strains.h"
+#include "dem/parts/periodic_jumps.h"
 #include "dem/parts/row_bonds.h"
 #include "dem/parts/slice_bonds.h"
 #include "dem/surface_loads.h"
@@ -105,8 +106,15 @@ public:
   /// last compute.
   Vector<dim> reaction(int load) const override { return evaluation_.reactions[load]; }
   /// Work in J of supports and tractions since the last reset_work, booked by compute().
-  double external_work() const override { return surface_.external_work(); }
-  void reset_work() override { surface_.reset_work(); }
+  double external_work() const override
+  {
+    return surface_.external_work() + jumps_.external_work();
+  }
+  void reset_work() override
+  {
+    surface_.reset_work();
+    jumps_.reset_work();
+  }
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return broken_.energy(); }
@@ -133,13 +141,14 @@ public:
   long n_bonds() const override { return body_.bonds().n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
-  /// Particles flow by this law from now on: once at every new time of compute(), whose forces are
-  /// then those after the flow. Of bodies of one elastic material with its whole energy.
-  void set_yield(std::unique_ptr<const YieldLaw> law);
-  /// Null without a law.
-  const PlasticBlocks<dim> *plastic() const { return flow_.blocks(); }
-  /// Energy in J that plastic flow took: with it the leap-frog's balance is closed.
-  double plastic_dissipation() const { return flow_.dissipation(); }
+  bool can_flow() const override { return strains_.has_law(); }
+  Utilisation<dim> flow_utilisation(const Particles &particles,
+                                    const std::vector<Watch> &watch) const override;
+  /// Of materials that flow: once at every new time of compute(), whose forces are those after it.
+  InelasticStrains<dim> &strains() { return strains_; }
+  const InelasticStrains<dim> &strains() const { return strains_; }
+  /// Energy in J that flow took: with it the leap-frog's balance is closed.
+  double plastic_dissipation() const { return strains_.dissipation(); }
 
   /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength) { search_.set_strength(strength, body_); }
@@ -156,7 +165,7 @@ public:
 private:
   StressedBody<dim> stressed(const Particles &particles, const Evaluation<dim> &evaluation) const
   {
-    return {particles, evaluation, flow_, parts_};
+    return {particles, evaluation, strains_, parts_};
   }
   /// In the order of the parts; one that sees others' comes after them.
   void find_other_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
@@ -164,24 +173,26 @@ private:
   void find_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Pressures; overwrites forces and torques by those of all parts but contacts.
   void find_forces(Particles &particles, Evaluation<dim> &evaluation) const;
-  /// The same of the step's own evaluation: faces that soften open first.
+  /// Forces and torques alone, after the pressures of the parts.
+  void find_forces_under(Particles &particles, Evaluation<dim> &evaluation) const;
+  /// find_forces() of the step's own evaluation: faces that soften open first.
   void find_forces_of_step(Particles &particles);
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
+  /// What the loads are at a time, what they pull with, and what they did.
+  void set_loads(double time);
+  void find_reactions(const Particles &particles, Evaluation<dim> &evaluation) const;
+  void book_work(const Particles &particles);
   /// Of particles that a threshold holds at rest but that awake ones have pulled.
   void clear_forces_at_rest(Particles &particles, const Evaluation<dim> &evaluation) const;
   double dt() const { return time_ - last_time_; }
 
-  /// Yields where the stress asks for it; forces and pressures follow.
-  void flow(Particles &particles);
-  /// The energy that changes when plastic strains do, in J, after find_forces(), and what the
-  /// leap-frog's kinetic energy has of the forces: adds it, or its negative.
-  void add_flowing_energy(const Particles &particles, int sign, core::ExactSum &sum);
-
   /// Returns those that break at once; the others soften from now on.
   std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
+  /// Of a bond on its first particle, in N, where it presses; else 0.
+  Vector<dim> pressing_force(const Bond<dim> &bond, const Particles &particles) const;
   /// Particles whose forces these bonds enter, by the pressures of others, too; ascending. Without
   /// those that a threshold holds at rest.
   std::vector<int> near(const std::vector<BondId> &bonds) const;
@@ -205,13 +216,14 @@ private:
   BondedBody<dim> body_;
   RowBonds<dim> rows_;
   SliceBonds<dim> slices_;
-  PlasticFlow<dim> flow_;
+  InelasticStrains<dim> strains_;
   CohesiveFaces<dim> cohesive_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
+  PeriodicJumps<dim> jumps_;
   /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
-  std::vector<ForcePart<dim> *> parts_ = {&slices_,   &surface_,    &flow_,
-                                          &cohesive_, &interfaces_, &contacts_};
+  std::vector<ForcePart<dim> *> parts_ = {&slices_,     &surface_,  &strains_, &cohesive_,
+                                          &interfaces_, &contacts_, &jumps_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_;               // of the last compute()
@@ -219,7 +231,7 @@ private:
   std::vector<ClosedContact<dim>> touching_; // in it
   // Scratch of sums of energies: fresh memory would take longer than the sweep.
   mutable Evaluation<dim> energy_evaluation_;
-  mutable std::vector<double> energy_;
+  mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
   double time_ = 0, last_time_ = 0; // s
   double began_at_ = -1;            // s, softening of faces, last

@@ -25,10 +25,6 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
   broken_.load(state, names);
   for (auto *part : parts_)
     part->load(state, names, p);
-  if (flow_.has_flowed()) {
-    find_other_particles();
-    surface_.set_plastic([&](int i) { return flow_.blocks()->strain(i); });
-  }
   for (const int i : cohesive_.particles())
     body_.add_other_particle(i);
   time_ = core::load_real(state, "force", "time");

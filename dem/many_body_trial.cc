@@ -7,9 +7,9 @@ namespace ligament::dem
 template <int dim>
 void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_share)
 {
-  core::require(!flow_.has_law(), "bodies that flow have no trial states");
+  core::require(!strains_.has_law(), "bodies that flow have no trial states");
   core::require(!fracture().softens(), "bodies with faces that soften have no trial states");
-  surface_.set_time(time);
+  set_loads(time);
   search_.ask_trial(trial_, noted_share);
   trial_.has_loads = true;
   find_forces(p, trial_);
@@ -30,6 +30,7 @@ void ManyBodyForce<dim>::compute_bonds(Particles &p, bool has_loads)
   e.has_loads = has_loads;
   find_forces(p, e);
   e.has_loads = true;
+  jumps_.show(true);
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 
 #include "core/check.h"
 #include "core/types.h"
+#include "dem/inelastic/plasticity.h"
 #include "particles/particle_force.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ struct DemMaterial
   double density = 1;                  // kg/m^3
   PlaneMode plane = PlaneMode::strain; // read in 2D only
   double friction = 0;                 // Coulomb's coefficient of touching faces
+  Plasticity plasticity = {};
 
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
 

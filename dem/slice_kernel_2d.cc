@@ -14,7 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// theory.md eqs. (D4), (D6), (D8), (D8b) for one bond of each particle in a vector.
+/// theory.md eqs. (D4), (D6), (D8), (D8b) for one bond of each particle in a vector,
+/// with (D22) where particles have strains of their own.
+template <bool strained_>
 class SliceLaw2d
 {
   using D = SliceLanes;
@@ -22,6 +24,8 @@ class SliceLaw2d
   using V2 = Pair<V>;
 
 public:
+  static constexpr bool strained = strained_;
+  using Numbers = std::conditional_t<strained, StrainedRecord<D>, Record<D>>;
   static constexpr int n_loaded = 3, n_sums = 3, pressure_place = 5;
 
   /// A particle's numbers.
@@ -29,11 +33,22 @@ public:
   {
     V2 u;
     V cosine_minus_1, sine, angle, pressure;
+    SymmetricTensor<2, V> strain; // where strained
 
-    HWY_INLINE Own(D, const Record<D> &r)
+    HWY_INLINE Own(D, const Numbers &r)
         : u{r.number[0], r.number[1]}, cosine_minus_1(r.number[2]), sine(r.number[3]),
           angle(r.number[4]), pressure(r.number[5])
     {
+      if constexpr (strained)
+        for (int c = 0; c < n_tensor<2>; ++c)
+          strain.c[c] = r.strain[c];
+    }
+    /// R e a
+    HWY_INLINE V2 stretch(const V2 &a) const
+    {
+      const V2 own{hn::MulAdd(strain(0, 0), a.x, hn::Mul(strain(0, 1), a.y)),
+                   hn::MulAdd(strain(1, 0), a.x, hn::Mul(strain(1, 1), a.y))};
+      return own + change(own);
     }
     /// (R - I) a
     HWY_INLINE V2 change(const V2 &a) const
@@ -81,33 +96,57 @@ public:
 
   template <typename Bonds>
   static HWY_INLINE void add_dilatation(D d, const Own &own, const Bonds &bond,
-                                        const Record<D> &other, V &sum)
+                                        const Numbers &other, V &sum)
   {
     const Motion m(d, own, bond, other);
     sum = Law{hn::Zero(d), bond.geometry(d, 4)}.add_dilatation(m.du, m.a_i, sum);
   }
 
+  /// S/r Du (x) A.
+  template <typename Bonds>
+  static HWY_INLINE void add_strain(D d, const Own &own, const Bonds &bond, const Numbers &other,
+                                    V (&x)[2][2])
+  {
+    const Motion m(d, own, bond, other);
+    const V2 lever = bond.geometry(d, 4) * m.lever_i;
+    const V y[2] = {m.du.x, m.du.y}, a[2] = {lever.x, lever.y};
+    for (int r = 0; r < 2; ++r)
+      for (int c = 0; c < 2; ++c)
+        x[r][c] = hn::MulAdd(y[r], a[c], x[r][c]);
+  }
+  /// R^T x
+  static HWY_INLINE void turn_back(const Own &own, V (&x)[2][2])
+  {
+    for (int c = 0; c < 2; ++c) {
+      const V a = x[0][c], b = x[1][c];
+      x[0][c] = hn::Add(a, hn::MulAdd(own.cosine_minus_1, a, hn::Mul(own.sine, b)));
+      x[1][c] = hn::Add(b, hn::MulSub(own.cosine_minus_1, b, hn::Mul(own.sine, a)));
+    }
+  }
+
   /// The half of the bond's energy that is the particle's.
   template <typename Bonds>
-  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Numbers &other,
                                     V &sum)
   {
     const Motion m(d, own, bond, other);
     const V turn = hn::Sub(m.other.angle, own.angle);
     const V twice =
-        bending(d, bond).add_twice_energy(hn::Mul(turn, turn), law(d, bond).twice_energy(m.du));
+        bending(d, bond).add_twice_energy(hn::Mul(turn, turn), law_of(d, bond).twice_energy(m.du));
     sum = hn::MulAdd(hn::Set(d, 0.25), twice, sum);
   }
 
   template <typename Bonds>
-  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Numbers &other,
                                     V limit2, Sums &sums)
   {
     const Motion m(d, own, bond, other);
-    const Law law = SliceLaw2d::law(d, bond);
-    const V2 f = law.force(m.du, own.pressure, m.a_i, m.other.pressure, m.a_j);
+    const Law law = law_of(d, bond);
+    const V2 f = law.force(m.elastic(), own.pressure, m.a_i, m.other.pressure, m.a_j);
     sums.force = sums.force + f;
     sums.torque = law.add_torque(f, m.du, own.pressure, m.a_i, sums.torque);
+    if constexpr (strained)
+      sums.torque = add_cross(m.stretch_i, law.shear * m.du, sums.torque);
     sums.torque = bending(d, bond).add_torque(hn::Sub(m.other.angle, own.angle), sums.torque);
     const V2 distance = m.lever_i - m.lever_j;
     const V shear_r2 = hn::Mul(hn::Mul(law.shear, law.shear), dot(distance, distance));
@@ -130,12 +169,12 @@ public:
     V unit;
   };
   template <typename Bonds>
-  static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Record<D> &other)
+  static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Numbers &other)
   {
     const Motion m(d, own, bond, other);
-    const Law law = SliceLaw2d::law(d, bond);
+    const Law law = law_of(d, bond);
     const V2 n = m.lever_i - m.lever_j;
-    return {law.force(m.du, own.pressure, m.a_i, m.other.pressure, m.a_j),
+    return {law.force(m.elastic(), own.pressure, m.a_i, m.other.pressure, m.a_j),
             (n + n) + (own.change(n) + m.other.change(n)), m.a_i,
             hn::Mul(law.shear, hn::Sqrt(dot(n, n)))};
   }
@@ -154,7 +193,7 @@ public:
 private:
   using Law = ElasticBond<V, V2>;
   template <typename Bonds>
-  static HWY_INLINE Law law(D d, const Bonds &bond)
+  static HWY_INLINE Law law_of(D d, const Bonds &bond)
   {
     return {bond.stiffness(d, 0), bond.geometry(d, 4)};
   }
@@ -168,9 +207,10 @@ private:
   {
     Own other;
     V2 lever_i, lever_j, a_i, a_j, du;
+    V2 stretch_i, stretch_j; // R e A of both, where strained
 
     template <typename Bonds>
-    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Record<D> &r)
+    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Numbers &r)
         : other(d, r), lever_i{bond.geometry(d, 0), bond.geometry(d, 1)}, lever_j{
                                                                               bond.geometry(d, 2),
                                                                               bond.geometry(d, 3)}
@@ -179,11 +219,22 @@ private:
       a_i = lever_i + change_i;
       a_j = lever_j + change_j;
       du = (other.u - own.u) + (change_j - change_i);
+      if constexpr (strained) {
+        stretch_i = own.stretch(lever_i);
+        stretch_j = other.stretch(lever_j);
+      }
+    }
+    HWY_INLINE V2 elastic() const
+    {
+      if constexpr (strained)
+        return du - (stretch_i - stretch_j);
+      else
+        return du;
     }
   };
 };
 
-using Slices2d = Slices<SliceLaw2d, 2>;
+using Slices2d = Slices<SliceLaw2d<false>, 2>;
 
 void load_records_2d(const SliceSweep<2> &sweep)
 {
@@ -193,9 +244,20 @@ void add_pressures_2d(const SliceSweep<2> &sweep)
 {
   Slices2d(sweep).pressures();
 }
+void add_strains_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).strains();
+}
+void load_strains_2d(const SliceSweep<2> &sweep)
+{
+  Slices2d(sweep).load_strains();
+}
 void add_slice_forces_2d(const SliceSweep<2> &sweep)
 {
-  Slices2d(sweep).forces();
+  if (sweep.strain_records)
+    Slices<SliceLaw2d<true>, 2>(sweep).forces();
+  else
+    Slices2d(sweep).forces();
 }
 void add_slice_energies_2d(const SliceSweep<2> &sweep)
 {
@@ -204,15 +266,15 @@ void add_slice_energies_2d(const SliceSweep<2> &sweep)
 void take_pressures_2d(const LatticeArrays<2> &arrays, const SliceTable<2> &table, double *records,
                        int begin, int end)
 {
-  take_pressures_of<SliceLaw2d>(arrays, table, records, begin, end);
+  take_pressures_of<SliceLaw2d<false>>(arrays, table, records, begin, end);
 }
 void find_stresses_2d(const StressSweep<2> &sweep)
 {
-  StressSlices<SliceLaw2d, 2>(sweep).stresses();
+  StressSlices<SliceLaw2d<false>, 2>(sweep).stresses();
 }
 void find_tensions_2d(const StressSweep<2> &sweep)
 {
-  StressSlices<SliceLaw2d, 2>(sweep).tensions();
+  StressSlices<SliceLaw2d<false>, 2>(sweep).tensions();
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -222,6 +284,8 @@ namespace ligament::dem
 {
 HWY_EXPORT(load_records_2d);
 HWY_EXPORT(add_pressures_2d);
+HWY_EXPORT(add_strains_2d);
+HWY_EXPORT(load_strains_2d);
 HWY_EXPORT(add_slice_forces_2d);
 HWY_EXPORT(add_slice_energies_2d);
 HWY_EXPORT(take_pressures_2d);
@@ -235,6 +299,14 @@ void load_records(const SliceSweep<2> &sweep)
 void add_pressures(const SliceSweep<2> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_pressures_2d)(sweep);
+}
+void add_strains(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_strains_2d)(sweep);
+}
+void load_strains(const SliceSweep<2> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(load_strains_2d)(sweep);
 }
 void add_slice_forces(const SliceSweep<2> &sweep)
 {

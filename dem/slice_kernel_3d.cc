@@ -13,8 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// theory.md eqs. (D6), (D8), (D8b), (D8d) for one bond of each particle in a vector. Couples are
-/// summed in the particle's own axes and turned once.
+/// theory.md eqs. (D6), (D8), (D8b), (D8d) for one bond of each particle in a vector, with
+/// (D22) where particles have strains of their own. Couples are summed in the particle's own axes and turned once.
+template <bool strained_>
 class SliceLaw3d
 {
   using D = SliceLanes;
@@ -22,7 +23,26 @@ class SliceLaw3d
   using V3 = Triple<V>;
 
 public:
+  static constexpr bool strained = strained_;
+  using Numbers = std::conditional_t<strained, StrainedRecord<D>, Record<D>>;
   static constexpr int n_loaded = 7, n_sums = 6, pressure_place = 7;
+
+  using Strain = SymmetricTensor<3, V>;
+  static HWY_INLINE Strain strain_of(const Numbers &r)
+  {
+    Strain e;
+    for (int c = 0; c < n_tensor<3>; ++c)
+      e.c[c] = r.strain[c];
+    return e;
+  }
+  /// e a
+  static HWY_INLINE V3 moved(const Strain &e, const V3 &a)
+  {
+    const auto row = [&](int r) HWY_ATTR {
+      return hn::MulAdd(e(r, 0), a.x, hn::MulAdd(e(r, 1), a.y, hn::Mul(e(r, 2), a.z)));
+    };
+    return {row(0), row(1), row(2)};
+  }
 
   /// A particle's numbers and what is made of them once for all its bonds.
   struct Own
@@ -31,12 +51,15 @@ public:
     Quaternion<V> q;
     V3 x, y, z; // columns of R - I
     V pressure;
+    Strain strain; // where strained
 
-    HWY_INLINE Own(D, const Record<D> &r)
+    HWY_INLINE Own(D, const Numbers &r)
         : u{r.number[0], r.number[1], r.number[2]}, q{r.number[3],
                                                       {r.number[4], r.number[5], r.number[6]}},
           pressure(r.number[7])
     {
+      if constexpr (strained)
+        strain = strain_of(r);
       const auto &v = q.v;
       const V3 two = v + v;
       const V xx = hn::Mul(two.x, v.x), yy = hn::Mul(two.y, v.y), zz = hn::Mul(two.z, v.z);
@@ -48,6 +71,14 @@ public:
     }
     /// (R - I) a
     HWY_INLINE V3 change(const V3 &a) const { return mul_add(a.x, x, mul_add(a.y, y, a.z * z)); }
+    /// R^T a
+    HWY_INLINE V3 turned_back(const V3 &a) const { return a + V3{dot(x, a), dot(y, a), dot(z, a)}; }
+    /// R e a
+    HWY_INLINE V3 stretch(const V3 &a) const
+    {
+      const V3 own = moved(strain, a);
+      return own + change(own);
+    }
   };
 
   struct Sums
@@ -88,33 +119,56 @@ public:
 
   template <typename Bonds>
   static HWY_INLINE void add_dilatation(D d, const Own &own, const Bonds &bond,
-                                        const Record<D> &other, V &sum)
+                                        const Numbers &other, V &sum)
   {
     const Motion m(d, own, bond, other);
     sum = Law{hn::Zero(d), bond.geometry(d, 6)}.add_dilatation(m.du, m.a_i, sum);
   }
 
+  /// S/r Du (x) A.
+  template <typename Bonds>
+  static HWY_INLINE void add_strain(D d, const Own &own, const Bonds &bond, const Numbers &other,
+                                    V (&x)[3][3])
+  {
+    const Motion m(d, own, bond, other);
+    const V3 lever = bond.geometry(d, 6) * m.lever_i;
+    const V y[3] = {m.du.x, m.du.y, m.du.z}, a[3] = {lever.x, lever.y, lever.z};
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        x[r][c] = hn::MulAdd(y[r], a[c], x[r][c]);
+  }
+  /// R^T x
+  static HWY_INLINE void turn_back(const Own &own, V (&x)[3][3])
+  {
+    for (int c = 0; c < 3; ++c) {
+      const V3 turned = own.turned_back({x[0][c], x[1][c], x[2][c]});
+      x[0][c] = turned.x, x[1][c] = turned.y, x[2][c] = turned.z;
+    }
+  }
+
   /// The half of the bond's energy that is the particle's.
   template <typename Bonds>
-  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+  static HWY_INLINE void add_energy(D d, const Own &own, const Bonds &bond, const Numbers &other,
                                     V &sum)
   {
     const Motion m(d, own, bond, other);
     const V3 v = relative_turn(own.q.w, own.q.v, m.q.w, m.q.v);
     const V vn = dot(m.lever_i - m.lever_j, v);
-    sum = hn::MulAdd(hn::Set(d, 0.25), law(d, bond).twice_energy(m.du), sum);
+    sum = hn::MulAdd(hn::Set(d, 0.25), law_of(d, bond).twice_energy(m.du), sum);
     sum = bending(d, bond).add_half_energy(dot(v, v), hn::Mul(vn, vn), sum);
   }
 
   template <typename Bonds>
-  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Record<D> &other,
+  static HWY_INLINE void add_forces(D d, const Own &own, const Bonds &bond, const Numbers &other,
                                     V limit2, Sums &sums)
   {
     const Motion m(d, own, bond, other);
-    const Law law = SliceLaw3d::law(d, bond);
-    const V3 f = law.force(m.du, own.pressure, m.a_i, other.number[pressure_place], m.a_j);
+    const Law law = law_of(d, bond);
+    const V3 f = law.force(m.elastic(), own.pressure, m.a_i, other.number[pressure_place], m.a_j);
     sums.force = sums.force + f;
     sums.torque = law.add_torque(f, m.du, own.pressure, m.a_i, sums.torque);
+    if constexpr (strained)
+      sums.torque = add_cross(m.stretch_i, law.shear * m.du, sums.torque);
     const V3 distance = m.lever_i - m.lever_j;
     const V shear_r2 = hn::Mul(hn::Mul(law.shear, law.shear), dot(distance, distance));
     sums.excess = hn::Max(sums.excess, hn::NegMulAdd(limit2, shear_r2, dot(f, f)));
@@ -141,12 +195,12 @@ public:
     V unit;
   };
   template <typename Bonds>
-  static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Record<D> &other)
+  static HWY_INLINE Face face(D d, const Own &own, const Bonds &bond, const Numbers &other)
   {
     const Motion m(d, own, bond, other);
-    const Law law = SliceLaw3d::law(d, bond);
+    const Law law = law_of(d, bond);
     const V3 n = m.lever_i - m.lever_j;
-    return {law.force(m.du, own.pressure, m.a_i, other.number[pressure_place], m.a_j),
+    return {law.force(m.elastic(), own.pressure, m.a_i, other.number[pressure_place], m.a_j),
             (n + n) + (own.change(n) + m.change(n)), m.a_i,
             hn::Mul(law.shear, hn::Sqrt(dot(n, n)))};
   }
@@ -166,7 +220,7 @@ public:
 private:
   using Law = ElasticBond<V, V3>;
   template <typename Bonds>
-  static HWY_INLINE Law law(D d, const Bonds &bond)
+  static HWY_INLINE Law law_of(D d, const Bonds &bond)
   {
     return {bond.stiffness(d, 0), bond.geometry(d, 6)};
   }
@@ -184,9 +238,10 @@ private:
   {
     Quaternion<V> q; // of j
     V3 lever_i, lever_j, a_i, a_j, du;
+    V3 stretch_i, stretch_j; // R e A of both, where strained
 
     template <typename Bonds>
-    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Record<D> &r)
+    HWY_INLINE Motion(D d, const Own &own, const Bonds &bond, const Numbers &r)
         : q{r.number[3], {r.number[4], r.number[5], r.number[6]}}, lever_i{bond.geometry(d, 0),
                                                                            bond.geometry(d, 1),
                                                                            bond.geometry(d, 2)},
@@ -197,6 +252,18 @@ private:
       a_i = lever_i + change_i;
       a_j = lever_j + change_j;
       du = (u - own.u) + (change_j - change_i);
+      if constexpr (strained) {
+        stretch_i = own.stretch(lever_i);
+        const V3 own_j = moved(strain_of(r), lever_j);
+        stretch_j = own_j + change(own_j);
+      }
+    }
+    HWY_INLINE V3 elastic() const
+    {
+      if constexpr (strained)
+        return du - (stretch_i - stretch_j);
+      else
+        return du;
     }
     /// (R_j - I) a
     HWY_INLINE V3 change(const V3 &a) const
@@ -207,7 +274,7 @@ private:
   };
 };
 
-using Slices3d = Slices<SliceLaw3d, 3>;
+using Slices3d = Slices<SliceLaw3d<false>, 3>;
 
 void load_records_3d(const SliceSweep<3> &sweep)
 {
@@ -217,9 +284,20 @@ void add_pressures_3d(const SliceSweep<3> &sweep)
 {
   Slices3d(sweep).pressures();
 }
+void add_strains_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).strains();
+}
+void load_strains_3d(const SliceSweep<3> &sweep)
+{
+  Slices3d(sweep).load_strains();
+}
 void add_slice_forces_3d(const SliceSweep<3> &sweep)
 {
-  Slices3d(sweep).forces();
+  if (sweep.strain_records)
+    Slices<SliceLaw3d<true>, 3>(sweep).forces();
+  else
+    Slices3d(sweep).forces();
 }
 void add_slice_energies_3d(const SliceSweep<3> &sweep)
 {
@@ -228,15 +306,15 @@ void add_slice_energies_3d(const SliceSweep<3> &sweep)
 void take_pressures_3d(const LatticeArrays<3> &arrays, const SliceTable<3> &table, double *records,
                        int begin, int end)
 {
-  take_pressures_of<SliceLaw3d>(arrays, table, records, begin, end);
+  take_pressures_of<SliceLaw3d<false>>(arrays, table, records, begin, end);
 }
 void find_stresses_3d(const StressSweep<3> &sweep)
 {
-  StressSlices<SliceLaw3d, 3>(sweep).stresses();
+  StressSlices<SliceLaw3d<false>, 3>(sweep).stresses();
 }
 void find_tensions_3d(const StressSweep<3> &sweep)
 {
-  StressSlices<SliceLaw3d, 3>(sweep).tensions();
+  StressSlices<SliceLaw3d<false>, 3>(sweep).tensions();
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -246,6 +324,8 @@ namespace ligament::dem
 {
 HWY_EXPORT(load_records_3d);
 HWY_EXPORT(add_pressures_3d);
+HWY_EXPORT(add_strains_3d);
+HWY_EXPORT(load_strains_3d);
 HWY_EXPORT(add_slice_forces_3d);
 HWY_EXPORT(add_slice_energies_3d);
 HWY_EXPORT(take_pressures_3d);
@@ -259,6 +339,14 @@ void load_records(const SliceSweep<3> &sweep)
 void add_pressures(const SliceSweep<3> &sweep)
 {
   HWY_DYNAMIC_DISPATCH(add_pressures_3d)(sweep);
+}
+void add_strains(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(add_strains_3d)(sweep);
+}
+void load_strains(const SliceSweep<3> &sweep)
+{
+  HWY_DYNAMIC_DISPATCH(load_strains_3d)(sweep);
 }
 void add_slice_forces(const SliceSweep<3> &sweep)
 {

@@ -8,6 +8,7 @@
 #endif
 
 #include "dem/bond_slices.h"
+#include "dem/inelastic/own_stress.h"
 #include "dem/lane_vectors.h"
 #include "dem/stress_bound.h"
 
@@ -23,6 +24,13 @@ template <typename D>
 struct Record
 {
   hn::Vec<D> number[record_size];
+};
+
+/// The same with the strain of their own.
+template <typename D>
+struct StrainedRecord : Record<D>
+{
+  hn::Vec<D> strain[record_size];
 };
 
 /// Transposes rows of eight numbers in registers, twice as fast as gathering numbers one by one;
@@ -162,15 +170,56 @@ public:
       if (is_left_out(s, Rest::pressed))
         continue;
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
-        const typename Law::Own own(d, own_record(s, lane));
+        const typename Law::Own own(d, read(s, lane));
         auto sum = hn::Zero(d);
         for (BondColumn<dim, false> b(table_, s, lane); b.has_more(); b.next())
-          Law::add_dilatation(d, own, b, record(b.neighbour()), sum);
+          Law::add_dilatation(d, own, b, read(b.neighbour()), sum);
         hn::Store(sum, d, theta + lane);
       }
       for_each_lane(s, [&](int l, int i) {
         sweep_.arrays.pressure[i] += sweep_.arrays.lambda_per_volume[i] * theta[l];
       });
+    }
+  }
+
+  /// Of what Law::add_strain sums and Law::turn_back takes to the particles' axes, what the particles answer; or into their open cells, with those
+  /// whose faces are the lattice's.
+  HWY_INLINE void strains() const
+  {
+    const SliceLanes d;
+    for (int s = 0; s < table_.n_slices(); ++s) {
+      if (is_left_out(s, Rest::pressed))
+        continue;
+      const int size = std::min(slice_width, table_.n_own() - s * slice_width);
+      for (int lane = 0; lane < size; lane += n_lanes) {
+        const typename Law::Own own(d, read(s, lane));
+        hn::Vec<SliceLanes> x[dim][dim];
+        for (auto &row : x)
+          for (auto &number : row)
+            number = hn::Zero(d);
+        for (BondColumn<dim, false> b(table_, s, lane); b.has_more(); b.next())
+          Law::add_strain(d, own, b, read(b.neighbour()), x);
+        Law::turn_back(own, x);
+        if (sweep_.responds)
+          respond(s, lane, size, x);
+        else
+          keep(s, lane, size, x);
+      }
+    }
+  }
+
+  /// e of the records, from the streams.
+  HWY_INLINE void load_strains() const
+  {
+    const auto &streams = sweep_.inelastic->streams;
+    for (int r = 0; r < table_.n_records(); ++r) {
+      const int i = table_.particle[r];
+      double *const to = sweep_.strain_records + long(r) * record_size;
+      if (sweep_.inelastic->age[i / inelastic_block] == untouched)
+        std::fill(to, to + record_size, 0.);
+      else
+        for (int c = 0; c < n_tensor<dim>; ++c)
+          to[c] = streams.stream(InelasticStreams<dim>::strain + c)[i];
     }
   }
 
@@ -180,10 +229,10 @@ public:
     HWY_ALIGN double energy[slice_width];
     for (int s = 0; s < table_.n_slices(); ++s) {
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
-        const typename Law::Own own(d, own_record(s, lane));
+        const typename Law::Own own(d, read(s, lane));
         auto sum = hn::Zero(d);
         for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
-          Law::add_energy(d, own, b, record(b.neighbour()), sum);
+          Law::add_energy(d, own, b, read(b.neighbour()), sum);
         hn::Store(sum, d, energy + lane);
       }
       for_each_lane(s, [&](int l, int i) { sweep_.energy[i] += energy[l]; });
@@ -208,13 +257,62 @@ private:
     return sweep_.nearness && sweep_.nearness->slice[slice] < least;
   }
 
-  HWY_INLINE Record<SliceLanes> record(const int *places) const
+  /// What the law reads of the particles with records at these places.
+  HWY_INLINE typename Law::Numbers read(const int *places) const
   {
-    return transpose(SliceLanes(), [&](int n) { return sweep_.records + places[n]; });
+    typename Law::Numbers numbers;
+    static_cast<Record<SliceLanes> &>(numbers) =
+        transpose(SliceLanes(), [&](int n) { return sweep_.records + places[n]; });
+    if constexpr (Law::strained) {
+      const auto strain =
+          transpose(SliceLanes(), [&](int n) { return sweep_.strain_records + places[n]; });
+      for (int c = 0; c < record_size; ++c)
+        numbers.strain[c] = strain.number[c];
+    }
+    return numbers;
   }
-  HWY_INLINE Record<SliceLanes> own_record(int s, int lane) const
+  HWY_INLINE typename Law::Numbers read(int s, int lane) const
   {
-    return record(table_.lane.data() + s * slice_width + lane);
+    return read(table_.lane.data() + s * slice_width + lane);
+  }
+
+  using Strains = hn::Vec<SliceLanes>[dim][dim];
+
+  HWY_INLINE int particle(int s, int lane) const
+  {
+    return table_.particle[table_.lane[s * slice_width + lane] / record_size];
+  }
+
+  HWY_INLINE void respond(int s, int lane, int size, const Strains &x) const
+  {
+    const SliceLanes d;
+    const auto &a = sweep_.arrays;
+    Scattered<dim, SliceLanes> place;
+    HWY_ALIGN double lambda_per_volume[n_lanes], pressure[n_lanes];
+    for (int l = 0; l < n_lanes; ++l) {
+      place.of[l] = particle(s, lane + l < size ? lane + l : lane);
+      lambda_per_volume[l] = a.lambda_per_volume[place.of[l]];
+    }
+    const auto used = hn::Lt(hn::Iota(d, double(lane)), hn::Set(d, double(size)));
+    const Response<dim, SliceLanes, Scattered<dim, SliceLanes>> response(
+        d, *sweep_.inelastic, place, used,
+        OwnStress<dim, SliceLanes>(d, *sweep_.inelastic, place, x,
+                                   hn::Load(d, lambda_per_volume)));
+    hn::Store(response.pressure, d, pressure);
+    for (int l = 0; l < n_lanes && lane + l < size; ++l)
+      a.pressure[place.of[l]] = pressure[l];
+  }
+
+  HWY_INLINE void keep(int s, int lane, int size, const Strains &x) const
+  {
+    HWY_ALIGN double number[dim * dim][n_lanes];
+    for (int k = 0; k < dim * dim; ++k)
+      hn::Store(x[k / dim][k % dim], SliceLanes(), number[k]);
+    for (int l = 0; l < n_lanes && lane + l < size; ++l) {
+      auto &cell = sweep_.inelastic->cells[sweep_.inelastic->open[particle(s, lane + l)]];
+      for (int k = 0; k < dim * dim; ++k)
+        cell.number[OpenCell<dim>::strain + k] += number[k][l];
+    }
   }
 
   HWY_INLINE void take_pressures() const
@@ -228,7 +326,7 @@ private:
   template <typename Visit>
   HWY_INLINE void for_each_lane(int s, Visit &&visit) const
   {
-    const int size = std::min(slice_width, table_.n_records() - s * slice_width);
+    const int size = std::min(slice_width, table_.n_own() - s * slice_width);
     for (int l = 0; l < size; ++l)
       visit(l, table_.particle[table_.lane[s * slice_width + l] / record_size]);
   }
@@ -238,9 +336,9 @@ private:
   HWY_INLINE void for_each_face(int s, int lane, Visit &&visit) const
   {
     const SliceLanes d;
-    const typename Law::Own own(d, own_record(s, lane));
+    const typename Law::Own own(d, read(s, lane));
     for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next())
-      visit(Law::face(d, own, b, record(b.neighbour())));
+      visit(Law::face(d, own, b, read(b.neighbour())));
   }
 
   template <bool faces_at_once>
@@ -248,18 +346,18 @@ private:
   {
     const SliceLanes d;
     HWY_ALIGN double sums[Law::n_sums][slice_width];
-    const auto limit2 = hn::Set(d, std::min(sweep_.limit2, sweep_.screen2));
+    const auto limit2 = hn::Set(d, sweep_.limit2);
     for (int s = 0; s < table_.n_slices(); ++s) {
       if (is_left_out(s, Rest::awake))
         continue;
       bool reached = false;
       std::uint32_t breaking = 0; // bits of lanes
       for (int lane = 0; lane < slice_width; lane += n_lanes) {
-        const typename Law::Own own(d, own_record(s, lane));
+        const typename Law::Own own(d, read(s, lane));
         typename Law::Sums sum;
         Look look(*this, s, lane);
         for (BondColumn<dim, true> b(table_, s, lane); b.has_more(); b.next()) {
-          const auto other = record(b.neighbour());
+          const auto other = read(b.neighbour());
           Law::add_forces(d, own, b, other, limit2, sum);
           if constexpr (faces_at_once)
             look.add(Law::face(d, own, b, other));
@@ -280,13 +378,11 @@ private:
           if (breaking >> l & 1)
             sweep_.exceeded->push_back(i);
         });
-      if (HWY_UNLIKELY(reached) && sweep_.screen.traction > 0)
-        for_each_lane(s, [&](int, int i) { sweep_.screen.mark(i); });
     }
   }
 
   /// Which particles of a vector have a bond that could break: by eq. (D12c), and where the stress
-  /// of a particle is known, by its own term of (D12d).
+  /// of a particle is known, by its own term of (D12d) or (D12f).
   class Look
   {
     using V = hn::Vec<SliceLanes>;
@@ -322,7 +418,7 @@ private:
         return lane_bits(d, found_);
       const V per_volume = hn::LoadU(d, table_.per_volume.data() + first_lane_);
       stress_.finish(moment_, per_volume);
-      const V principal = stress_.largest_principal();
+      const V value = value_of(sweep_.measure, stress_);
       auto not_cleared = hn::Eq(per_volume, hn::Zero(d));
       for (const double *at = kept_; at != end_;) {
         typename Law::Face face;
@@ -330,7 +426,8 @@ private:
           number = hn::Load(d, at);
           at += n_lanes;
         });
-        const auto bound = bound_reaches(d, face, stress_, principal, strain_, sweep_.tangent);
+        const auto bound =
+            bound_reaches(d, face, stress_, value, strain_, sweep_.tangent, sweep_.measure);
         if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
           not_cleared = hn::Or(not_cleared, hn::And(bound, reached(face)));
       }

@@ -43,7 +43,7 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
 template <int dim>
 double ManyBodyForce<dim>::stable_step(const Particles &particles) const
 {
-  core::require(!flow_.has_flowed(), "the stable step is that of a body without plastic strains");
+  core::require(!strains_.has_begun(), "the stable step is that of a body without strains of its own");
   Particles p = particles;
   Evaluation<dim> evaluation(body_);
   evaluation.has_loads = false;
@@ -78,6 +78,7 @@ double ManyBodyForce<dim>::stable_step(const Particles &particles) const
     previous = v;
     v = y / beta;
   }
+  jumps_.show(true);
   const int m = int(diagonal.size());
   off_diagonal.resize(m);
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;

@@ -8,6 +8,7 @@
 #endif
 
 #include "dem/lane_vectors.h"
+#include "dem/stress_measure.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -68,6 +69,8 @@ struct StressSum2d
   {
     return hn::MulAdd(xx, xx, hn::MulAdd(yy, yy, hn::Mul(hn::Add(xy, xy), xy)));
   }
+  HWY_INLINE V trace() const { return hn::Add(xx, yy); }
+  HWY_INLINE V smallest_principal() const { return hn::Sub(trace(), largest_principal()); }
   HWY_INLINE V largest_principal() const
   {
     const V half = hn::Set(hn::DFromV<V>(), 0.5);
@@ -162,6 +165,19 @@ struct StressSum3d
     const V off = hn::MulAdd(yz, yz, hn::MulAdd(xz, xz, hn::Mul(xy, xy)));
     return hn::MulAdd(xx, xx, hn::MulAdd(yy, yy, hn::MulAdd(zz, zz, hn::Add(off, off))));
   }
+  HWY_INLINE V trace() const { return hn::Add(xx, hn::Add(yy, zz)); }
+  /// Or a little less.
+  HWY_INLINE V smallest_principal() const
+  {
+    StressSum3d negative{hn::DFromV<V>()};
+    negative.xx = hn::Neg(xx);
+    negative.yy = hn::Neg(yy);
+    negative.zz = hn::Neg(zz);
+    negative.yz = hn::Neg(yz);
+    negative.xz = hn::Neg(xz);
+    negative.xy = hn::Neg(xy);
+    return hn::Neg(negative.largest_principal());
+  }
   /// Or a little more: the characteristic polynomial is convex above its largest root, which
   /// Newton's steps therefore never pass.
   template <int steps = 3>
@@ -222,27 +238,57 @@ struct StressSum3d
   }
 };
 
-/// Where eq. (D12d) with this stress, whose largest principal value is given, lets the tension of a
-/// face reach `limit`; everything over 2G. With t = S n + r it takes r.n + tan |r - (r.n) n|, which
-/// is at most |r| / cos. What is no number reaches it.
+/// Of a stress, or a little more.
+template <typename Stress>
+HWY_INLINE auto value_of(const StressMeasure &m, const Stress &stress)
+{
+  using V = decltype(stress.trace());
+  if (m.sided)
+    return stress.largest_principal();
+  const hn::DFromV<V> d;
+  const V trace = stress.trace();
+  const V largest = m.largest != 0 || m.cut != 0 ? stress.largest_principal() : hn::Zero(d);
+  V value = hn::Mul(hn::Set(d, m.trace), trace);
+  if (m.largest != 0)
+    value = hn::MulAdd(hn::Set(d, m.largest), largest, value);
+  if (m.opposite != 0)
+    value = hn::NegMulAdd(hn::Set(d, m.opposite), stress.smallest_principal(), value);
+  if (m.square != 0) {
+    constexpr double round_off = 1e-14; // of the difference of two squares
+    const V square = stress.square(), trace2 = hn::Mul(trace, trace);
+    const V root2 =
+        hn::MulAdd(hn::Set(d, m.square + round_off * (m.square + std::abs(m.trace_square))), square,
+                   hn::Mul(hn::Set(d, m.trace_square), trace2));
+    value = hn::Add(value, hn::Sqrt(hn::Max(root2, hn::Zero(d))));
+  }
+  return m.cut != 0 ? hn::Max(value, hn::Mul(hn::Set(d, m.cut), largest)) : value;
+}
+
+/// Where eq. (D12d), or (D12f), with this stress, whose measure is given, lets the tension of a
+/// face reach `limit`; everything over 2G. With t = S n + r (D12d) takes r.n + tan |r - (r.n) n|,
+/// which is at most |r| / cos. What is no number reaches it.
 template <typename D, typename Face, typename Stress, typename V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> bound_reaches(D d, const Face &face, const Stress &stress, V principal,
-                                     V limit, double tangent)
+HWY_INLINE hn::Mask<D> bound_reaches(D d, const Face &face, const Stress &stress, V value, V limit,
+                                     double tangent, const StressMeasure &measure)
 {
   const V zero = hn::Zero(d);
   const V length2 = add_dot(face.normal, face.normal, zero), length = hn::Sqrt(length2);
   const auto rest = length * face.force - face.unit * stress.times(face.normal);
+  const V room = hn::Mul(hn::Sub(limit, value), hn::Mul(length2, face.unit));
+  const V rest2 = hn::Mul(add_dot(rest, rest, zero), length2);
+  if (!measure.sided)
+    return hn::Not(hn::Lt(hn::Mul(hn::Set(d, measure.residual), hn::Sqrt(rest2)), room));
   const V along = add_dot(rest, face.normal, zero);
-  const V across2 = hn::NegMulAdd(along, along, hn::Mul(add_dot(rest, rest, zero), length2));
+  const V across2 = hn::NegMulAdd(along, along, rest2);
   const V excess = hn::MulAdd(hn::Set(d, tangent), hn::Sqrt(hn::Max(across2, zero)), along);
-  const V room = hn::Mul(hn::Sub(limit, principal), hn::Mul(length2, face.unit));
   return hn::Not(hn::Lt(excess, room));
 }
 
-/// Eq. (D12d) of particles whose faces differ from S n by residual2 in the square and turn by at
-/// most `turn` against the normals of the criterion; the inverse of its least cosine comes in.
+/// Eq. (D12d) or (D12f) of particles whose faces differ from S n by residual2 in the square and
+/// turn by at most `turn` against the normals of the criterion.
 template <typename Stress, typename V>
-HWY_INLINE V tension_bound(const Stress &stress, V residual2, double turn, double per_cosine)
+HWY_INLINE V tension_bound(const Stress &stress, V residual2, double turn,
+                           const StressMeasure &measure)
 {
   const hn::DFromV<V> d;
   const V square = stress.square();
@@ -250,7 +296,7 @@ HWY_INLINE V tension_bound(const Stress &stress, V residual2, double turn, doubl
   const V deviation = hn::MulAdd(
       hn::Set(d, turn), hn::Sqrt(square),
       hn::Sqrt(hn::MulAdd(hn::Set(d, round_off), square, hn::Max(residual2, hn::Zero(d)))));
-  return hn::MulAdd(hn::Set(d, per_cosine), deviation, stress.largest_principal());
+  return hn::MulAdd(hn::Set(d, measure.residual), deviation, value_of(measure, stress));
 }
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

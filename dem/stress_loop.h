@@ -96,7 +96,7 @@ private:
     hn::Store(hn::IfThenZeroElse(unknown, hn::Set(d, 1.)), d, number[known_place] + lane);
     if (tests) {
       const double *const end = at;
-      const V principal = stress.largest_principal();
+      const V value = value_of(sweep_.measure, stress);
       auto found = unknown;
       Face face;
       for (at = sweep_.faces; at != end; at += slice_width) {
@@ -105,7 +105,8 @@ private:
           at += slice_width;
         });
         const V limit = hn::Load(d, at);
-        const auto bound = bound_reaches(d, face, stress, principal, limit, sweep_.tangent);
+        const auto bound =
+            bound_reaches(d, face, stress, value, limit, sweep_.tangent, sweep_.measure);
         if (HWY_UNLIKELY(!hn::AllFalse(d, bound)))
           found = hn::Or(found, hn::And(bound, bears(d, face, limit)));
       }
@@ -144,11 +145,11 @@ private:
       const auto stress = Stress::of(mean);
       const V limit = b.stiffness(d, 1);
       const auto bears_much = bears(d, face, limit);
-      const auto bound =
-          bound_reaches(d, face, stress, stress.largest_principal(), limit, sweep_.tangent);
+      const auto bound = bound_reaches(d, face, stress, value_of(sweep_.measure, stress), limit,
+                                       sweep_.tangent, sweep_.measure);
       const auto unknown = hn::Lt(mean(known_place), hn::Set(d, 1.));
       auto reached = hn::And(bears_much, hn::Or(unknown, bound));
-      if (HWY_UNLIKELY(!hn::AllFalse(d, reached)))
+      if (sweep_.measure.sided && HWY_UNLIKELY(!hn::AllFalse(d, reached)))
         reached = hn::And(reached, hn::Or(unknown, tension_reaches(d, face, stress, limit)));
       found = hn::Or(found, reached);
     }

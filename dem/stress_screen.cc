@@ -248,7 +248,8 @@ void StressScreen<dim>::add_kept(const std::vector<int> &candidates, bool own_te
   StressSweep<dim> sweep{
       table_,         records_.data(), find_moments(body) ? moments_.data() : nullptr,
       stress_.data(), slices.data(),   lanes.data(),
-      faces_.data(),  body.tangent,    body.cone};
+      faces_.data(),  body.tangent,    body.cone,
+      body.measure};
   std::vector<std::uint8_t> done(slices.size(), 0);
   if (own_terms) {
     want_where_lanes_are_left();

@@ -22,7 +22,8 @@ struct ScreenedBody
   /// Calls add(i, lever, force) for each force on a particle that is no bond's.
   using AddMoment = std::function<void(int, const Vector<dim> &, const Vector<dim> &)>;
   std::function<void(const AddMoment &)> for_each_moment;
-  double tangent, cone; // of PrincipalTension
+  double tangent, cone;  // of PrincipalTension, or below 0 and 1
+  StressMeasure measure; // of BreakScreen
 };
 
 /// What a sweep over the table needs; passed through the run-time dispatch.
@@ -37,6 +38,7 @@ struct StressSweep
   std::uint8_t *lanes = nullptr; // bits of each slice: those to be cleared, then those that are not
   double *faces = nullptr;       // scratch: face_size x slice_width for each slot of a slice
   double tangent = 0, cone = 1;
+  StressMeasure measure = {};
 
   static constexpr int face_size = 2 * dim + 2; // force, normal, unit, limit
 };

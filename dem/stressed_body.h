@@ -1,7 +1,7 @@
 // A body in a state, bond by bond: for all that is asked of few bonds, and for output.
 #pragma once
 
-#include "dem/parts/plastic_flow.h"
+#include "dem/parts/inelastic_strains.h"
 
 namespace ligament::dem
 {
@@ -12,7 +12,7 @@ struct StressedBody
 
   const Particles &particles;
   const Evaluation<dim> &evaluation; // with the pressures of all parts
-  const PlasticFlow<dim> &flow;
+  const InelasticStrains<dim> &strains;
   const std::vector<ForcePart<dim> *> &parts;
 
   const BondedBody<dim> &body() const { return evaluation.body; }
@@ -20,7 +20,7 @@ struct StressedBody
   BondMotion<dim> motion(const Bond<dim> &bond, const Turn<dim> &turn_i,
                          const Turn<dim> &turn_j) const
   {
-    return flow.motion(bond, particles, turn_i, turn_j);
+    return strains.motion(bond, particles, turn_i, turn_j);
   }
   BondMotion<dim> motion(const Bond<dim> &bond) const
   {

@@ -1,5 +1,6 @@
 #include "dem/surface_loads.h"
 
+#include "dem/parts/inelastic_strains.h"
 #include "dem/surface_law.h"
 
 #include <fmt/format.h>
@@ -62,8 +63,10 @@ void SurfaceLoads<dim>::add_faces(const packings::OuterFace<dim> &face, double s
   for (const Held &h : held)
     if (h.wall.prescribed.any())
       walls_.push_back(h.wall);
+  pressed_.add_face(face, shear_modulus, loads_);
   for (std::size_t l = 0; l < loads_.size(); ++l)
-    if (loads_[l].boundary == face.of.boundary && loads_[l].kind == Kind::traction)
+    if (loads_[l].boundary == face.of.boundary && loads_[l].kind == Kind::traction &&
+        !loads_[l].pressure)
       if (const auto inside = face.inside({loads_[l].part})) {
         Vector<dim> acting = Vector<dim>::Ones();
         for (const Held &h : held)
@@ -77,7 +80,7 @@ void SurfaceLoads<dim>::add_faces(const packings::OuterFace<dim> &face, double s
 template <int dim>
 std::vector<int> SurfaceLoads<dim>::particles() const
 {
-  std::vector<int> found;
+  std::vector<int> found = pressed_.particles();
   for (const auto &wall : walls_)
     found.push_back(wall.i);
   for (const auto &face : tractions_)
@@ -89,6 +92,7 @@ template <int dim>
 void SurfaceLoads<dim>::set_time(double t)
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;
+  pressed_.set_time(loads_, t);
   for (std::size_t l = 0; l < loads_.size(); ++l)
     if (loads_[l].kind == Kind::traction)
       traction_[l] = loads_[l].traction(t);
@@ -104,10 +108,10 @@ void SurfaceLoads<dim>::wake(particles::RestBlocks<dim> *rest)
   if (!rest || rest->all_awake())
     return;
   for (int l = 0; l < n_loads(); ++l) {
-    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0)))
+    std::vector<int> loaded = pressed_.particles_under(l);
+    if (has_begun_[l] || (displacement_[l].isZero(0) && traction_[l].isZero(0) && loaded.empty()))
       continue;
     has_begun_[l] = 1;
-    std::vector<int> loaded;
     for (const auto &wall : walls_)
       if (std::find(wall.load.begin(), wall.load.end(), l) != wall.load.end())
         loaded.push_back(wall.i);
@@ -128,14 +132,14 @@ Vector<dim> SurfaceLoads<dim>::relative(const WallFace<dim> &wall, const Particl
       du[c] = 0;
     else if (has_loads)
       du[c] += displacement_[wall.load[c]][c];
-  return du - wall.plastic;
+  return du;
 }
 
 template <int dim>
 Vector<dim> SurfaceLoads<dim>::force(const WallFace<dim> &wall, const Particles &p,
                                      const Evaluation<dim> &e) const
 {
-  return law_of(wall).force(relative(wall, p, e.has_loads), e.pressure[wall.i],
+  return law_of(wall).force(relative(wall, p, e.has_loads) - stretch(wall, e), e.pressure[wall.i],
                             pressed_along(wall));
 }
 
@@ -162,6 +166,22 @@ void SurfaceLoads<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) co
     e.pressure[face.i] +=
         stiffness[face.i] * law_of(face).dilatation(traction(face, e.has_loads), a);
   }
+  pressed_.add_pressures(p, e);
+}
+
+template <int dim>
+void SurfaceLoads<dim>::add_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  using Strains = InelasticStrains<dim>;
+  for (const auto &wall : walls_)
+    Strains::add_strain(*e.inelastic, wall.i,
+                        wall.area * relative(wall, p, e.has_loads) * wall.normal.transpose());
+  for (const auto &face : tractions_) {
+    const Vector<dim> t = traction(face, e.has_loads);
+    const Vector<dim> own = t + Turn<dim>::of(p, face.i).inverse().change(t);
+    Strains::add_strain(*e.inelastic, face.i,
+                        face.area / (2 * face.shear_modulus) * own * face.lever.transpose());
+  }
 }
 
 template <int dim>
@@ -179,7 +199,8 @@ Wrench<dim> SurfaceLoads<dim>::wrench(const TractionFace<dim> &face, const Parti
   const Vector<dim> a = face.lever + Turn<dim>::of(p, face.i).change(face.lever);
   const TractionLaw<dim> law = law_of(face);
   const Vector<dim> t = traction(face, e.has_loads);
-  return {law.force(t), law.torque(t, a, e.pressure[face.i])};
+  return {law.force(t),
+          law.torque(t, a, e.pressure[face.i]) + cross(stretch(face, p, e), law.force(t))};
 }
 
 template <int dim>
@@ -202,6 +223,7 @@ void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) c
   for (std::size_t l = 0; l < loads_.size(); ++l)
     for (int c = 0; c < dim; ++c)
       e.reactions[l][c] = reactions[l][c].value();
+  pressed_.add_reactions(p, e);
 }
 
 template <int dim>
@@ -216,6 +238,7 @@ void SurfaceLoads<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
     act(walls_[w].i, wrench(walls_[w], p, e.wall_forces[w]));
   for (const auto &face : tractions_)
     act(face.i, wrench(face, p, e));
+  pressed_.add_forces(p, e);
 }
 
 template <int dim>
@@ -226,6 +249,7 @@ void SurfaceLoads<dim>::add_force_on(int i, const Particles &p, const Evaluation
     sum.force += wrench.force;
     sum.torque += wrench.torque;
   };
+  pressed_.add_force_on(i, p, e, sum);
   const auto faces = faces_of_.find(i);
   if (faces == faces_of_.end())
     return;
@@ -241,6 +265,11 @@ void SurfaceLoads<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
 {
   for (const auto &wall : walls_)
     energy[wall.i] += law_of(wall).twice_energy(relative(wall, p, e.has_loads)) / 2;
+  // What the strains of particles have of it is the work of the load.
+  if (e.inelastic)
+    for (const auto &face : tractions_)
+      energy[face.i] +=
+          law_of(face).force(traction(face, e.has_loads)).dot(stretch(face, p, e));
 }
 
 template <int dim>
@@ -254,14 +283,25 @@ void SurfaceLoads<dim>::for_each_moment(const Particles &p, const Evaluation<dim
     visit(wall.i, lever(wall), force(wall, p, e));
   for (const auto &face : tractions_)
     visit(face.i, lever(face), law_of(face).force(traction(face, e.has_loads)));
+  pressed_.for_each_moment(p, e, visit);
 }
 
 template <int dim>
-void SurfaceLoads<dim>::set_plastic(
-    const std::function<Eigen::Matrix<double, dim, dim>(int)> &strain_of)
+Vector<dim> SurfaceLoads<dim>::stretch(const WallFace<dim> &wall, const Evaluation<dim> &e) const
 {
-  for (auto &wall : walls_)
-    wall.plastic = wall.q * wall.prescribed.cwiseProduct(strain_of(wall.i) * wall.normal);
+  if (!e.inelastic)
+    return Vector<dim>::Zero();
+  return wall.q * wall.prescribed.cwiseProduct(e.inelastic->strain(wall.i) * wall.normal);
+}
+
+template <int dim>
+Vector<dim> SurfaceLoads<dim>::stretch(const TractionFace<dim> &face, const Particles &p,
+                                       const Evaluation<dim> &e) const
+{
+  if (!e.inelastic)
+    return Vector<dim>::Zero();
+  const Vector<dim> own = e.inelastic->strain(face.i) * face.lever;
+  return own + Turn<dim>::of(p, face.i).change(own);
 }
 
 // Face by face, so that a body in parts books what the whole one does.
@@ -275,7 +315,7 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
   Booked now{displacement_, traction_, e.wall_forces, {}, {}};
   for (const auto &face : tractions_) {
     const Vector<dim> change = Turn<dim>::of(p, face.i).change(face.lever);
-    now.place.push_back(get(p.displacement, face.i) + change);
+    now.place.push_back(get(p.displacement, face.i) + change + stretch(face, p, e));
     now.gradient.push_back(
         law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), e.pressure[face.i]));
   }
@@ -295,6 +335,7 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
     }
   }
   booked_ = std::move(now);
+  pressed_.book_work(p, e, work_);
 }
 
 namespace
@@ -372,6 +413,7 @@ void SurfaceLoads<dim>::save(core::State &state, const core::Names &names) const
   state["walls"] = table_of<dim>(walls_, names, {{"force", &booked_->wall_force}});
   state["loaded_faces"] = table_of<dim>(
       tractions_, names, {{"place", &booked_->place}, {"gradient", &booked_->gradient}});
+  pressed_.save(state, names);
 }
 
 template <int dim>
@@ -396,6 +438,7 @@ void SurfaceLoads<dim>::load(const core::State &state, const core::Names &names,
     }
   }
   booked_ = std::move(old);
+  pressed_.load(state, names);
 }
 
 template class SurfaceLoads<2>;

@@ -5,6 +5,7 @@
 #include "core/load.h"
 #include "dem/loaded_faces.h"
 #include "dem/parts/force_part.h"
+#include "dem/pressed_cells.h"
 #include "packings/outer_face.h"
 
 #include <map>
@@ -28,6 +29,7 @@ public:
   /// Null: nothing rests.
   void wake(particles::RestBlocks<dim> *rest);
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_strains(const Particles &particles, Evaluation<dim> &evaluation) const override;
   /// Leaves reactions behind.
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
   void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
@@ -39,9 +41,6 @@ public:
                     std::vector<double> &energy) const override;
   void for_each_moment(const Particles &particles, const Evaluation<dim> &evaluation,
                        const VisitMoment<dim> &visit) const override;
-
-  /// Plastic strains of the particles, in their own axes, stretch the wall pairs.
-  void set_plastic(const std::function<Eigen::Matrix<double, dim, dim>(int)> &strain_of);
 
   /// Adds to external_work() what the loads did on every face since the last call: trapezoidal
   /// rule.
@@ -60,6 +59,10 @@ private:
   /// What the loads make of it.
   void add_faces(const packings::OuterFace<dim> &face, double shear_modulus);
   Vector<dim> relative(const WallFace<dim> &wall, const Particles &p, bool has_loads) const;
+  /// What the particle's own strain takes from Du of a wall, and how far it moves a loaded face.
+  Vector<dim> stretch(const WallFace<dim> &wall, const Evaluation<dim> &evaluation) const;
+  Vector<dim> stretch(const TractionFace<dim> &face, const Particles &particles,
+                      const Evaluation<dim> &evaluation) const;
   Vector<dim> traction(const TractionFace<dim> &face, bool has_loads) const;
   /// On the particle, in N.
   Vector<dim> force(const WallFace<dim> &wall, const Particles &p,
@@ -72,6 +75,7 @@ private:
   std::vector<core::BoundaryLoad<dim>> loads_;
   std::vector<WallFace<dim>> walls_;
   std::vector<TractionFace<dim>> tractions_;
+  PressedCells<dim> pressed_;
   /// Walls and tractions of each particle that has some.
   std::map<int, std::array<std::vector<int>, 2>> faces_of_;
   std::vector<Vector<dim>> displacement_, traction_; // of each load

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace ligament::fem
@@ -19,7 +20,7 @@ template <int dim>
 FemSolver<dim>::FemSolver(Mesh<dim> mesh, const Body<dim> &body,
                           std::vector<core::BoundaryLoad<dim>> loads)
     : mesh_(std::move(mesh)), body_(body), loads_(std::move(loads)),
-      is_own_cell_(mesh_.n_cells(), 1), released_node_(mesh_.n_nodes(), 0)
+      is_own_cell_(mesh_.n_cells(), 1), released_node_(mesh_.n_nodes(), 0), jumps_(mesh_, loads_)
 {
   core::require(body.density > 0 && body.thickness > 0,
                 fmt::format("far field: density {} kg/m^3 and thickness {} m must be positive",
@@ -103,6 +104,7 @@ void FemSolver<dim>::update_own_cells()
           traction_components_.push_back({i, c, l, area[i], false});
   }
   add_body_forces();
+  find_pressed_faces();
   has_previous_forces_ = false;
   find_dashpots();
 }
@@ -119,6 +121,57 @@ void FemSolver<dim>::add_body_forces()
         for (int i = 0; i < mesh_.n_nodes(); ++i)
           if (loads_[l].value[c] && weight[i] != 0)
             traction_components_.push_back({i, c, l, weight[i], true});
+}
+
+// The components of a node come one after the other; their areas are those of the faces.
+template <int dim>
+void FemSolver<dim>::find_pressed_faces()
+{
+  pressed_.clear();
+  std::map<int, std::vector<std::pair<int, double>>> masters;
+  for (const HangingNode &h : mesh_.hanging)
+    masters[h.node].assign(h.masters.begin(), h.masters.end());
+  for (int l = 0; l < int(loads_.size()); ++l) {
+    if (!loads_[l].pressure)
+      continue;
+    std::map<int, int> first_of;
+    for (const CellFace<dim> &face : mesh_.boundary_faces) {
+      if (face.boundary != loads_[l].boundary || !is_own_cell_[face.cell])
+        continue;
+      PressedFace<dim> pressed(mesh_, face, loads_[l].part, dim == 2 ? body_.thickness : 1, l);
+      std::vector<PressedShare> shares;
+      for (int k = 0; k < PressedFace<dim>::n_corners; ++k) {
+        const double share = pressed.shares()[k];
+        if (!(share > 0))
+          continue;
+        std::vector<std::pair<int, double>> to = {{pressed.nodes()[k], 1.}};
+        if (const auto found = masters.find(pressed.nodes()[k]); found != masters.end())
+          to = found->second;
+        for (const auto &[node, weight] : to) {
+          const auto [place, is_new] = first_of.emplace(node, int(traction_components_.size()));
+          for (int c = 0; is_new && c < dim; ++c)
+            traction_components_.push_back({node, c, l, 0, false});
+          shares.push_back({place->second, weight * share});
+        }
+      }
+      if (!shares.empty())
+        pressed_.emplace_back(std::move(pressed), std::move(shares));
+    }
+  }
+}
+
+template <int dim>
+void FemSolver<dim>::add_pressures(double time)
+{
+  for (const auto &[face, shares] : pressed_) {
+    const Vector<dim> all = -loads_[face.load()].pressure_at(time) * face.area(mesh_, displacement);
+    for (const PressedShare &part : shares)
+      for (int c = 0; c < dim; ++c) {
+        LoadedComponent &t = traction_components_[part.first + c];
+        t.force += part.share * all[c];
+        force[c][t.node] += part.share * all[c];
+      }
+  }
 }
 
 template <int dim>
@@ -245,8 +298,8 @@ void FemSolver<dim>::release_cells(const std::vector<int> &cells)
       core::require(is_own_cell_[face.cell] || face.boundary != load.boundary ||
                         load.kind != core::BoundaryLoad<dim>::Kind::traction ||
                         part_shares<dim>(load.part, mesh_, face).sum() <= 0 ||
-                        std::none_of(load.value.begin(), load.value.end(),
-                                     [](const auto &v) { return bool(v); }),
+                        (!load.pressure && std::none_of(load.value.begin(), load.value.end(),
+                                                        [](const auto &v) { return bool(v); })),
                     "the overlap or its transition reaches a side of the specimen with a traction; "
                     "keep the zone away from it or lower /coupling/transition_cells");
   update_own_cells();
@@ -357,11 +410,14 @@ void FemSolver<dim>::distribute()
 {
   follow_masters(displacement);
   follow_masters(velocity);
+  jumps_.add_jumps(mesh_, displacement);
+  jumps_.add_rates(mesh_, velocity);
 }
 
 template <int dim>
 void FemSolver<dim>::add_up_forces(double time)
 {
+  jumps_.set_time(time);
   distribute();
   for (auto &f : force)
     std::fill(f.begin(), f.end(), 0.);
@@ -369,12 +425,14 @@ void FemSolver<dim>::add_up_forces(double time)
     corotated_->subtract_forces(displacement, force);
   else
     kernel_->subtract_forces(displacement, force);
+  jumps_.find_reactions(mesh_, force);
   for (auto &f : force)
     hand_to_masters(f);
   for (LoadedComponent &t : traction_components_) {
     t.force = t.area * loads_[t.load].traction(time)[t.component];
     force[t.component][t.node] += t.force;
   }
+  add_pressures(time);
 }
 
 template <int dim>
@@ -448,6 +506,9 @@ void FemSolver<dim>::book_work()
       c.old_force = c.force;
       c.old_displacement = u;
     }
+  if (!has_previous_forces_)
+    jumps_.forget();
+  external_work_ += jumps_.book_work();
   has_previous_forces_ = true;
 }
 
@@ -458,8 +519,14 @@ bool FemSolver<dim>::is_loaded(double time) const
     const core::BoundaryLoad<dim> &load = loads_[c.load];
     const bool is_given = load.kind == core::BoundaryLoad<dim>::Kind::traction ||
                           load.kind == core::BoundaryLoad<dim>::Kind::acceleration;
+    if (load.pressure)
+      return load.pressure_at(time) != 0;
     return (is_given ? load.traction(time)[c.component] : prescribed(c, time)) != 0;
   };
+  for (const auto &load : loads_)
+    for (int c = 0; c < dim && load.jump_axis() >= 0; ++c)
+      if (load.value[c] && load.displacement(c, time) != 0)
+        return true;
   return std::any_of(held_components_.begin(), held_components_.end(), acts) ||
          std::any_of(traction_components_.begin(), traction_components_.end(), acts);
 }
@@ -469,7 +536,7 @@ Vector<dim> FemSolver<dim>::reaction(int load) const
 {
   const auto &l = loads_[load];
   const bool is_jump = l.kind == core::BoundaryLoad<dim>::Kind::displacement && l.history.jumps();
-  Vector<dim> sum = Vector<dim>::Zero();
+  Vector<dim> sum = jumps_.reaction(load);
   for (const auto *components : {&held_components_, &traction_components_})
     for (const LoadedComponent &c : *components)
       if (c.load == load)
@@ -549,6 +616,7 @@ Components<dim> FemSolver<dim>::halfway_velocity(double dt) const
     for (int i = 0; i < mesh_.n_nodes(); ++i)
       v[c][i] += dt / 2 * force[c][i] * inverse_mass_[i];
   follow_masters(v);
+  jumps_.add_rates(mesh_, v);
   return v;
 }
 

@@ -5,6 +5,8 @@
 #include "core/dashpots.h"
 #include "core/load.h"
 #include "fem/mesh.h"
+#include "fem/pressed_faces.h"
+#include "fem/side_jumps.h"
 
 #include <memory>
 
@@ -100,9 +102,10 @@ public:
   /// components with the second half.
   double damp_velocities(double dt);
 
-  /// Hanging nodes take displacement and velocity of their masters.
+  /// Hanging nodes take displacement and velocity of their masters, those beyond joined sides with
+  /// the jumps of the last compute_forces.
   void distribute();
-  /// The same of any nodal field.
+  /// The same of any nodal field, without jumps.
   void follow_masters(Components<dim> &field) const;
 
   /// Elastic energy of the solver's own cells, with the displacements as they are; in J.
@@ -185,6 +188,8 @@ private:
   /// Shares of the nodes in the part that the load acts on, in m^2; of the own cells.
   std::vector<double> loaded_areas(const core::BoundaryLoad<dim> &load) const;
   void add_body_forces();
+  void find_pressed_faces();
+  void add_pressures(double time);
   void find_dashpots();
   void hand_to_masters(std::vector<double> &values) const;
   /// Displacement of a held component at a time in s, in m.
@@ -214,7 +219,15 @@ private:
   std::vector<double> mass_, inverse_mass_;
   std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;
+  /// A part of what a pressed face gives to a node: hanging ones hand it to their masters.
+  struct PressedShare
+  {
+    int first; // of the node's components in traction_components_
+    double share;
+  };
+  std::vector<std::pair<PressedFace<dim>, std::vector<PressedShare>>> pressed_;
   core::Dashpots<dim> dashpots_;
+  SideJumps<dim> jumps_;
   double external_work_ = 0;
   double damping_rate_ = 0; // 1/s
   double step_ = 0;         // s, of the last kick; 0: none yet

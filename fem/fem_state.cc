@@ -108,6 +108,7 @@ void FemSolver<dim>::save(core::State &state, const core::Names &names) const
   state["loaded_nodes"] = std::move(loaded);
 
   dashpots_.save(state, "far_dashpots", names);
+  jumps_.save(state);
   core::save_value(state, "far_field", "external_work", external_work_);
   core::save_value(state, "far_field", "damping_rate", damping_rate_);
   core::save_value(state, "far_field", "step", step_);
@@ -136,6 +137,7 @@ void FemSolver<dim>::load(const core::State &state, const core::Names &names)
   });
 
   dashpots_.load(state, "far_dashpots", names);
+  jumps_.load(state);
   external_work_ = core::load_real(state, "far_field", "external_work");
   damping_rate_ = core::load_real(state, "far_field", "damping_rate");
   step_ = core::load_real(state, "far_field", "step");

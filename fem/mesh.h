@@ -5,6 +5,7 @@
 #include "core/box_union.h"
 #include "core/solid.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -13,11 +14,14 @@ namespace ligament::fem
 template <int dim>
 inline constexpr int n_cell_nodes = 1 << dim;
 
-/// A hanging node follows its masters: u = sum weight * u(master). Masters are never hanging.
+/// A hanging node follows its masters: u = sum weight * u(master). Masters are never hanging. Beyond
+/// joined sides the jump across each axis comes in addition, times the periods between the node and
+/// its masters (fem/join_sides.h).
 struct HangingNode
 {
   int node;
   std::vector<std::pair<int, double>> masters;
+  std::array<double, 3> periods = {};
 };
 
 template <int dim>

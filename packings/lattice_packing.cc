@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "packings/clipped_cell.h"
+#include "packings/periodic_sides.h"
 #include "packings/row_layout.h"
 
 #include <algorithm>
@@ -230,7 +231,29 @@ Packing<dim> Packer<dim>::pack()
 template <int dim>
 Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters)
 {
-  return Packer<dim>(parameters).pack();
+  PeriodicBox<dim> box(parameters);
+  if (!box.is_any())
+    return Packer<dim>(parameters).pack();
+  fit_period(parameters, box);
+  LatticeParameters<dim> wide = parameters;
+  static_cast<SpecimenParameters<dim> &>(wide) = widened(parameters, box, parameters.spacing);
+  const Lattice<dim> lattice(parameters);
+  // The names of a point and of its image differ by the same number everywhere.
+  std::array<std::int64_t, dim> step{};
+  for (int a = 0; a < dim; ++a) {
+    const Vector<dim> k = lattice.coordinates(box.period[a] * Vector<dim>::Unit(a)) -
+                          lattice.coordinates(Vector<dim>::Zero());
+    step[a] = Lattice<dim>::global_id(k.array().round().template cast<int>()) -
+              Lattice<dim>::global_id(LatticeIndex<dim>::Zero());
+  }
+  const Packing<dim> packing = Packer<dim>(wide).pack();
+  return folded<dim>(packing, box, [&](int i) {
+    ImageOf<dim> of{packing.global_id[i],
+                    box.image(get(packing.centre, i), 1e-6 * parameters.spacing)};
+    for (int a = 0; a < dim; ++a)
+      of.id -= of.image[a] * step[a];
+    return of;
+  });
 }
 
 template Packing<2> make_lattice_packing(const LatticeParameters<2> &);

@@ -60,6 +60,8 @@ struct LatticeParameters : SpecimenParameters<dim>
 /// Centres within 1e-9 d of the plane of the crack count as lying on its positive side: left of the
 /// segment (2D), where the points turn counter-clockwise (3D).
 ///
+/// Periodic: the lattice goes on beyond the joined sides, see periodic_sides.h.
+///
 /// Throws core::InputError for impossible parameters, holes in 3D, an empty zone, and material
 /// beside a void so thin that it holds no particles of its own (a wall of 1.5 d is never
 /// refused).

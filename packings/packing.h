@@ -22,6 +22,8 @@ struct Face
   /// An initial crack runs through this face: it touches but carries no tension.
   bool cracked;
   int cut = -1; // number of that crack in Packing::cuts; -1: the face has its own normal
+  /// The neighbour is the image of j so many periods away; its centre and levers are the image's.
+  std::array<int, dim> image = {};
 };
 
 /// Part of a cell's surface on the surface of the specimen.
@@ -52,6 +54,7 @@ struct Packing
 {
   double spacing = 0;   // m, d: distance of nearest neighbours; random: of the lattice as dense
   double thickness = 1; // m, 2D only
+  Vector<dim> period = Vector<dim>::Zero(); // m, after which it repeats itself; 0: it doesn't
   Components<dim> centre;
   std::vector<double> volume; // m^3, of the cell clipped by the specimen
   /// m, distance at which particles of this size touch; empty: d for all.

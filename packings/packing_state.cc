@@ -44,7 +44,7 @@ void read_vectors(const core::Table &table, const std::string &name, std::vector
   for (int c = 0; c < dim; ++c) {
     const auto values = table.reals(name + "_" + std::to_string(c));
     for (std::size_t r = 0; r < rows.size(); ++r)
-      get(rows[r])[c] = values[r];
+      get(rows[r])[c] = std::decay_t<decltype(get(rows[r])[c])>(values[r]);
   }
 }
 
@@ -134,6 +134,8 @@ void save_packing(core::State &state, const RandomPacking<dim> &random)
   add_vectors<dim>(faces, "lever_j", p.faces, [](const F &f) { return f.lever_j; });
   add_numbers(faces, "cracked", p.faces, [](const F &f) { return int(f.cracked); });
   add_numbers(faces, "cut", p.faces, [](const F &f) { return f.cut; });
+  if (p.period.maxCoeff() > 0)
+    add_vectors<dim>(faces, "image", p.faces, [](const F &f) { return f.image; });
   state["cell_faces"] = std::move(faces);
 
   using B = BoundaryFace<dim>;
@@ -155,6 +157,8 @@ void save_packing(core::State &state, const RandomPacking<dim> &random)
   if (!random.seeds.material.empty())
     seeds.add("material", wide(random.seeds.material));
   state["seeds"] = std::move(seeds);
+  for (int c = 0; c < dim && p.period.maxCoeff() > 0; ++c)
+    core::save_value(state, "packing", "period_" + std::to_string(c), p.period[c]);
   core::save_value(state, "packing", "spacing", p.spacing);
   core::save_value(state, "packing", "thickness", p.thickness);
   core::save_value(state, "packing", "n_healed", std::int64_t(random.n_healed));
@@ -193,6 +197,12 @@ RandomPacking<dim> load_packing(const core::State &state, const SpecimenParamete
   read_vectors<dim>(faces, "lever_j", p.faces, [](F &f) -> Vector<dim> & { return f.lever_j; });
   read_integers(faces, "cracked", p.faces, [](F &f) -> bool & { return f.cracked; });
   read_integers(faces, "cut", p.faces, [](F &f) -> int & { return f.cut; });
+  if (faces.has("image_0")) {
+    read_vectors<dim>(faces, "image", p.faces,
+                      [](F &f) -> std::array<int, dim> & { return f.image; });
+    for (int c = 0; c < dim; ++c)
+      p.period[c] = core::load_real(state, "packing", "period_" + std::to_string(c));
+  }
   for (F &face : p.faces)
     face.direction = -1;
 

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "packings/clipped_cell.h"
+#include "packings/periodic_sides.h"
 #include "packings/power_diagram.h"
 #include "packings/relaxation.h"
 
@@ -211,12 +212,57 @@ void check_seeds(const SpecimenShape<dim> &shape, const Seeds<dim> &seeds)
                   fmt::format("particle {} at ({}) lies outside the material or has no radius",
                               i + 1, place_text<dim>(seeds.centre[i])));
 }
+
+/// Diameter of the largest one.
+template <int dim>
+double largest_size(const Seeds<dim> &seeds, double spacing)
+{
+  double size = spacing;
+  for (const double radius : seeds.radius)
+    size = std::max(size, 2 * radius);
+  return size;
+}
+
+/// Of seeds and their images beyond the joined sides.
+template <int dim>
+RandomPacking<dim> pack_periodic(const SpecimenParameters<dim> &specimen,
+                                 const PeriodicBox<dim> &box, const Seeds<dim> &seeds)
+{
+  const double size = largest_size(seeds, specimen.spacing);
+  const auto wide = widened(specimen, box, size);
+  const int n_seeds = seeds.size();
+  // The seeds come first: image number 0 is their own.
+  std::vector<std::array<int, dim>> images = {std::array<int, dim>{}};
+  box.for_each_image(margin_of(size), [&](const std::array<int, dim> &n) { images.push_back(n); });
+  const auto all = Packer<dim>(wide, box.with_images(seeds, margin_of(size))).pack();
+  RandomPacking<dim> random;
+  random.packing = folded<dim>(all.packing, box, [&](int i) {
+    const std::int64_t id = all.packing.global_id[i];
+    return ImageOf<dim>{seeds.id[id % n_seeds], images[id / n_seeds]};
+  });
+  std::vector<char> bounds(n_seeds, 0);
+  for (const std::int64_t id : all.seeds.id)
+    bounds[id % n_seeds] = 1;
+  for (int s = 0; s < n_seeds; ++s)
+    if (bounds[s])
+      random.seeds.add(seeds.centre[s], seeds.radius[s], seeds.id[s]);
+  for (int i = 0; i < all.packing.size(); ++i)
+    if (const std::int64_t s = all.packing.global_id[i]; s < n_seeds) {
+      random.n_healed += all.packing.diameter[i] < 2 * seeds.radius[s];
+      random.seeds
+          .radius[std::lower_bound(random.seeds.id.begin(), random.seeds.id.end(), seeds.id[s]) -
+                  random.seeds.id.begin()] = all.packing.diameter[i] / 2;
+    }
+  return random;
+}
 } // namespace
 
 template <int dim>
 RandomPacking<dim> pack_seeds(const SpecimenParameters<dim> &specimen, Seeds<dim> seeds)
 {
   check_seeds(SpecimenShape<dim>(specimen), seeds);
+  if (const PeriodicBox<dim> box(specimen); box.is_any())
+    return pack_periodic(specimen, box, sorted_by_id(seeds));
   return Packer<dim>(specimen, std::move(seeds)).pack();
 }
 
@@ -226,6 +272,9 @@ RandomPacking<dim> make_random_packing(const RandomParameters<dim> &p)
   core::require(p.size_ratio >= 1 && p.size_ratio <= 5,
                 "the size ratio of a random packing must lie between 1 and 5");
   core::require(p.relaxation_sweeps >= 0, "the number of relaxation sweeps must not be negative");
+  if (const PeriodicBox<dim> box(p); box.is_any())
+    return pack_periodic(
+        p, box, relaxed_periodic_seeds<dim>(p, box, p.seed, p.size_ratio, p.relaxation_sweeps));
   const SpecimenShape<dim> shape(p);
   return Packer<dim>(p, relaxed_seeds<dim>(shape, p.spacing, p.seed, p.size_ratio,
                                            p.relaxation_sweeps, p.zone_lower, p.zone_upper))

@@ -16,6 +16,11 @@ bool is_in(const Vector<dim> &x, const Vector<dim> &lower, const Vector<dim> &up
   return ((x - lower).array() >= -margin).all() && ((upper - x).array() >= -margin).all();
 }
 
+double share_of_size(double size_ratio, int k, int sweeps)
+{
+  return size_ratio > 1 ? std::min(1., 1.5 * (k + 1) / sweeps) : 1.;
+}
+
 /// Radii of sweep k: they grow from equal ones, so that no cell is lost before its neighbours have
 /// made room for it. Weights enter by their differences alone.
 template <int dim>
@@ -28,13 +33,14 @@ Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin)
   return result;
 }
 
+/// `present` are the seeds with other radii, and after them their images.
 template <int dim>
 void move_to_centroids(Seeds<dim> &seeds, const Seeds<dim> &present,
                        const SpecimenShape<dim> &shape, double spacing, double bin,
                        const Vector<dim> &lower, const Vector<dim> &upper, double margin)
 {
   const PowerDiagram<dim> diagram(present, bin);
-  for (int i = 0; i < present.size(); ++i) {
+  for (int i = 0; i < seeds.size(); ++i) {
     const Vector<dim> &x = present.centre[i];
     if (!is_in(x, lower, upper, margin))
       continue;
@@ -86,7 +92,7 @@ Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int se
   Seeds<dim> seeds = draw_seeds<dim>(shape, spacing, seed, size_ratio, lower - all, upper + all);
   const double bin = std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
   for (int k = 0; k < sweeps; ++k) {
-    const double share = size_ratio > 1 ? std::min(1., 1.5 * (k + 1) / sweeps) : 1.;
+    const double share = share_of_size(size_ratio, k, sweeps);
     move_to_centroids(seeds, grown(seeds, share, bin), shape, spacing, bin, lower, upper,
                       (sweeps + 1 - k) * reach);
   }
@@ -94,6 +100,49 @@ Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int se
   return seeds;
 }
 
+template <int dim>
+Seeds<dim> relaxed_periodic_seeds(const SpecimenParameters<dim> &p, const PeriodicBox<dim> &box,
+                                  int seed, double size_ratio, int sweeps)
+{
+  const double size = p.spacing * std::sqrt(size_ratio), reach = 3 * size;
+  const auto widened_by = [&](double margin) {
+    Vector<dim> lower = p.zone_lower - Vector<dim>::Constant(margin),
+                upper = p.zone_upper + Vector<dim>::Constant(margin);
+    for (int a = 0; a < dim; ++a)
+      if (box.period[a] > 0) {
+        lower[a] = box.lower[a];
+        upper[a] = lower[a] + box.period[a];
+      }
+    return std::pair(lower, upper);
+  };
+  const SpecimenShape<dim> shape(widened(p, box, size));
+  const auto [lower, upper] = widened_by((sweeps + 2) * reach);
+  const Seeds<dim> drawn = draw_seeds<dim>(shape, p.spacing, seed, size_ratio, lower, upper);
+  Seeds<dim> seeds;
+  for (int i = 0; i < drawn.size(); ++i) // cubes at joined sides reach out of the box
+    if (box.image(drawn.centre[i], 0) == std::array<int, dim>{})
+      seeds.add(drawn.centre[i], drawn.radius[i], drawn.id[i]);
+  const auto wrap = [&] {
+    for (Vector<dim> &x : seeds.centre)
+      x = box.wrapped(x);
+  };
+  const double bin = std::pow(mean_cell_volume<dim>(p.spacing), 1. / dim);
+  for (int k = 0; k < sweeps; ++k) {
+    const double share = share_of_size(size_ratio, k, sweeps);
+    const auto [from, to] = widened_by((sweeps + 1 - k) * reach);
+    move_to_centroids(seeds, grown(box.with_images(seeds, margin_of(size)), share, bin), shape,
+                      p.spacing, bin, from, to, p.spacing);
+    wrap();
+  }
+  keep_off_surfaces(seeds, shape, p.spacing);
+  wrap();
+  return seeds;
+}
+
+template Seeds<2> relaxed_periodic_seeds(const SpecimenParameters<2> &, const PeriodicBox<2> &, int,
+                                         double, int);
+template Seeds<3> relaxed_periodic_seeds(const SpecimenParameters<3> &, const PeriodicBox<3> &, int,
+                                         double, int);
 template Seeds<2> relaxed_seeds(const SpecimenShape<2> &, double, int, double, int,
                                 const Vector<2> &, const Vector<2> &);
 template Seeds<3> relaxed_seeds(const SpecimenShape<3> &, double, int, double, int,

@@ -1,7 +1,7 @@
 // Lloyd's relaxation of seeds: each moves to the centroid of its cell.
 #pragma once
 
-#include "packings/seeds.h"
+#include "packings/periodic_sides.h"
 
 namespace ligament::packings
 {
@@ -16,4 +16,10 @@ template <int dim>
 Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
                          double size_ratio, int sweeps, const Vector<dim> &lower,
                          const Vector<dim> &upper);
+
+/// The same for a specimen that repeats itself: seeds of the box, relaxed among their images.
+template <int dim>
+Seeds<dim> relaxed_periodic_seeds(const SpecimenParameters<dim> &specimen,
+                                  const PeriodicBox<dim> &box, int seed, double size_ratio,
+                                  int sweeps);
 } // namespace ligament::packings

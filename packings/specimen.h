@@ -4,6 +4,7 @@
 #include "core/box_union.h"
 #include "core/solid.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct SpecimenParameters
   Vector<dim> upper = Vector<dim>::Zero();
   /// The body between them, which lies in this box and touches its sides; null: the box itself.
   std::shared_ptr<const core::Solid<dim>> solid;
+  /// Axes along which the body repeats itself: the sides across them are joined (periodic_sides.h).
+  std::array<bool, dim> periodic = {};
   std::vector<DiscHole<dim>> holes;
   std::vector<BoxNotch<dim>> notches;
   std::vector<CrackPoints<dim>> cracks;

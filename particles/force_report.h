@@ -100,6 +100,16 @@ public:
     return {};
   }
 
+  /// Whether a material may flow.
+  virtual bool can_flow() const { return false; }
+  /// The watched particle nearest to the stress under which its material would flow, whether it may
+  /// itself or not.
+  virtual Utilisation<dim> flow_utilisation(const Particles<dim> &,
+                                            const std::vector<Watch> &) const
+  {
+    return {};
+  }
+
   /// Number of a particle's material; 0: the one that it shares with the far field.
   virtual int material(int /*particle*/) const { return 0; }
 

@@ -73,6 +73,7 @@ struct CoupledEdge
 {
   std::vector<int> pads; // particles whose faces never break
   std::vector<int> open; // of them those whose cells lack faces
+  std::vector<int> members; // particles where the models overlap: they stay elastic
   /// Gradient of the mesh's displacement at the centre of open[k], at present.
   std::function<Eigen::Matrix<double, dim, dim>(int k)> gradient;
 };

@@ -44,20 +44,25 @@ void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particle
 
 template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
-                              std::vector<int> at_interfaces, const CohesiveFaces<dim> &softening)
-    : law_(law), softening_(softening), at_interfaces_(std::move(at_interfaces))
+                              std::vector<int> at_interfaces,
+                              const std::vector<std::int64_t> &names,
+                              const CohesiveFaces<dim> &softening)
+    : criteria_(law, body, names), softening_(softening), at_interfaces_(std::move(at_interfaces))
 {
-  reset(body);
+  if (body.images().is_any())
+    body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
+      if (b.image)
+        at_images_.insert(at_images_.end(), {b.i, b.j});
+    });
+  std::sort(at_images_.begin(), at_images_.end());
+  at_images_.erase(std::unique(at_images_.begin(), at_images_.end()), at_images_.end());
 }
 
 template <int dim>
 void BreakSearch<dim>::set_strength(double strength, const BondedBody<dim> &body)
 {
-  core::require(strength > 0, "the strength must be positive");
-  if (!can_break())
-    law_.criterion = FractureLaw::Criterion::maximum_tension;
-  law_.strength = strength;
-  reset(body);
+  criteria_.set_strength(strength, body);
+  screen_.clear();
 }
 
 template <int dim>
@@ -71,65 +76,32 @@ void BreakSearch<dim>::set_noted_share(double share)
 template <int dim>
 void BreakSearch<dim>::reset(const BondedBody<dim> &body)
 {
+  criteria_.reset(body);
   screen_.clear();
-  largest_size_factor_ = 1;
-  if (law_.whole_face > 0)
-    body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
-      largest_size_factor_ = std::max(largest_size_factor_, size_factor(b));
-    });
 }
 
 template <int dim>
-double BreakSearch<dim>::size_factor(const Bond<dim> &b) const
+BreakLook BreakSearch<dim>::look_at(const Materials &materials, double share,
+                                    bool cleared_by_stress) const
 {
-  return law_.whole_face > 0 && can_break() ? criterion().size_factor(b.area / law_.whole_face) : 1;
+  return {criteria_.screen(materials, share, false), criteria_.screen(materials, share, true),
+          cleared_by_stress, share};
 }
 
+// The screen of stresses doesn't know strains of the particles' own.
 template <int dim>
-double BreakSearch<dim>::strength_of(const Bond<dim> &b, const Materials &materials) const
-{
-  const auto &of = law_.strengths;
-  return of.empty() ? law_.strength
-                    : std::min(of[materials.number(b.i)], of[materials.number(b.j)]);
-}
-
-template <int dim>
-double BreakSearch<dim>::energy_of(const Bond<dim> &b, const Materials &materials) const
-{
-  const auto &of = law_.energies;
-  return of.empty() ? law_.energy : std::min(of[materials.number(b.i)], of[materials.number(b.j)]);
-}
-
-template <int dim>
-BreakScreen BreakSearch<dim>::screen(const BondedBody<dim> &body, double share, bool of_table) const
-{
-  double least = law_.strength;
-  const Materials &materials = body.materials();
-  if (of_table) // in terms of the first material's bonds
-    for (std::size_t m = 0; m < materials.all().size(); ++m)
-      least = std::min(least, (law_.strengths.empty() ? law_.strength : law_.strengths[m]) *
-                                  materials.base().shear_modulus() /
-                                  materials.all()[m].shear_modulus());
-  constexpr double round_off = 1e-7; // that of the kernels where the shear is small
-  return {share * least / largest_size_factor_ * (1 - round_off), criterion().tangent,
-          criterion().clearing != Clearing::by_face};
-}
-
-// The screen of stresses doesn't know plastic strains.
-template <int dim>
-void BreakSearch<dim>::ask(Evaluation<dim> &e, const PlasticFlow<dim> &flow) const
+void BreakSearch<dim>::ask(Evaluation<dim> &e, const InelasticStrains<dim> &strains) const
 {
   if (can_break())
-    e.look =
-        BreakLook{screen(e.body, noted_share_, false), screen(e.body, noted_share_, true),
-                  criterion().clearing == Clearing::by_stress && !flow.has_flowed(), noted_share_};
+    e.look = look_at(e.body.materials(), noted_share_,
+                     criteria_.clear_by_stress() && !strains.has_begun());
 }
 
 template <int dim>
 void BreakSearch<dim>::ask_trial(Evaluation<dim> &e, double share) const
 {
   if (can_break())
-    e.look = BreakLook{screen(e.body, share, false), screen(e.body, share, true), false, share};
+    e.look = look_at(e.body.materials(), share, false);
 }
 
 template <int dim>
@@ -140,19 +112,15 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
-  const double normal = t.traction.dot(t.normal);
-  if (normal <= 0 || !state.body().edge().may_break(b) || softening_.has(b, p))
-    return t;
-  const double shear = (t.traction - normal * t.normal).norm();
-  t.utilisation = size_factor(b) * (normal + criterion().tangent * shear) /
-                  strength_of(b, state.body().materials());
+  if (state.body().edge().may_break(b) && !softening_.has(b, p))
+    t.utilisation = criteria_.bound(b, t.normal, t.traction, state.body().materials());
   return t;
 }
 
 template <int dim>
 void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &e)
 {
-  if (!e.look || !e.look->cleared_by_stress)
+  if (!e.look || !e.look->cleared_by_stress || state.strains.has_begun())
     return;
   const std::vector<int> noted = noted_particles(e.noted);
   if (int(noted.size()) < StressScreen<dim>::least) {
@@ -163,11 +131,13 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
   const BondedBody<dim> &body = e.body;
   constexpr double round_off = 1e-7;
   const auto limit = [&](const Bond<dim> &b) {
-    return noted_share_ * strength_of(b, body.materials()) / (size_factor(b) * 2 * b.shear_i) *
-           (1 - round_off);
+    return noted_share_ * criteria_.limit(b, body.materials()) / (2 * b.shear_i) * (1 - round_off);
+  };
+  const auto is_at_image = [&](int i) {
+    return std::binary_search(at_images_.begin(), at_images_.end(), i);
   };
   const auto per_volume = [&](int i) {
-    return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i)
+    return std::binary_search(at_interfaces_.begin(), at_interfaces_.end(), i) || is_at_image(i)
                ? 0
                : 1 / (2 * body.materials().of(i).shear_modulus() * body.energy_weight(i) *
                       p.volume[i]);
@@ -177,9 +147,17 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
       part->for_each_moment(p, e, add);
   };
   const LatticeArrays<dim> a = e.arrays(p);
-  const std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
-                                             {body.bonds(), a, limit, per_volume, for_each_moment,
-                                              criterion().tangent, PrincipalTension<dim>::cone});
+  std::vector<int> kept =
+      screen_.keep(noted, e.noted.own_terms,
+                   {body.bonds(), a, limit, per_volume, for_each_moment, criteria_.tangent(),
+                    PrincipalTension<dim>::cone, criteria_.measure()});
+  if (!at_images_.empty()) {
+    std::vector<int> all;
+    std::copy_if(noted.begin(), noted.end(), std::back_inserter(all), [&](int i) {
+      return is_at_image(i) || std::binary_search(kept.begin(), kept.end(), i);
+    });
+    kept = std::move(all);
+  }
   auto &rows = e.noted.rows;
   std::vector<RowRange> rows_left;
   auto range = rows.begin();
@@ -230,18 +208,10 @@ BreakSearch<dim>::suspected_bonds(const StressedBody<dim> &state) const
   for (const int i : few)
     test_bonds_of(i, false, [&](int k) { return std::binary_search(few.begin(), few.end(), k); });
   bonds.for_each_interface(test);
-  const auto none = [](int) { return false; };
   if (noted.own_terms) // stresses of the kernels don't know openings
-    for (const int i : softening_.particles()) {
-      test_bonds_of(i, true, none);
-      test_bonds_of(i, false, none);
-    }
-  if (state.flow.has_flowed()) // the kernels don't know plastic strains
-    for (const RowRange &range : state.flow.blocks()->around_plastic())
-      for (int i = range.begin; i < range.end; ++i) {
-        test_bonds_of(i, true, none);
-        test_bonds_of(i, false, none);
-      }
+    for (const int i : softening_.particles())
+      for (const bool lattice : {true, false})
+        test_bonds_of(i, lattice, [](int) { return false; });
   return found;
 }
 
@@ -250,7 +220,7 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
                                      const StressedBody<dim> &state, double least) const
 {
   std::vector<int> few;
-  if (criterion().needs_stress)
+  if (criteria_.need_stress())
     for (const auto &t : bonds)
       few.insert(few.end(), {t.bond.i, t.bond.j});
   std::sort(few.begin(), few.end());
@@ -260,15 +230,10 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
     return stress[std::lower_bound(few.begin(), few.end(), i) - few.begin()];
   };
   for (auto &t : bonds) {
-    constexpr double round_off = 1e-12;
-    const double size = size_factor(t.bond),
-                 strength = strength_of(t.bond, state.body().materials());
     LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
-    if (criterion().needs_stress)
+    if (criteria_.need_stress())
       face.stress = (of(t.bond.i) + of(t.bond.j)) / 2;
-    t.utilisation = size * criterion().bound(face) / strength;
-    if (t.utilisation >= least * (1 - round_off))
-      t.utilisation = size * criterion().tension(face) / strength;
+    t.utilisation = criteria_.utilisation(face, t.bond, state.body().materials(), least);
   }
 }
 
@@ -287,14 +252,15 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
   find_tensions(found, state, 1);
   keep_exceeding();
   sort_by_ids(found, state.particles); // few are left
-  const bool all_at_once = criterion().apart == 0;
+  const bool all_at_once = criteria_.apart() == 0;
   if (!all_at_once || one_by_one_)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
   std::vector<BondId> exceeding;
-  PlacesApart<dim> places(criterion().apart * state.body().spacing());
+  PlacesApart<dim> places(criteria_.apart() * state.body().spacing(),
+                          state.body().images().period());
   for (const auto &t : found)
     if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))
       exceeding.push_back(t.id);

@@ -2,7 +2,7 @@
 // kernels says that they could hold.
 #pragma once
 
-#include "dem/fracture_law.h"
+#include "dem/fracture/bond_criteria.h"
 #include "dem/parts/cohesive_faces.h"
 #include "dem/stress_screen.h"
 #include "dem/stressed_body.h"
@@ -11,14 +11,14 @@ namespace ligament::dem
 {
 using particles::Utilisation, particles::Watch;
 
-/// A bond under tension as a criterion looks at it.
+/// A loaded bond as a criterion looks at it.
 template <int dim>
 struct BondTension
 {
   BondId id;
   Bond<dim> bond;
   Vector<dim> normal, traction; // of the face at present; Pa
-  double utilisation;           // tension over strength, or a bound of it; 0 without tension
+  double utilisation;           // tension over strength, or a bound of it; 0: cannot break
 };
 
 template <int dim>
@@ -27,20 +27,22 @@ class BreakSearch
 public:
   using Particles = particles::Particles<dim>;
 
-  /// Particles `at_interfaces` have bonds to another material. Faces that soften have broken as far
-  /// as the search knows.
+  /// Particles `at_interfaces` have bonds to another material; names of all particles that no
+  /// numbering changes (empty: their indices), which scatter of strengths reads. Faces that soften
+  /// have broken as far as the search knows.
   BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces,
-              const CohesiveFaces<dim> &softening);
+              const std::vector<std::int64_t> &names, const CohesiveFaces<dim> &softening);
 
-  const FractureLaw &law() const { return law_; }
-  bool can_break() const { return law_.criterion != FractureLaw::Criterion::none; }
+  const FractureLaw &law() const { return criteria_.law(); }
+  bool can_break() const { return criteria_.can_break(); }
+  bool breaks_under_pressure() const { return criteria_.break_under_pressure(); }
   /// By maximum tension if there was no criterion; in Pa.
   void set_strength(double strength, const BondedBody<dim> &body);
   /// See ForceReport::set_noted_share.
   void set_noted_share(double share);
 
   /// The next evaluation notes what could break.
-  void ask(Evaluation<dim> &evaluation, const PlasticFlow<dim> &flow) const;
+  void ask(Evaluation<dim> &evaluation, const InelasticStrains<dim> &strains) const;
   /// Of a state that may not stay: it notes what reaches this share of its limit.
   void ask_trial(Evaluation<dim> &evaluation, double share) const;
   /// After it: leaves out what the stresses clear of the particles that it noted.
@@ -69,17 +71,15 @@ public:
   /// The bond no longer carries.
   void remove(const Bond<dim> &bond) { screen_.remove(bond); }
   /// What it takes to open a bond wholly, in J per m^2 of projected crack.
-  double energy_of(const Bond<dim> &bond, const Materials &materials) const;
+  double energy_of(const Bond<dim> &bond, const Materials &materials) const
+  {
+    return law().energy_of(materials.number(bond.i), materials.number(bond.j));
+  }
   /// Other bonds, or others' strengths, from now on.
   void reset(const BondedBody<dim> &body);
 
 private:
-  const CriterionIn<dim> &criterion() const { return law_.criterion.template in<dim>(); }
-  /// What the kernels look for; of the table's bonds in terms of the first material's.
-  BreakScreen screen(const BondedBody<dim> &body, double share, bool of_table) const;
-  /// Of a bond in Pa.
-  double strength_of(const Bond<dim> &bond, const Materials &materials) const;
-  double size_factor(const Bond<dim> &bond) const;
+  BreakLook look_at(const Materials &materials, double share, bool cleared_by_stress) const;
   /// With a bound of the utilisation that the traction alone gives, eq. (D12c).
   BondTension<dim> bond_tension(const BondId &id, const Bond<dim> &bond,
                                 const StressedBody<dim> &state) const;
@@ -90,11 +90,11 @@ private:
   void find_tensions(std::vector<BondTension<dim>> &bonds, const StressedBody<dim> &state,
                      double least) const;
 
-  FractureLaw law_;
+  BondCriteria<dim> criteria_;
   const CohesiveFaces<dim> &softening_;
   std::vector<int> at_interfaces_; // ascending
+  std::vector<int> at_images_;     // with a bond to an image, which the screen doesn't know
   double noted_share_ = 1;         // of the limit
-  double largest_size_factor_ = 1; // of the bonds
   bool one_by_one_ = false;
   StressScreen<dim> screen_;
 };

@@ -6,7 +6,7 @@
 namespace ligament::dem
 {
 template <int dim>
-struct FaceTension
+struct FaceTension : PlainCriterion
 {
   static constexpr const char *name = "face_tension";
   static constexpr double tangent = 0;

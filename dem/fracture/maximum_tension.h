@@ -7,7 +7,7 @@
 namespace ligament::dem
 {
 template <int dim>
-struct MaximumTension
+struct MaximumTension : PlainCriterion
 {
   using Principal = PrincipalTension<dim>;
 

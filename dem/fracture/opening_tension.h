@@ -1,4 +1,4 @@
-// The largest principal stress as the face carries it, of faces that soften: theory.md eq. (D25).
+// The largest principal stress as the face carries it, of faces that soften: theory.md section 1.13.
 #pragma once
 
 #include "dem/fracture/criterion.h"
@@ -9,7 +9,7 @@ namespace ligament::dem
 /// Maximum tension with a wider cone: an inclined face takes its share of the energy only, and one
 /// that is left out would hold the crack.
 template <int dim>
-struct OpeningTension
+struct OpeningTension : PlainCriterion
 {
   using Principal = PrincipalTension<dim>;
   static constexpr double cone = 0.3;

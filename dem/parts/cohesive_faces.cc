@@ -103,7 +103,7 @@ double bending_product(const Bond<3> &b, const Spin<3> &u, const Spin<3> &v)
 }
 
 /// The crack that a face is a part of lies across the way in which it opens: its share of the
-/// energy is that of the area seen that way, eq. (D27), less what it has spent already.
+/// energy is that of the area seen that way, eq. (D42), less what it has spent already.
 template <int dim>
 void take_direction(CohesiveFace<dim> &face, const Vector<dim> &way)
 {

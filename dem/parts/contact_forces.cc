@@ -23,9 +23,10 @@ double mean_face_area(const packings::Packing<dim> &packing)
 } // namespace
 
 template <int dim>
-ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const Materials &materials)
+ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const Materials &materials,
+                                  const PeriodicImages<dim> &images)
     : contacts_(materials, packing.global_id, packing.size()),
-      search_(packing, mean_face_area(packing)), spacing_(packing.spacing)
+      search_(packing, mean_face_area(packing), &images), images_(images), spacing_(packing.spacing)
 {
   for (const auto &face : packing.faces)
     if (face.cracked) {
@@ -53,11 +54,15 @@ const Contact<dim> &ContactForces<dim>::add_broken(const Bond<dim> &b)
 }
 
 template <int dim>
-double ContactForces<dim>::act_broken(const Bond<dim> &b, Particles &p, double dt)
+double ContactForces<dim>::act_broken(const Bond<dim> &b, const Vector<dim> &pressing, Particles &p,
+                                      double dt)
 {
   const Contact<dim> &contact = add_broken(b);
-  contacts_.add_force(&contact - all().data(), p, dt);
-  return contacts_.compression_energy(contact, p);
+  const std::size_t k = &contact - all().data();
+  if (!pressing.isZero(0))
+    contacts_.take_over(k, b.i == contact.face.i ? pressing : Vector<dim>(-pressing), p);
+  contacts_.add_force(k, p, dt);
+  return contacts_.compression_energy(contact, p) + contacts_.slip_energy(contact, p);
 }
 
 template <int dim>
@@ -112,7 +117,7 @@ void ContactForces<dim>::save(core::State &state, const core::Names &names) cons
 template <int dim>
 void ContactForces<dim>::load(const core::State &state, const core::Names &names, const Particles &)
 {
-  contacts_.load(state, names, [&](int i, int j, double distance) {
+  contacts_.load(state, names, images_, [&](int i, int j, double distance) {
     return search_.face_between(i, j, distance);
   });
   search_.load(state, names);

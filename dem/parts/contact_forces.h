@@ -16,14 +16,18 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// Faces that a crack cuts touch from the start.
-  ContactForces(const packings::Packing<dim> &packing, const Materials &materials);
+  ContactForces(const packings::Packing<dim> &packing, const Materials &materials,
+                const PeriodicImages<dim> &images);
 
+  const Contacts<dim> &contacts() const { return contacts_; }
   const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
 
   /// A bond has broken: its particles lie on a surface, its face may touch.
   const Contact<dim> &add_broken(const Bond<dim> &bond);
-  /// The same; adds the force of the contact, too, and returns its energy in J.
-  double act_broken(const Bond<dim> &bond, Particles &particles, double dt);
+  /// The same; adds the force of the contact, too, and returns its energy in J. `pressing`: the
+  /// bond's force on its first particle (N) where that is to go on; 0 otherwise.
+  double act_broken(const Bond<dim> &bond, const Vector<dim> &pressing, Particles &particles,
+                    double dt);
 
   /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
   /// faces have slid.
@@ -55,6 +59,7 @@ public:
 private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
+  const PeriodicImages<dim> &images_;
   double spacing_;                            // m
   bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
   std::optional<double> looked_at_;           // s

@@ -65,15 +65,15 @@ struct Evaluation
   const particles::RestBlocks<dim> *rest = nullptr; // null: nothing is left out
   bool has_loads = true;                            // false: supports stand still, tractions vanish
   std::optional<BreakLook> look;
-  double yield_traction = 0; // Pa, at which blocks are marked; 0: not at all
+  bool may_flow = false;        // once, at a new time
+  double *own_energy = nullptr; // J, of the particles: see InelasticSweep; null: not asked for
 
   // Left behind.
   std::vector<double> pressure;         // lambda_i theta_i, Pa
   std::vector<Vector<dim>> wall_forces; // N, on the particle of each wall
   std::vector<Vector<dim>> reactions;   // N, of each load on the body
   NotedBonds noted;
-  std::vector<std::uint8_t> marks;    // blocks with a traction from which particles could yield
-  std::vector<double> plastic_energy; // J, what plastic strains change in the energy of bonds
+  std::optional<InelasticSweep<dim>> inelastic; // where a material flows
 
   // Carried from one to the next.
   WayToLook way;
@@ -88,10 +88,14 @@ struct Evaluation
       return &rest->ranges();
     return p.part.is_whole(p.size()) ? nullptr : &p.part;
   }
-  TractionScreen yield_screen()
+  /// Whether particles have strains of their own.
+  bool has_strains() const
   {
-    return yield_traction > 0 ? TractionScreen{yield_traction, marks.data()} : TractionScreen{};
+    return inelastic &&
+           std::any_of(inelastic->age, inelastic->age + inelastic->n_blocks,
+                       [](std::uint8_t age) { return age != untouched; });
   }
+  const InelasticSweep<dim> *sweep() const { return inelastic ? &*inelastic : nullptr; }
 
   LatticeArrays<dim> arrays(const particles::Particles<dim> &p)
   {

@@ -27,6 +27,9 @@ public:
   /// Adds its lambda_i theta_i (Pa) to those of the parts before it.
   virtual void add_pressures(const Particles &, Evaluation<dim> &) const {}
 
+  /// In place of it where a material flows: adds its part of the strains of open cells.
+  virtual void add_strains(const Particles &, Evaluation<dim> &) const {}
+
   /// Adds forces and torques at the pressures of all parts.
   virtual void add_forces(Particles &, Evaluation<dim> &) const {}
 

@@ -12,28 +12,30 @@ RowBonds<dim>::RowBonds(const BondedBody<dim> &body)
 template <int dim>
 void RowBonds<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) const
 {
-  if (e.body.has_dilatation())
-    kernel_.dilatation(e.arrays(p), e.body.bonds().segments(), window_);
+  if (e.body.has_dilatation() || e.inelastic)
+    kernel_.dilatation(e.arrays(p), e.body.bonds().segments(), window_, e.sweep());
 }
 
 template <int dim>
 void RowBonds<dim>::set_forces(Particles &p, Evaluation<dim> &e) const
 {
   const BreakScreen screen = e.look ? e.look->rows : BreakScreen{};
-  const TractionScreen yield = e.yield_screen();
   const LatticeArrays<dim> a = e.arrays_with_forces(p);
   std::vector<RowRange> nothing;
   const auto sweep = [&](bool by_particle) {
-    return kernel_.forces(a, e.body.bonds().segments(), screen, yield, window_,
-                          e.look ? e.noted.rows : nothing, e.ranges(p), by_particle,
-                          !(e.look && e.look->cleared_by_stress));
+    const long n_looked = kernel_.forces(
+        a, e.body.bonds().segments(), screen, window_, e.look ? e.noted.rows : nothing,
+        e.ranges(p), by_particle, !(e.look && e.look->cleared_by_stress), e.sweep());
+    if (e.inelastic)
+      e.inelastic->may_flow = false;
+    return n_looked;
   };
   if (!e.look) {
     sweep(false);
     return;
   }
   const bool has_lattice = e.body.bonds().n_directions() > 0;
-  const bool may_look_by_particle = screen.by_particle && !e.ranges(p) && yield.traction == 0;
+  const bool may_look_by_particle = screen.by_particle && !e.ranges(p);
   bool by_particle = may_look_by_particle && e.way.by_particle;
   const auto &others = e.body.other_particles();
   std::vector<double> &before = e.other_pressures; // the sweep adds its own to them
@@ -59,7 +61,8 @@ void RowBonds<dim>::set_energies(const Particles &p, Evaluation<dim> &e,
                                  std::vector<double> &energy) const
 {
   energy.assign(e.body.n_particles(), 0.);
-  kernel_.energies(e.arrays(p), e.body.bonds().segments(), window_, energy.data());
+  kernel_.energies(e.arrays(p), e.body.bonds().segments(), window_, energy.data(),
+                   e.sweep());
 }
 
 template class RowBonds<2>;

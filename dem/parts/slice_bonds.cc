@@ -37,13 +37,23 @@ void SliceBonds<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) cons
 }
 
 template <int dim>
+void SliceBonds<dim>::add_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  const LatticeArrays<dim> a = e.arrays(p);
+  const SliceNearness *const awake = awake_slices(p, e);
+  slices_.load(a, records_, awake);
+  slices_.add_strains(a, records_, *e.inelastic, awake);
+}
+
+template <int dim>
 void SliceBonds<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
 {
   const bool has_lattice = e.body.bonds().n_directions() > 0;
   std::vector<int> nothing;
-  slices_.forces(e.arrays_with_forces(p), e.look ? e.look->table : BreakScreen{}, e.yield_screen(),
-                 records_, e.look ? e.noted.table : nothing, awake_slices(p, e),
-                 !(e.look && e.noted.own_terms && has_lattice && e.look->cleared_by_stress));
+  slices_.forces(e.arrays_with_forces(p), e.look ? e.look->table : BreakScreen{}, records_,
+                 e.look ? e.noted.table : nothing, awake_slices(p, e),
+                 !(e.look && e.noted.own_terms && has_lattice && e.look->cleared_by_stress),
+                 e.has_strains() ? e.sweep() : nullptr);
 }
 
 template <int dim>

@@ -15,6 +15,7 @@ public:
 
   std::vector<int> particles() const override { return slices_.particles(); }
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_strains(const Particles &particles, Evaluation<dim> &evaluation) const override;
   /// After those of rows; overwrites where there is no lattice.
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
   void add_energies(const Particles &particles, Evaluation<dim> &evaluation,

@@ -244,7 +244,8 @@ template <int dim>
 void add_load(const Scene &scene, const LoadParameters &load, Picture &picture)
 {
   const std::string &name = load.side;
-  const bool is_traction = load.kind == LoadKind::traction || load.kind == LoadKind::force;
+  const bool is_traction = load.kind == LoadKind::traction || load.kind == LoadKind::force ||
+                           load.kind == LoadKind::pressure;
   const std::string unit = load.kind == LoadKind::velocity ? "m/s"
                            : load.kind == LoadKind::force  ? "N"
                            : is_traction                   ? "Pa"
@@ -262,6 +263,17 @@ void add_load(const Scene &scene, const LoadParameters &load, Picture &picture)
     picture.legend.push_back(
         {name + ": " + word_of(load.kind) + component_text(load.value, unit, false), color,
          Mark::arrow});
+  }
+  if (load.pressure && *load.pressure != 0) {
+    const Prefix prefix = unit_prefix(std::abs(*load.pressure), "Pa");
+    for (const auto &[point, out] : loaded_places<dim>(scene, load, dim == 2 ? 12 : 6)) {
+      for (int c = 0; c < dim; ++c)
+        direction[c] = -*load.pressure * out[c];
+      picture.arrows.push_back({point, direction, *load.pressure > 0, color});
+    }
+    picture.legend.push_back({fmt::format("{}: pressure {:.3g} {}Pa", name,
+                                          *load.pressure / prefix.factor, prefix.symbol),
+                              color, Mark::arrow});
   }
   if (const std::string held = component_text(load.value, "", true); !held.empty() && !is_traction)
   {

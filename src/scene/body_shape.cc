@@ -351,6 +351,8 @@ std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, 
 template <int dim>
 std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int boundary)
 {
+  if (boundary < 0) // no side
+    return {};
   const double size = std::max(specimen.size[0], specimen.size[1]);
   const auto solid = solid_of<dim>(specimen, size / 400);
   if (!solid)

@@ -67,7 +67,7 @@ public:
     for (int c = 0; c < 3; ++c) {
       box.lower[c] = hole.centre[c] - hole.radius;
       box.upper[c] = hole.centre[c] + hole.radius;
-      if (c < scene_.dimension)
+      if (c < scene_.dimension && !scene_.specimen.is_periodic(c))
         cuts_side =
             cuts_side || box.lower[c] <= specimen_.lower[c] || box.upper[c] >= specimen_.upper[c];
     }

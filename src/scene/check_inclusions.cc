@@ -20,17 +20,15 @@ public:
 
   void material(const Inclusion &inclusion, const std::string &key)
   {
-    check_fracture(inclusion.material.fracture, key + "/fracture", scene_.zone, f_);
+    check_fracture(inclusion.material, key + "/fracture", scene_, f_);
     check_softening(scene_, inclusion.material, key + "/fracture", f_);
     const std::string criterion = key + "/fracture/criterion";
-    if (f_.sound({criterion, "/material/fracture/criterion"}) &&
-        inclusion.material.fracture.criterion != scene_.material.fracture.criterion)
-      f_.error(f_.given(criterion) ? criterion : key,
-               fmt::format("\"criterion\" of {} is \"{}\", that of /material is \"{}\"", key,
-                           word_of(inclusion.material.fracture.criterion),
-                           word_of(scene_.material.fracture.criterion)),
-               "one criterion serves the whole body",
-               "choose the same, and a \"strength\" that is never reached where nothing breaks");
+    if (!f_.given(criterion) && f_.sound({criterion, "/material/fracture/criterion"}) &&
+        scene_.material.fracture.criterion != Criterion::none)
+      f_.warning(f_.given(key + "/fracture") ? key + "/fracture" : key,
+                 fmt::format("{} has no \"criterion\" of fracture", key),
+                 "only the bonds that join it to other materials can break",
+                 "give one, or \"none\" to say so");
     poissons_ratio(inclusion.material, key + "/poissons_ratio");
     if (inclusion.balls.empty() && inclusion.boxes.empty() && f_.sound({key}) &&
         scene_.zone.packing != PackingKind::file)

@@ -25,12 +25,16 @@ std::vector<std::string> kinds_of(const LoadParameters &load)
     kinds.push_back("traction");
   if (has_components(load.force))
     kinds.push_back("force");
+  if (load.pressure)
+    kinds.push_back("pressure");
   return kinds;
 }
 
 bool acts_on(const LoadParameters &load, int c)
 {
-  return load.velocity[c] || load.displacement[c] || load.traction[c] || load.force[c];
+  // A pressure may act beside what holds the side along itself.
+  const bool presses = load.pressure && (load.boundary >= 6 || load.boundary / 2 == c);
+  return load.velocity[c] || load.displacement[c] || load.traction[c] || load.force[c] || presses;
 }
 
 /// What "absorbing" excludes, alone and with the loads before.
@@ -170,21 +174,28 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     const std::string key = "/loads/" + std::to_string(k);
     if (!f.sound({key}))
       continue;
+    if (load.periodic || has_components(load.strain)) {
+      check_jump(scene, k, f);
+      continue;
+    }
     if (load.boundary < 0) // was told
       continue;
     const std::vector<std::string> kinds = kinds_of(load);
     if (kinds.empty() && !load.absorbing)
-      f.error(
-          key,
-          fmt::format("{} has no \"velocity\", \"displacement\", \"traction\" or \"force\"", key),
-          "a load without components does nothing",
-          "add one of them or \"absorbing\", or remove the load");
+      f.error(key,
+              fmt::format("{} has no \"velocity\", \"displacement\", \"traction\", \"force\" or "
+                          "\"pressure\"",
+                          key),
+              "a load without components does nothing",
+              "add one of them or \"absorbing\", or remove the load");
     if (kinds.size() > 1)
       f.error(key + "/" + kinds[1],
               fmt::format("both \"{}\" and \"{}\" in {}", kinds[0], kinds[1], key),
               "one load is of one kind", "write two loads with different components");
     check_absorbing(scene, k, key, f);
     check_history(scene, load, key, f);
+    if (load.servo)
+      check_servo(scene, k, f);
     check_part(scene, load, key, f);
     if (!f.sound({key}))
       continue;

@@ -25,7 +25,7 @@ bool has_components(const PartialPoint &value)
 bool moves(const LoadParameters &load)
 {
   return is_nonzero(load.velocity) || is_nonzero(load.displacement) || is_nonzero(load.traction) ||
-         is_nonzero(load.force);
+         is_nonzero(load.force) || is_nonzero(load.strain) || load.pressure.value_or(0) != 0;
 }
 
 template <typename Is>

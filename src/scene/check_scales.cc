@@ -44,15 +44,16 @@ void check_velocity(const LoadParameters &load, const std::string &key, double s
 
 void check_traction(const LoadParameters &load, const std::string &key, double modulus, Findings &f)
 {
-  const double share = largest(load.traction) / modulus;
-  const std::string message =
-      fmt::format("\"traction\" in {} is {:.3g} Pa", key, largest(load.traction));
+  const double stress = std::max(largest(load.traction), std::abs(load.pressure.value_or(0)));
+  const std::string name = load.pressure ? "pressure" : "traction";
+  const double share = stress / modulus;
+  const std::string message = fmt::format("\"{}\" in {} is {:.3g} Pa", name, key, stress);
   const std::string reason = fmt::format("\"youngs_modulus\" in /material is {:.3g} Pa", modulus);
   if (share > 1)
-    f.error(key + "/traction", message + ", more than Young's modulus", reason,
+    f.error(key + "/" + name, message + ", more than Young's modulus", reason,
             "give a smaller one, or check both units");
   else if (share > 0.1)
-    f.warning(key + "/traction", message + ", a strain of more than a tenth", reason,
+    f.warning(key + "/" + name, message + ", a strain of more than a tenth", reason,
               "give a smaller one, or check both units");
 }
 

@@ -141,33 +141,13 @@ void check_pictures(const Scene &scene, Findings &f)
 }
 } // namespace
 
-void check_fracture(const FractureParameters &fracture, const std::string &section,
-                    const DiscreteZone &zone, Findings &f)
-{
-  const bool strength = f.given(section + "/strength"), toughness = f.given(section + "/toughness");
-  if (toughness && !strength && zone.packing == PackingKind::file)
-    f.error(section + "/toughness",
-            fmt::format("\"toughness\" in {} cannot be used with the packing \"file\"", section),
-            "the factor between toughness and strength is calibrated on samples of a packing, "
-            "which a file cannot give",
-            "give the \"strength\" of a face");
-  if (!f.sound({section + "/criterion"}))
-    return;
-  if (fracture.criterion == Criterion::none && (strength || toughness))
-    f.warning(section + (strength ? "/strength" : "/toughness"),
-              "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"", "");
-  if (fracture.criterion != Criterion::none && !strength && !toughness && f.sound({section}))
-    f.error(section + "/criterion",
-            fmt::format("\"criterion\" in {} has neither \"strength\" nor \"toughness\"", section),
-            "it needs to know when a bond breaks", "add one of them, or choose \"none\"");
-}
-
 void check_scene(const Scene &scene, Findings &f)
 {
   check_models(scene, f);
   check_packing(scene, f);
-  check_fracture(scene.material.fracture, "/material/fracture", scene.zone, f);
+  check_fracture(scene.material, "/material/fracture", scene, f);
   check_softening(scene, scene.material, "/material/fracture", f);
+  check_plasticity(scene, f);
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;
@@ -181,6 +161,7 @@ void check_scene(const Scene &scene, Findings &f)
     check_inclusions(scene, specimen, layout ? &*layout : nullptr, f);
     check_gauges(scene, specimen, f);
   }
+  check_periodic(scene, layout ? &*layout : nullptr, f);
   check_loads(scene, layout ? &*layout : nullptr, f);
   check_motion(scene, f);
   check_tools(scene, f);

@@ -59,9 +59,12 @@ void check_inside_zone(const Box &cut, const std::string &name, const std::strin
 void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout,
                       Findings &findings);
 
+/// Laws of flow, and what they cannot be used with.
+void check_plasticity(const Scene &scene, Findings &f);
+
 /// When the bonds of a material break; `section` is the key of its "fracture".
-void check_fracture(const FractureParameters &fracture, const std::string &section,
-                    const DiscreteZone &zone, Findings &findings);
+void check_fracture(const MaterialParameters &material, const std::string &section,
+                    const Scene &scene, Findings &findings);
 
 /// Whether faces can soften as it says.
 void check_softening(const Scene &scene, const MaterialParameters &material,
@@ -83,11 +86,18 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
                    Findings &findings);
 void check_part(const Scene &scene, const LoadParameters &load, const std::string &key,
                 Findings &findings);
+/// The servo of a load that has one.
+void check_servo(const Scene &scene, std::size_t load, Findings &findings);
 /// Whether the parts of the same side on which they act have an area in common.
 bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b);
 /// Whether the part keeps its distance from an overlap that ends at the same side.
 void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &findings);
+
+/// Axes along which the body repeats itself, and what cannot stand beside them.
+void check_periodic(const Scene &scene, const Layout *layout, Findings &findings);
+/// Load number k, which is a jump across joined sides.
+void check_jump(const Scene &scene, std::size_t k, Findings &findings);
 
 /// What moves at the beginning, and what acts on every mass.
 void check_motion(const Scene &scene, Findings &findings);

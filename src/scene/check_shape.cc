@@ -1,5 +1,6 @@
 // The shape of the specimen: one description of it, and one that bounds a body.
 #include "core/keyed_error.h"
+#include "core/load.h"
 #include "core/parameters/spelling.h"
 #include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
@@ -142,8 +143,20 @@ void resolve_sides(Scene &scene, Findings *f)
                "use one of them, or name a side of its outline so");
     return -1;
   };
-  for (std::size_t k = 0; k < scene.loads.size(); ++k)
-    scene.loads[k].boundary = number(scene.loads[k].side, fmt::format("/loads/{}/boundary", k));
+  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
+    LoadParameters &load = scene.loads[k];
+    if (load.periodic && load.side.empty())
+      load.boundary = core::BoundaryLoad<3>::jump_across(int(*load.periodic));
+    else if (load.side.empty() && f) {
+      load.boundary = -1;
+      const std::string key = fmt::format("/loads/{}", k);
+      if (f->sound({key}))
+        f->error(key + "/boundary", fmt::format("missing key \"boundary\" in {}", key),
+                 "it says on which side the load acts",
+                 "add it: a side of the specimen, or \"periodic\" with an axis");
+    } else
+      load.boundary = number(load.side, fmt::format("/loads/{}/boundary", k));
+  }
   for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
     GaugeParameters &gauge = scene.gauges[k];
     gauge.side.reset();

@@ -52,6 +52,43 @@ void check_resolution(const Scene &scene, const MaterialParameters &m, double en
   else
     f.warning(key, message, "below 5 strength and path depend on the packing", remedy);
 }
+
+/// What else the scene asks for that faces don't go together with which soften.
+void check_company(const Scene &scene, const MaterialParameters &m, const std::string &section,
+                   Findings &f)
+{
+  const std::string energy = section + (m.fracture.energy ? "/energy" : "/toughness");
+  std::vector<std::pair<std::string, const MaterialParameters *>> materials = {
+      {"/material", &scene.material}};
+  for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
+    materials.emplace_back(fmt::format("/inclusions/{}", k), &scene.inclusions[k].material);
+  for (const auto &[key, other] : materials) {
+    const std::string fracture = key + "/fracture", criterion = fracture + "/criterion";
+    if (f.sound({fracture, criterion}) && other->fracture.criterion != Criterion::maximum_tension)
+      f.error(f.given(criterion) ? criterion : energy,
+              fmt::format("\"criterion\" in {} is \"{}\", but faces soften", fracture,
+                          word_of(other->fracture.criterion)),
+              "they begin to soften under the largest principal stress, in all materials",
+              "choose \"maximum_tension\", with a \"strength\" that is never reached where nothing "
+              "breaks");
+    if (other->fracture.weibull && f.sound({fracture + "/weibull"}))
+      f.error(fracture + "/weibull", fmt::format("\"weibull\" in {}, but faces soften", fracture),
+              "the strongest faces would lose more than their neighbourhood gives back",
+              "remove it, or leave out \"energy\"");
+    if (other->plasticity)
+      f.error(energy, fmt::format("faces soften, but {} has \"plasticity\"", key),
+              "what flows is not told from what opens yet", "leave out one of them");
+  }
+  if (!scene.specimen.periodic.empty())
+    f.error(energy, "faces soften, but sides are joined by \"periodic\"",
+            "openings don't know images of particles yet", "leave out one of them");
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    if (scene.loads[k].pressure)
+      f.error(fmt::format("/loads/{}/pressure", k),
+              "a pressure that follows the surface, but faces soften",
+              "its work beside faces that open is not balanced yet",
+              "load by \"traction\", or leave out \"energy\"");
+}
 } // namespace
 
 void check_softening(const Scene &scene, const MaterialParameters &m, const std::string &section,
@@ -68,11 +105,7 @@ void check_softening(const Scene &scene, const MaterialParameters &m, const std:
                 "faces break at once: there is no \"energy\"", "");
   if (!softens)
     return;
-  if (m.fracture.criterion == Criterion::face_tension)
-    f.error(section + "/criterion",
-            fmt::format("\"criterion\" in {} is \"face_tension\", but faces soften", section),
-            "they begin to soften under the largest principal stress",
-            "choose \"maximum_tension\"");
+  check_company(scene, m, section, f);
   if (scene.time.has_phases() && f.sound({"/time/loading"}))
     f.error("/time/loading",
             fmt::format("\"loading\" in /time is \"{}\", but faces soften",

@@ -20,6 +20,13 @@ enum class PackingKind
   file
 };
 
+enum class Axis
+{
+  x,
+  y,
+  z
+};
+
 /// How a slot ends.
 enum class SlotTip
 {
@@ -33,7 +40,19 @@ enum class Criterion
 {
   none,
   maximum_tension,
-  face_tension
+  face_tension,
+  principal_stress,
+  von_mises,
+  drucker_prager,
+  mohr_coulomb,
+  energy
+};
+
+/// What a material flows by.
+enum class PlasticityLaw
+{
+  von_mises,
+  drucker_prager
 };
 
 /// The curve along which a face softens.
@@ -87,7 +106,8 @@ enum class LoadKind
   velocity,     // m/s
   displacement, // m
   traction,     // Pa
-  force         // N, spread over the part
+  force,        // N, spread over the part
+  pressure      // Pa, along the present normal
 };
 
 /// The shape of a rigid tool.
@@ -125,6 +145,12 @@ inline const std::vector<std::string> &words(PackingKind)
   return list;
 }
 
+inline const std::vector<std::string> &words(Axis)
+{
+  static const std::vector<std::string> list = {"x", "y", "z"};
+  return list;
+}
+
 inline const std::vector<std::string> &words(SlotTip)
 {
   static const std::vector<std::string> all = {"flat", "round", "v"};
@@ -132,7 +158,15 @@ inline const std::vector<std::string> &words(SlotTip)
 }
 inline const std::vector<std::string> &words(Criterion)
 {
-  static const std::vector<std::string> list = {"none", "maximum_tension", "face_tension"};
+  static const std::vector<std::string> list = {
+      "none",      "maximum_tension", "face_tension", "principal_stress",
+      "von_mises", "drucker_prager",  "mohr_coulomb", "energy"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(PlasticityLaw)
+{
+  static const std::vector<std::string> list = {"von_mises", "drucker_prager"};
   return list;
 }
 
@@ -174,7 +208,8 @@ inline const std::vector<std::string> &words(StaticSolver)
 
 inline const std::vector<std::string> &words(LoadKind)
 {
-  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force"};
+  static const std::vector<std::string> list = {"velocity", "displacement", "traction", "force",
+                                                "pressure"};
   return list;
 }
 

@@ -33,10 +33,11 @@ core::BoxUnion<dim> zone_shape(const Scene &scene)
   return shape;
 }
 
-/// The direction across the side of the box that is loaded; -1: the side has a name of its own.
+/// The direction across the side of the box that is loaded; -1: the side has a name of its own, or
+/// the load is a jump.
 inline int axis_across(const LoadParameters &load, int dim)
 {
-  return load.boundary < 2 * dim ? load.boundary / 2 : -1;
+  return load.boundary >= 0 && load.boundary < 2 * dim ? load.boundary / 2 : -1;
 }
 
 /// What of its side the load acts on.

@@ -104,6 +104,17 @@ void leave_out_unused(const GaugeParameters &gauge, nlohmann::ordered_json &json
       json.erase(name);
 }
 
+/// Likewise of a load on a side, or of a jump.
+void leave_out_unused(const LoadParameters &load, nlohmann::ordered_json &json)
+{
+  if (load.periodic) {
+    json.erase("boundary");
+    return;
+  }
+  json.erase("periodic");
+  json.erase("strain");
+}
+
 /// Likewise of a tool of another shape.
 void leave_out_unused(const ToolParameters &tool, nlohmann::ordered_json &json)
 {
@@ -154,6 +165,13 @@ void complete(Scene &scene)
         load.kind = kind;
         load.value = value;
       }
+    for (int c = 0; c < 3 && load.periodic; ++c)
+      if (load.strain[c]) {
+        load.kind = LoadKind::displacement;
+        load.value[c] = *load.strain[c] * scene.specimen.size[int(*load.periodic)];
+      }
+    if (load.pressure)
+      load.kind = LoadKind::pressure;
   }
 }
 
@@ -201,6 +219,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   leave_out_unused(scene.zone, result.resolved["discrete_zone"]);
   for (std::size_t k = 0; k < scene.gauges.size(); ++k)
     leave_out_unused(scene.gauges[k], result.resolved["gauges"][k]);
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    leave_out_unused(scene.loads[k], result.resolved["loads"][k]);
   for (std::size_t k = 0; k < scene.tools.size(); ++k)
     leave_out_unused(scene.tools[k], result.resolved["tools"][k]);
   if (scene.specimen.has_own_box())

@@ -63,6 +63,12 @@ struct Ball
   double radius = 0; // m, about the origin
 };
 
+/// An axis along which the body repeats itself: the two sides across it are one.
+struct PeriodicAxis
+{
+  Axis axis = Axis::x;
+};
+
 struct BodyFile; // src/scene/body_file.h
 
 struct Specimen
@@ -79,7 +85,15 @@ struct Specimen
   std::vector<Crack> cracks;
   std::vector<Hole> holes;
   std::vector<Notch> notches;
+  std::vector<PeriodicAxis> periodic;
 
+  bool is_periodic(int c) const
+  {
+    for (const PeriodicAxis &p : periodic)
+      if (int(p.axis) == c)
+        return true;
+    return false;
+  }
   double lower(int c) const { return centre[c] - size[c] / 2; }
   double upper(int c) const { return centre[c] + size[c] / 2; }
   Point lower() const { return {lower(0), lower(1), lower(2)}; }
@@ -93,6 +107,14 @@ struct Specimen
   bool has_own_box() const { return !outline.empty() || ball || !file.empty(); }
 };
 
+/// Scatter of the strengths of faces.
+struct WeibullParameters
+{
+  double modulus = 0;
+  std::optional<double> reference_area; // m^2
+  int seed = 1;
+};
+
 struct FractureParameters
 {
   Criterion criterion = Criterion::none;
@@ -101,6 +123,38 @@ struct FractureParameters
   std::optional<double> energy;    // J/m^2: G_c of faces that soften
   SofteningCurve softening = SofteningCurve::linear;
   double mode_ratio = 1;
+  // Of the criteria that have more than one strength.
+  std::optional<double> compressive_strength; // Pa
+  std::optional<double> cohesion;             // Pa
+  std::optional<double> friction_angle;       // rad
+  std::optional<WeibullParameters> weibull;
+
+  /// Cohesion of mohr_coulomb in Pa, given or from the compressive strength; with a friction angle.
+  double plane_cohesion() const
+  {
+    return cohesion ? *cohesion
+                    : *compressive_strength * (1 - std::sin(*friction_angle)) /
+                          (2 * std::cos(*friction_angle));
+  }
+};
+
+/// A point of a yield curve.
+struct YieldPoint
+{
+  double strain = 0, stress = 0; // -, Pa
+};
+
+struct PlasticityParameters
+{
+  PlasticityLaw law = PlasticityLaw::von_mises;
+  double hardening = 0; // Pa
+  // Of von_mises.
+  std::optional<double> yield_stress;           // Pa
+  std::optional<double> saturation, saturation_rate; // Pa, -
+  std::vector<YieldPoint> curve;
+  // Of drucker_prager.
+  std::optional<double> cohesion, friction_angle; // Pa, rad
+  double dilatancy_angle = 0;                     // rad
 };
 
 struct MaterialParameters
@@ -110,6 +164,7 @@ struct MaterialParameters
   double density; // kg/m^3
   double friction = 0;
   FractureParameters fracture;
+  std::optional<PlasticityParameters> plasticity;
 };
 
 /// Particles of another material: those with their centre in one of the regions. The k-th one, from
@@ -249,14 +304,32 @@ struct History
   bool is_given() const { return !table.empty() || pulse || cycles; }
 };
 
+/// A machine that moves so that a measured quantity follows a course.
+struct ServoParameters
+{
+  std::string gauge;            // column of a gauge; empty: the load's own mean stress
+  std::optional<double> stress; // Pa, wanted where there is no gauge
+  std::optional<double> value;  // wanted of the gauge, in the unit of its column
+  double ramp = 0;              // s
+  History history;
+  double gain = 0;          // of the gauge per m of the load's motion; 0: 1
+  double response_time = 0; // s; 0: automatic
+
+  double wanted() const { return gauge.empty() ? stress.value_or(0) : value.value_or(0); }
+};
+
 struct LoadParameters
 {
   std::string side;                                     // its name
   int boundary = 0;                                     // number of the side, see side_names_of
+  std::optional<Axis> periodic;                         // in place of a side: the jump across it
+  PartialPoint strain;                                  // of that jump over the period
   PartialPoint velocity, displacement, traction, force; // m/s, m, Pa, N; one has components
+  std::optional<double> pressure;                       // Pa, in place of them
   double ramp = 0;                                      // s
   History history;
-  std::optional<double> from, to; // m, along the side in 2D
+  std::optional<ServoParameters> servo; // in place of both; of a velocity, which bounds it
+  std::optional<double> from, to;       // m, along the side in 2D
   Region within;
   bool absorbing = false;             // lets waves out, beside a traction or alone
   double absorbing_layer = 0;         // m

@@ -55,6 +55,12 @@ void declare_specimen_ball(Section &s, Ball &b)
   s.add("radius", b.radius, "of the ball").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
 }
 
+void declare_periodic_axis(Section &s, PeriodicAxis &p)
+{
+  s.add("axis", p.axis, "along which the body repeats itself", words(Axis()));
+  s.set_shorthand("axis");
+}
+
 void declare_specimen(Section &s, Specimen &p)
 {
   s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
@@ -67,16 +73,47 @@ void declare_specimen(Section &s, Specimen &p)
   s.list("cracks", p.cracks, "cuts without width", declare_crack);
   s.list("holes", p.holes, "discs cut out of the specimen", declare_hole).only_in(2);
   s.list("notches", p.notches, "boxes cut out of the specimen", declare_notch);
+  s.list("periodic", p.periodic, "axes along which the box repeats itself: the two sides across each are joined, bonds and cells go on through them; in a lattice the width must fit it", declare_periodic_axis);
+}
+
+void declare_weibull(Section &s, WeibullParameters &w)
+{
+  s.add("modulus", w.modulus, "of Weibull's distribution: 5 for rock, 10 to 20 for ceramics; their standard deviation is about 1.2 / modulus").above(1).at_most(1000).required();
+  s.add("reference_area", w.reference_area, "area of the face whose mean strength is the given one, larger ones are weaker; in 2D the thickness counts; not given: the mean is the same for all").in("m^2").usually(1e-18, 1, "mm^2 um^2").above(0);
+  s.add("seed", w.seed, "which scatter").at_least(0).at_most(1000000000);
 }
 
 void declare_fracture(Section &s, FractureParameters &f)
 {
-  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or nothing", words(Criterion()));
-  s.add("strength", f.strength, "tension at which a bond breaks or, with an energy or a toughness beside it, begins to soften").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or a measure of the stress tensors of its particles with the traction of its face (largest principal stress, von Mises, Drucker-Prager, Mohr-Coulomb, elastic energy); or nothing", words(Criterion()));
+  s.add("strength", f.strength, "uniaxial tension at which a bond breaks or, with an energy or a toughness beside it, begins to soften; of mohr_coulomb its cut-off in tension").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("energy", f.energy, "G_c per area of crack: faces that reach the strength soften and break when they have taken it; without, they break at once").in("J/m^2").usually(1e-2, 1e7, "N/m kJ/m^2").above(0);
   s.add("softening", f.softening, "what a face still bears as it opens: one straight line, or two, with the corner at a third of the strength and an opening of 0.8 G_c/f_t as for concrete", words(SofteningCurve()));
   s.add("mode_ratio", f.mode_ratio, "shear strength over tensile strength of a face that opens").at_least(0.1).at_most(10);
   s.add("toughness", f.toughness, "K_Ic; alone: the strength follows from it and from the spacing; with a strength: faces soften with the energy K_Ic^2/E'").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
+  s.add("compressive_strength", f.compressive_strength, "of drucker_prager, and of mohr_coulomb in place of the cohesion: uniaxial compression at which bonds break").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("cohesion", f.cohesion, "of mohr_coulomb: shear at which a plane without normal stress fails").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
+  s.add("friction_angle", f.friction_angle, "of mohr_coulomb: by whose tangent a pressure adds to the shear that a plane bears; broken faces rub with \"friction\"").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.section("weibull", f.weibull, "none", "scatter of the strengths of faces, which a face has from the names of its particles alone", declare_weibull);
+}
+
+void declare_yield_point(Section &s, YieldPoint &p)
+{
+  s.add("strain", p.strain, "accumulated plastic strain; 0 at the first point").at_least(0).at_most(10).required();
+  s.add("stress", p.stress, "yield stress there; it must not fall").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0).required();
+}
+
+void declare_plasticity(Section &s, PlasticityParameters &p)
+{
+  s.add("law", p.law, "von Mises: metals; Drucker and Prager: rock and soil, whose strength grows with pressure and which dilate", words(PlasticityLaw()));
+  s.add("yield_stress", p.yield_stress, "of von_mises: uniaxial stress at which flow begins; either this or a curve").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("hardening", p.hardening, "growth of the yield stress (of drucker_prager: of the shear strength) with the plastic strain").in("Pa").usually(0, 2e12, "GPa MPa kPa").at_least(0);
+  s.add("saturation", p.saturation, "of von_mises: Voce's Q, by how much the yield stress grows besides, saturating").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("saturation_rate", p.saturation_rate, "of von_mises: Voce's b, how fast: Q (1 - exp(-b p)) over the plastic strain p").above(0).at_most(1e6);
+  s.list("curve", p.curve, "of von_mises, in place of the yield stress and its growth: points of the curve, straight between them and level behind the last", declare_yield_point);
+  s.add("cohesion", p.cohesion, "of drucker_prager: shear strength of a plane without pressure").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
+  s.add("friction_angle", p.friction_angle, "of drucker_prager: of Coulomb's cone through the edges of triaxial compression").in("rad").usually(0.01, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.add("dilatancy_angle", p.dilatancy_angle, "of drucker_prager: by which flow swells; at most the friction angle").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
 }
 
 void declare_material(Section &s, MaterialParameters &m)
@@ -86,6 +123,7 @@ void declare_material(Section &s, MaterialParameters &m)
   s.add("density", m.density, "mass per volume").in("kg/m^3").usually(10, 3e4, "g/cm^3 t/m^3").above(0).required();
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
+  s.section("plasticity", m.plasticity, "none", "what particles flow by; cells and the overlap stay elastic", declare_plasticity);
 }
 
 void declare_ball(Section &s, Hole &h)
@@ -202,15 +240,30 @@ void declare_history(Section &s, History &h)
   s.section("cycles", h.cycles, "none", "a sine wave about a mean", declare_cycles);
 }
 
+void declare_servo(Section &s, ServoParameters &v)
+{
+  s.add("gauge", v.gauge, "the quantity: a column of history.csv that belongs to a gauge in /gauges (its name, where it has one column); not given: the load's own force over its area, tension positive");
+  s.add("stress", v.stress, "wanted without gauge: the mean stress of the load; compression is negative").in("Pa").usually(10, 2e11, "MPa kPa GPa");
+  s.add("value", v.value, "wanted of the gauge, in the SI unit of its column; reached with the course's 1");
+  s.add("ramp", v.ramp, "time over which the wanted value grows").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
+  declare_history(s.section("history", "course of the wanted value in time, as for loads"), v.history);
+  s.add("gain", v.gain, "by how much the gauge's column rises when the load moves by 1 m along its velocity, roughly; 0: 1, as for a distance between points that the whole specimen's elongation opens");
+  s.add("response_time", v.response_time, "within which the machine answers; 0: four transits of a shear wave through the specimen's longest edge, times its slenderness").in("s").usually(1e-12, 1e3, "us ms ns").at_least(0);
+}
+
 void declare_load(Section &s, LoadParameters &l)
 {
-  s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required();
+  s.add("boundary", l.side, "side of the specimen: left, right, bottom, top, back or front, or the name of a side of its outline, a cutout or a slot").required_unless("there is \"periodic\"");
+  s.add("periodic", l.periodic, "in place of boundary: the load is the jump of the displacement across the sides that are joined along this axis, from a point to its image one period further; components that are not given are 0", words(Axis()));
   s.add("velocity", l.velocity, "prescribed velocity; null: free").in("m/s").usually(1e-12, 1e3, "mm/s um/s km/h");
   s.add("displacement", l.displacement, "prescribed displacement; null: free").in("m").usually(0, 1e2, "mm um nm");
+  s.add("strain", l.strain, "for periodic: the jump over the period; along the axis the mean strain, across it the mean shear strain (tan of the angle)").usually(0, 1, "%");
   s.add("traction", l.traction, "prescribed force per area; null: none").in("Pa").usually(10, 2e11, "MPa kPa GPa");
   s.add("force", l.force, "prescribed force in all, in 2D over the thickness, spread evenly over the part; null: none").in("N").usually(1e-9, 1e12, "kN MN mN");
+  s.add("pressure", l.pressure, "prescribed pressure along the present normal of the surface, which it follows; positive presses").in("Pa").usually(10, 2e11, "MPa kPa GPa");
   s.add("ramp", l.ramp, "time over which the load grows to its value").in("s").usually(1e-12, 1e5, "us ms ns").at_least(0);
   declare_history(s.section("history", "course of the load in time, as a factor on its value, in place of a ramp: one of a table, a pulse, cycles"), l.history);
+  s.section("servo", l.servo, "none", "steers the load so that a measured quantity follows a course: it moves along its velocity, at most as fast, either way; in place of ramp and history", declare_servo);
   s.add("from", l.from, "the load acts on a part of the side: from this coordinate along it; not set: from its end").in("m").usually(0, 1e4, "mm um").only_in(2);
   s.add("to", l.to, "to this one; not set: to its end; a force may act at a point, from = to").in("m").usually(0, 1e4, "mm um").only_in(2);
   declare_region_of(s.section("within", "the load acts on the part of the side within a box or a ball"), l.within);

@@ -5,6 +5,7 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "fem/import_mesh.h"
+#include "fem/join_sides.h"
 #include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
@@ -73,6 +74,16 @@ fem::Mesh<dim> make_cells(const Scene &scene, const fem::MeshParameters<dim> &p)
   return fem::make_mesh(p);
 }
 
+/// Joined along the axes along which the body repeats itself.
+template <int dim>
+fem::Mesh<dim> joined(const Scene &scene, const fem::MeshParameters<dim> &p, fem::Mesh<dim> mesh)
+{
+  for (int c = 0; c < dim; ++c)
+    if (scene.specimen.is_periodic(c))
+      fem::join_sides(mesh, c, p.lower, p.upper);
+  return mesh;
+}
+
 template <int dim>
 void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
@@ -98,7 +109,8 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   material.stiffness = constants.stiffness;
   material.density = scene.coupling.coarse_mass * constants.density;
   material.thickness = body.thickness;
-  body.far = std::make_unique<fem::FemSolver<dim>>(make_cells(scene, p), material, body.loads);
+  body.far = std::make_unique<fem::FemSolver<dim>>(joined(scene, p, make_cells(scene, p)), material,
+                                                   body.loads);
   body.dt_far = body.far->stable_step();
   log.info("{} cells, {} nodes, {} hanging, stable step {:.4g} s", body.far->mesh().n_cells(),
            body.far->mesh().n_nodes(), body.far->mesh().hanging.size(), body.dt_far);

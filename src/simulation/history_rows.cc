@@ -15,9 +15,12 @@ constexpr int rows_per_flush = 50;
 
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
-std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges)
+std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
+                                const std::vector<ServoTarget<dim>> &servos)
 {
   std::vector<Column> columns = history_columns(dim, scene.time.has_phases(), !scene.tools.empty());
+  for (const auto &servo : servos)
+    columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
     const bool is_there = std::any_of(columns.begin(), columns.end(),
                                       [&](const Column &c) { return c.name == column.name; });
@@ -34,7 +37,8 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()), gauges_(scene, body),
-      writer_(folder.history(), all_columns(scene, gauges_), rows_per_flush, goes_on)
+      servos_(servo_targets(scene, body, gauges_)),
+      writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
 }
 
@@ -58,6 +62,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
   const std::vector<double> values = gauges_.read(body, step.time);
   for (std::size_t k = 0; k < values.size(); ++k)
     writer_.set(gauges_.columns()[k].name, values[k]);
+  for (const auto &servo : servos_)
+    writer_.set(servo.column().name, servo.measured(body, values) - servo.wanted(step.time));
   writer_.end_row();
 }
 

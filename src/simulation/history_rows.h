@@ -1,9 +1,10 @@
-// The rows of history.csv: reading of the test machine, energies, crack, gauges.
+// The rows of history.csv: reading of the test machine, energies, crack, gauges, servos.
 #pragma once
 
 #include "src/output/history.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/gauges/gauge_set.h"
+#include "src/simulation/servo_target.h"
 #include "src/simulation/test_machine.h"
 
 namespace ligament::program
@@ -36,6 +37,7 @@ public:
 private:
   bool has_phases_, has_tools_;
   GaugeSet<dim> gauges_;
+  std::vector<ServoTarget<dim>> servos_;
   HistoryWriter writer_;
 };
 } // namespace ligament::program

@@ -24,7 +24,8 @@ double rate_at(const core::BoundaryLoad<dim> &load, double time)
 template <int dim>
 bool has_value(const core::BoundaryLoad<dim> &load)
 {
-  return std::any_of(load.value.begin(), load.value.end(), [](const auto &v) { return v && *v; });
+  return load.pressure.value_or(0) != 0 ||
+         std::any_of(load.value.begin(), load.value.end(), [](const auto &v) { return v && *v; });
 }
 
 template <int dim>

@@ -16,6 +16,34 @@ namespace ligament::program
 {
 namespace
 {
+/// Coulomb's angles as slopes of the cone through the edges of triaxial compression.
+double cone_slope(double angle)
+{
+  return 2 * std::sqrt(3.) * std::sin(angle) / (3 - std::sin(angle));
+}
+
+dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
+{
+  if (!p)
+    return {};
+  if (p->law == PlasticityLaw::drucker_prager) {
+    const double angle = *p->friction_angle;
+    return dem::DruckerPrager{2 * std::sqrt(3.) * *p->cohesion * std::cos(angle) /
+                                  (3 - std::sin(angle)),
+                              p->hardening, cone_slope(angle), cone_slope(p->dilatancy_angle)};
+  }
+  dem::YieldCurve curve;
+  curve.initial = p->yield_stress.value_or(0);
+  curve.hardening = p->hardening;
+  curve.saturation = p->saturation.value_or(0);
+  curve.rate = p->saturation_rate.value_or(0);
+  for (const YieldPoint &point : p->curve) {
+    curve.strain.push_back(point.strain);
+    curve.stress.push_back(point.stress);
+  }
+  return dem::VonMises{curve};
+}
+
 dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)
 {
   dem::DemMaterial m;
@@ -24,17 +52,28 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
   m.density = parameters.density;
   m.plane = plane;
   m.friction = parameters.friction;
+  m.plasticity = plasticity_of(parameters.plasticity);
   return m;
 }
 
-dem::FractureLaw::Criterion criterion_of(const Scene &scene)
+dem::FractureLaw::Criterion criterion_of(const MaterialParameters &material)
 {
   using Criterion = dem::FractureLaw::Criterion;
-  switch (scene.material.fracture.criterion) {
+  switch (material.fracture.criterion) {
   case program::Criterion::maximum_tension:
     return Criterion::maximum_tension;
   case program::Criterion::face_tension:
     return Criterion::face_tension;
+  case program::Criterion::principal_stress:
+    return Criterion::principal_stress;
+  case program::Criterion::von_mises:
+    return Criterion::von_mises;
+  case program::Criterion::drucker_prager:
+    return Criterion::drucker_prager;
+  case program::Criterion::mohr_coulomb:
+    return Criterion::mohr_coulomb;
+  case program::Criterion::energy:
+    return Criterion::energy;
   case program::Criterion::none:
     break;
   }
@@ -42,26 +81,31 @@ dem::FractureLaw::Criterion criterion_of(const Scene &scene)
 }
 
 /// All that the factor c depends on, in one line.
-std::string toughness_key(const Scene &scene, const dem::DemMaterial &material)
+std::string toughness_key(const Scene &scene, program::Criterion criterion,
+                          const dem::DemMaterial &material)
 {
   const DiscreteZone &zone = scene.zone;
   const std::string packing =
       zone.packing == PackingKind::random
           ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
           : fmt::format("turned {}", fmt::join(zone.orientation, " "));
-  return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method,
-                     word_of(scene.material.fracture.criterion), scene.dimension,
-                     scene.plane == PlaneMode::stress ? "stress" : "strain", word_of(*zone.packing),
-                     material.poissons_ratio, packing);
+  return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method, word_of(criterion),
+                     scene.dimension, scene.plane == PlaneMode::stress ? "stress" : "strain",
+                     word_of(*zone.packing), material.poissons_ratio, packing);
 }
 
 template <int dim>
-double toughness_factor(const Scene &scene, const dem::DemMaterial &material)
+double toughness_factor(const Scene &scene, const MaterialParameters &parameters)
 {
-  const auto criterion = criterion_of(scene);
-  return ToughnessCache().factor(toughness_key(scene, material), [&] {
-    if (scene.zone.packing == PackingKind::random)
-      return dem::calibrate_toughness<dim>(random_packing_of<dim>(scene), material, criterion);
+  const auto criterion = criterion_of(parameters);
+  const dem::DemMaterial material = material_of(parameters, scene.plane);
+  const std::string key = toughness_key(scene, parameters.fracture.criterion, material);
+  return ToughnessCache().factor(key, [&] {
+    if (scene.zone.packing == PackingKind::random) {
+      auto packing = random_packing_of<dim>(scene);
+      packing.periodic = {}; // of a sample
+      return dem::calibrate_toughness<dim>(packing, material, criterion);
+    }
     const auto lattice = lattice_of<dim>(scene);
     return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
   });
@@ -77,9 +121,8 @@ double strength_of(const Scene &scene, const MaterialParameters &material, const
   double strength = p.strength.value_or(0);
   if (!p.strength) {
     const auto known = figures.find("toughness_factor" + name);
-    const double c = known != figures.end()
-                         ? known->second.value
-                         : toughness_factor<dim>(scene, material_of(material, scene.plane));
+    const double c =
+        known != figures.end() ? known->second.value : toughness_factor<dim>(scene, material);
     strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
     figures["toughness_factor" + name] = {c, ""};
     log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, strength,
@@ -89,35 +132,66 @@ double strength_of(const Scene &scene, const MaterialParameters &material, const
   return strength;
 }
 
+/// With what the criterion reads besides the strength; of Coulomb's planes the uniaxial tension
+/// that comes first, on a plane of slip or by the cut-off.
+template <int dim>
+dem::FaceStrength face_strength_of(const Scene &scene, const MaterialParameters &material,
+                                   const std::string &name, std::map<std::string, Figure> &figures,
+                                   core::Log &log)
+{
+  const FractureParameters &p = material.fracture;
+  dem::FaceStrength strength = strength_of<dim>(scene, material, name, figures, log);
+  if (p.criterion == program::Criterion::drucker_prager)
+    strength.compressive = *p.compressive_strength / strength.value;
+  if (p.criterion == program::Criterion::mohr_coulomb) {
+    const double cut_off = strength.value, cohesion = p.plane_cohesion();
+    strength.friction_angle = *p.friction_angle;
+    strength.value = std::min(cut_off, 2 * cohesion * std::cos(strength.friction_angle) /
+                                           (1 + std::sin(strength.friction_angle)));
+    strength.cohesion = cohesion / strength.value;
+    strength.cut_off = cut_off / strength.value;
+  }
+  if (p.weibull)
+    strength.scatter = {p.weibull->modulus, p.weibull->reference_area.value_or(0), p.weibull->seed};
+  return strength;
+}
+
 template <int dim>
 dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &figures,
                              core::Log &log)
 {
   dem::FractureLaw law;
-  law.criterion = criterion_of(scene);
-  if (law.criterion == dem::FractureLaw::Criterion::none)
-    return law;
-  law.energy = fracture_energy(scene, scene.material).value_or(0);
-  if (law.energy > 0) {
-    law.criterion = dem::FractureLaw::Criterion::opening_tension;
-    figures["fracture_energy"] = {law.energy, "J/m^2"};
+  std::vector<const MaterialParameters *> materials = {&scene.material};
+  for (const Inclusion &inclusion : scene.inclusions)
+    materials.push_back(&inclusion.material);
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    const std::string name = m == 0 ? "" : fmt::format("_inclusion_{}", m);
+    law.criteria.push_back(criterion_of(*materials[m]));
+    law.energies.push_back(fracture_energy(scene, *materials[m]).value_or(0));
+    if (law.criteria[m] == dem::FractureLaw::Criterion::none)
+      law.energies[m] = 0;
+    if (law.energies[m] > 0) {
+      law.criteria[m] = dem::FractureLaw::Criterion::opening_tension;
+      figures["fracture_energy" + name] = {law.energies[m], "J/m^2"};
+    }
+    law.strengths.push_back(law.criteria[m] == dem::FractureLaw::Criterion::none
+                                ? dem::FaceStrength()
+                                : face_strength_of<dim>(scene, *materials[m], name, figures, log));
   }
+  law.criterion = law.criteria[0];
+  law.strength = law.strengths[0];
+  if (law.criterion != dem::FractureLaw::Criterion::none && !scene.material.fracture.strength)
+    law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
+                     (dim == 2 ? scene.specimen.thickness : 1);
+  law.energy = law.energies[0];
   if (scene.material.fracture.softening == SofteningCurve::bilinear)
     law.softening = {1 / 3., 0.8};
   law.mode_ratio = scene.material.fracture.mode_ratio;
-  if (!scene.material.fracture.strength)
-    law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
-                     (dim == 2 ? scene.specimen.thickness : 1);
-  law.strength = strength_of<dim>(scene, scene.material, "", figures, log);
-  if (scene.inclusions.empty())
-    return law;
-  law.strengths = {law.strength};
-  law.energies = {law.energy};
-  for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
-    law.strengths.push_back(strength_of<dim>(scene, scene.inclusions[k].material,
-                                             fmt::format("_inclusion_{}", k + 1), figures, log));
-  for (const Inclusion &inclusion : scene.inclusions)
-    law.energies.push_back(fracture_energy(scene, inclusion.material).value_or(0));
+  if (materials.size() == 1) {
+    law.energies.clear();
+    law.criteria.clear();
+    law.strengths.clear();
+  }
   return law;
 }
 } // namespace

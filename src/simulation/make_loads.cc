@@ -71,14 +71,17 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
                 : parameters.kind == LoadKind::displacement ? Kind::displacement
                                                             : Kind::traction;
     const bool is_force = parameters.kind == LoadKind::force;
-    load.part = is_force ? widened<dim>(scene, parameters) : part_of<dim>(parameters);
+    if (load.jump_axis() < 0)
+      load.part = is_force ? widened<dim>(scene, parameters) : part_of<dim>(parameters);
     for (int c = 0; c < dim; ++c)
       load.value[c] = parameters.value[c];
     if (is_force)
       for (auto &component : load.value)
         if (component)
           *component /= loaded_area<dim>(scene, load);
-    load.history = time_function_of(parameters.history, parameters.ramp);
+    load.pressure = parameters.pressure;
+    load.history = parameters.servo ? core::TimeFunction(core::Steered())
+                                    : time_function_of(parameters.history, parameters.ramp);
     load.absorbing = parameters.absorbing;
     load.absorbing_layer = parameters.absorbing_layer;
     loads.push_back(load);

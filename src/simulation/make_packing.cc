@@ -26,6 +26,8 @@ void set_specimen(const Scene &scene, packings::SpecimenParameters<dim> &p)
   const Specimen &specimen = scene.specimen;
   p.lower = to_vector<dim>(specimen.lower());
   p.upper = to_vector<dim>(specimen.upper());
+  for (int c = 0; c < dim; ++c)
+    p.periodic[c] = specimen.is_periodic(c);
   p.solid = solid_of<dim>(specimen, p.spacing / 2);
   if (p.solid) { // whose straight sides in place of arcs reach out of the box a little
     p.lower = p.solid->lower();
@@ -185,7 +187,7 @@ packings::RandomPacking<dim> irregular_packing(const Scene &scene)
 
 /// The last inclusion, from 1, with a region around the point; 0: none.
 template <int dim>
-int inclusion_at(const Scene &scene, const Vector<dim> &x)
+int inclusion_around(const Scene &scene, const Vector<dim> &x)
 {
   const auto in_ball = [&](const Hole &ball) {
     return (x - to_vector<dim>(ball.centre)).norm() < ball.radius;
@@ -201,6 +203,24 @@ int inclusion_at(const Scene &scene, const Vector<dim> &x)
       return k;
   }
   return 0;
+}
+
+/// The same of the point and its images beyond joined sides.
+template <int dim>
+int inclusion_at(const Scene &scene, const Vector<dim> &x)
+{
+  int last = 0;
+  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
+    Vector<dim> image = x;
+    bool exists = true;
+    for (int a = 0, rest = k; a < dim; ++a, rest /= 3) {
+      exists = exists && (rest % 3 == 1 || scene.specimen.is_periodic(a));
+      image[a] += (rest % 3 - 1) * scene.specimen.size[a];
+    }
+    if (exists)
+      last = std::max(last, inclusion_around<dim>(scene, image));
+  }
+  return last;
 }
 
 /// Materials of the points: those of their regions over those that they have.

@@ -26,7 +26,7 @@ template <int dim>
 OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
 {
   const auto *overlap = body.coupler->overlap();
-  if (!overlap || !body.force()->can_break())
+  if (!overlap || !(body.force()->can_break() || body.force()->can_flow()))
     return;
   watch_.assign(body.zone->state.size(), Watch::none);
   for (const auto &m : overlap->members)
@@ -62,6 +62,13 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
                        "if {} had not; {}",
                        n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
                        place<dim>(first->position), n_broken_ == 1 ? "it" : "they", remedy);
+  }
+  const auto flow = body.force()->flow_utilisation(body.zone->state, watch_);
+  if (flow.share >= 1) {
+    found_ = true;
+    return fmt::format("the overlap would flow at {}, where particles and mesh stay elastic: they "
+                       "bear {:.0f} % of the yield stress; {}",
+                       place<dim>(flow.place), 100 * flow.share, remedy);
   }
   const auto most = body.force()->utilisation(body.zone->state, watch_);
   if (most.share < limit)

@@ -32,6 +32,7 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
       phases_(scene_, body_, log_), recorder_(scene_, folder_, body_, log_, timers_, progress,
                                               clock_.n_steps, draws_pictures, from != nullptr),
+      servos_(scene_, body_, log_),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
   setup_seconds_ = timers_.total();
@@ -58,6 +59,7 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   clock_.now.time = manifest.time;
   damping_.load(run);
   phases_.load(run);
+  servos_.load(run);
   recorder_.load(run, checkpoint.kept, body_, clock_.now.step);
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
@@ -84,6 +86,7 @@ core::State Simulation<dim>::run_state() const
   regime_.save(run);
   damping_.save(run);
   phases_.save(run);
+  servos_.save(run);
   recorder_.save(run);
   return run;
 }
@@ -99,6 +102,7 @@ void Simulation<dim>::build_anew()
   regime_ = RegimeControl<dim>(scene_.coupling.regime, body_);
   give(body, run);
   recorder_.watch(body_);
+  servos_.watch(body_);
   ++n_rebuilt_;
   n_broken_at_rebuild_ = body_.force() ? long(body_.force()->broken_bonds().size()) : 0;
 }
@@ -204,7 +208,10 @@ std::optional<Stop> Simulation<dim>::look()
   if (const auto reason = regime_.look(body_, clock_.now, log_))
     if (const auto stop = recorder_.report_excess(*reason, clock_.now))
       return stop;
-  return recorder_.observe(body_, clock_.now, damping_.energy());
+  const auto stop = recorder_.observe(body_, clock_.now, damping_.energy());
+  if (!stop && !servos_.empty())
+    servos_.steer(body_, clock_.now.time, body_.coupler->step_ratio() * body_.dt);
+  return stop;
 }
 
 template <int dim>
@@ -328,6 +335,7 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
     record.status = "failed";
     record.reason = recorder_.failure() + " (after the last step)";
   }
+  servos_.put_into(record, log_);
   for (const std::string &text : log_.warnings())
     record.warnings.push_back({text});
   report_rest(record);

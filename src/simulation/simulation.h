@@ -9,6 +9,7 @@
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/recorder.h"
 #include "src/simulation/regime_control.h"
+#include "src/simulation/servos.h"
 #include "src/simulation/static_phases.h"
 
 namespace ligament::program
@@ -81,6 +82,7 @@ private:
   Clock clock_;
   StaticPhases<dim> phases_;
   Recorder<dim> recorder_;
+  Servos<dim> servos_;
 
   std::optional<CheckpointKeeper> keeper_;
   std::optional<core::StateFileSum> reference_sum_; // once it is on the disk

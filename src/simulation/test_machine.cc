@@ -53,6 +53,9 @@ template <int dim>
 TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
 {
   double largest = 0;
+  look_for_jump(body);
+  if (jump_axis_ >= 0)
+    return;
   for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
     for (int c = 0; c < dim && body.loads[l].boundary >= 0; ++c)
       if (body.loads[l].value[c] && std::abs(*body.loads[l].value[c]) > largest) {
@@ -60,6 +63,11 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
         load_ = int(l);
         component_ = c;
       }
+  for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l)
+    if (body.loads[l].pressure && body.loads[l].boundary < 2 * dim) {
+      load_ = int(l);
+      component_ = body.loads[l].boundary / 2;
+    }
   if (load_ < 0) {
     look_for_tool(body);
     return;
@@ -87,6 +95,34 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
               ? size.prod() / size_ * body.thickness
               : core::face_area<dim>(body.loads[load_].part.clip(side)) *
                     (dim == 2 ? body.thickness : 1);
+}
+
+// The first one that is not zero, before tractions.
+template <int dim>
+void TestMachine<dim>::look_for_jump(const CoupledBody<dim> &body)
+{
+  double largest = 0;
+  for (std::size_t l = 0; l < body.loads.size() && load_ < 0; ++l) {
+    const auto &load = body.loads[l];
+    for (int c = 0; c < dim; ++c) {
+      const double value = std::abs(load.value[c].value_or(0));
+      if (load.boundary >= 0 && load.kind != core::BoundaryLoad<dim>::Kind::traction && value > 0)
+        return; // a side moves
+      if (load.jump_axis() >= 0 && value > largest) {
+        largest = value;
+        jump_axis_ = load.jump_axis();
+        load_ = int(l);
+        component_ = c;
+      }
+    }
+  }
+  if (load_ < 0)
+    return;
+  is_answer_ = true;
+  const Vector<dim> size = body.upper - body.lower;
+  axis_ = component_;
+  size_ = size[jump_axis_];
+  area_ = size.prod() / size_ * body.thickness;
 }
 
 // As if the tool were the side that it is nearer to.
@@ -131,6 +167,20 @@ double TestMachine<dim>::load_displacement(const CoupledBody<dim> &body, int loa
 }
 
 template <int dim>
+Reading TestMachine<dim>::read_jump(const CoupledBody<dim> &body, double time) const
+{
+  Reading r;
+  if (body.force())
+    r.load += body.force()->reaction(load_)[component_];
+  if (body.far)
+    r.load += body.far->reaction(load_)[component_];
+  r.stress = r.load / area_;
+  r.displacement = body.loads[load_].displacement(component_, time);
+  r.strain = r.displacement / size_;
+  return r;
+}
+
+template <int dim>
 Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 {
   Reading r;
@@ -143,15 +193,17 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
   }
   if (load_ < 0)
     return r;
+  if (jump_axis_ >= 0)
+    return read_jump(body, time);
   if (body.force())
     r.load += sign_ * body.force()->reaction(load_)[component_];
   if (body.far)
     r.load += sign_ * body.far->reaction(load_)[component_];
   r.stress = r.load / area_;
-  r.displacement =
-      is_named_ ? sign_ * (load_displacement(body, load_, time) -
-                           (opposite_ < 0 ? 0 : load_displacement(body, opposite_, time)))
-                : side_displacement(body, 1, time) - side_displacement(body, 0, time);
+  r.displacement = is_named_
+                       ? sign_ * (load_displacement(body, load_, time) -
+                                  (opposite_ < 0 ? 0 : load_displacement(body, opposite_, time)))
+                       : side_displacement(body, 1, time) - side_displacement(body, 0, time);
   r.strain = r.displacement / size_;
   return r;
 }

@@ -14,7 +14,8 @@ struct Reading
 };
 
 /// Reads the first load that has a component: its largest one is the axis of the test. Without such
-/// a load it reads the first tool that is driven, its force and its way.
+/// a load it reads the first pressure on a side of the box, or else the first tool that is driven,
+/// its force and its way.
 /// On a side with a name of its own the axis is that of the component, the area that of the box
 /// around the specimen across it, and the displacement is against the load in the other half.
 /// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
@@ -40,9 +41,12 @@ private:
   double load_displacement(const CoupledBody<dim> &body, int load, double time) const;
 
   void look_for_tool(const CoupledBody<dim> &body);
+  void look_for_jump(const CoupledBody<dim> &body);
+  Reading read_jump(const CoupledBody<dim> &body, double time) const;
 
-  int load_ = -1; // index of the load that is read
-  int tool_ = -1; // likewise
+  int load_ = -1;      // index of the load that is read
+  int tool_ = -1;      // likewise
+  int jump_axis_ = -1; // the load is a jump across the sides that are joined along it
   int component_ = 0, axis_ = 0;
   bool is_named_ = false; // a side with a name of its own: the axis is that of its component
   int opposite_ = -1;     // then: the load in the other half of the body, -1: it rests

@@ -6,6 +6,7 @@
 #include "src/verification/cases/closed_crack.h"
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
+#include "src/verification/cases/law.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -48,8 +49,10 @@ std::vector<Case> all_cases()
   add(lab_hertz_cases());
   add(lab_shapes_cases());
   add(lab_kirsch_cases());
+  add(lab_periodic_cases());
   add(lab_oblique_cases());
   add(lab_ring_cases());
+  add(law_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -83,6 +83,28 @@ public:
   std::vector<double> principal_tensions(const particles::Particles<dim> &p,
                                          double whole_face) const
   {
+    std::vector<double> s(packing_.faces.size(), 0.);
+    for_each_stressed_face(p, [&](std::size_t index, const auto &stress, const Vector<dim> &own,
+                                  const Vector<dim> &t) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> solver(stress);
+      Vector<dim> e = solver.eigenvectors().col(dim - 1);
+      if (e.dot(own) < 0)
+        e = -e;
+      if (t.dot(own) <= 0 || own.dot(e) < (dim == 2 ? 0.577 : 0.4))
+        return;
+      const double ratio = whole_face > 0 ? packing_.faces[index].area / whole_face : 1;
+      const double size =
+          dim == 2 ? std::pow(std::max(ratio, 0.7), 0.3) : std::pow(std::max(ratio, 0.5), 0.15);
+      s[index] = size * t.dot(e) / own.dot(e);
+    });
+    return s;
+  }
+
+  /// visit(index, mean stress of both particles, normal, traction) in Pa of every bonded face,
+  /// after compute() in this state. Bonds alone stress the particles.
+  template <typename Visit>
+  void for_each_stressed_face(const particles::Particles<dim> &p, Visit &&visit) const
+  {
     const int n = packing_.size();
     std::vector<Matrix> turn, stress(n, Matrix::Zero());
     for (int i = 0; i < n; ++i)
@@ -94,25 +116,11 @@ public:
       stress[f.i] += (m_i + m_i.transpose()) / 2;
       stress[f.j] -= (m_j + m_j.transpose()) / 2;
     });
-    const auto normal = [&](const Face &f) -> Vector<dim> {
-      return ((turn[f.i] + turn[f.j]) * f.normal).normalized();
-    };
-    std::vector<double> s(packing_.faces.size(), 0.);
     for_bonds([&](const Face &f) {
       const std::size_t index = &f - packing_.faces.data();
-      const Vector<dim> &t = traction[index], own = normal(f);
-      const Eigen::SelfAdjointEigenSolver<Matrix> solver((stress[f.i] + stress[f.j]) / 2);
-      Vector<dim> e = solver.eigenvectors().col(dim - 1);
-      if (e.dot(own) < 0)
-        e = -e;
-      if (t.dot(own) <= 0 || own.dot(e) < (dim == 2 ? 0.577 : 0.4))
-        return;
-      const double ratio = whole_face > 0 ? f.area / whole_face : 1;
-      const double size =
-          dim == 2 ? std::pow(std::max(ratio, 0.7), 0.3) : std::pow(std::max(ratio, 0.5), 0.15);
-      s[index] = size * t.dot(e) / own.dot(e);
+      const Vector<dim> normal = ((turn[f.i] + turn[f.j]) * f.normal).normalized();
+      visit(index, Matrix((stress[f.i] + stress[f.j]) / 2), normal, traction[index]);
     });
-    return s;
   }
 
 private:

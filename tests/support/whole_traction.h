@@ -7,7 +7,7 @@ namespace ligament::tests
 {
 /// sqrt(sigma^2 + tau^2) is at most sigma + |tau|; faces may bear more than any principal stress.
 template <int dim>
-struct WholeTraction
+struct WholeTraction : dem::PlainCriterion
 {
   static constexpr const char *name = "whole_traction";
   static constexpr double tangent = 1;

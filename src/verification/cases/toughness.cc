@@ -31,6 +31,7 @@ struct CrackedPlate
   double tip = 0; // spacings by which the crack is longer at either end
   double poissons_ratio = 0.22;
   PlaneMode plane = PlaneMode::strain;
+  dem::FractureLaw::Criterion criterion = dem::FractureLaw::Criterion::maximum_tension;
 };
 
 constexpr double width = 40e-3, height = 100e-3, half_crack = 10e-3, toughness = 0.75e6,
@@ -114,22 +115,21 @@ double peak_load(packings::Packing<2> packing, const dem::DemMaterial &glass,
 /// K_c/K_Ic.
 double relative_toughness(const CrackedPlate &plate)
 {
-  using Criterion = dem::FractureLaw::Criterion;
   const dem::DemMaterial glass{72e9, plate.poissons_ratio, density, plate.plane, 0};
   packings::Packing<2> packing;
   double c = 0;
   if (plate.packing == "random") {
     const auto p = random_parameters(plate);
     packing = packings::make_random_packing<2>(p).packing;
-    c = dem::calibrate_toughness<2>(p, glass, Criterion::maximum_tension);
+    c = dem::calibrate_toughness<2>(p, glass, plate.criterion);
   } else {
     const auto p = lattice_parameters(plate);
     packing = packings::make_lattice_packing<2>(p);
-    c = dem::calibrate_toughness<2>(p.kind, p.orientation, glass, Criterion::maximum_tension);
+    c = dem::calibrate_toughness<2>(p.kind, p.orientation, glass, plate.criterion);
   }
   const double a = half_length(packing);
   const double stress = peak_load(std::move(packing), glass,
-                                  {Criterion::maximum_tension,
+                                  {plate.criterion,
                                    c * toughness / std::sqrt(plate.spacing),
                                    {},
                                    dem::PrincipalTension<2>::whole_face(plate.spacing)}) /
@@ -138,8 +138,10 @@ double relative_toughness(const CrackedPlate &plate)
 }
 
 /// Least, largest, mean and standard deviation over some plates. Of ten random ones that scatter as
-/// they may one lies 2.5 standard deviations off the mean.
-std::vector<Result> spread(const std::string &name, const std::vector<CrackedPlate> &plates)
+/// they may one lies 2.5 standard deviations off the mean. Between criteria, with a short crack,
+/// the bounds are `stated` ones: K_c is up to 4 % smaller then, and prototypes scattered by 5 %.
+std::vector<Result> spread(const std::string &name, const std::vector<CrackedPlate> &plates,
+                           bool stated = false)
 {
   std::vector<double> k;
   for (const auto &plate : plates)
@@ -151,12 +153,13 @@ std::vector<Result> spread(const std::string &name, const std::vector<CrackedPla
   const double n = double(k.size()), mean = sum / n;
   const bool random = std::all_of(plates.begin(), plates.end(),
                                   [](const auto &plate) { return plate.packing == "random"; });
-  const double must = random ? 0.1 : 0.05, aim = random ? 0.05 : 0.02;
+  const bool wide = random || stated;
+  const double must = wide ? 0.1 : 0.05, aim = wide ? 0.05 : 0.02;
   return {{name + "/least", *least, 1 - must, 1 - aim, Result::Bound::at_least},
           {name + "/largest", *largest, 1 + must, 1 + aim},
-          {name + "/off_the_mean", std::abs(mean - 1), 0.03, 0.02},
-          {name + "/standard_deviation", std::sqrt(std::max(squares / n - mean * mean, 0.)), 0.04,
-           0.02}};
+          {name + "/off_the_mean", std::abs(mean - 1), stated ? 0.07 : 0.03, 0.02},
+          {name + "/standard_deviation", std::sqrt(std::max(squares / n - mean * mean, 0.)),
+           stated ? 0.06 : 0.04, 0.02}};
 }
 
 CrackedPlate turned(const std::string &lattice, double degrees, double tip = 0)
@@ -216,11 +219,33 @@ std::vector<CrackedPlate> coarse_plates()
   return plates;
 }
 
+/// The same criterion on turned and random packings, a/d = 10.
+std::vector<CrackedPlate> plates_of(dem::FractureLaw::Criterion criterion)
+{
+  std::vector<CrackedPlate> plates;
+  for (const double degrees : {0, 10, 20, 30})
+    plates.push_back(turned("hexagonal", degrees));
+  for (int seed = 201; seed <= 204; ++seed)
+    plates.push_back(random_plate(seed));
+  for (CrackedPlate &plate : plates) {
+    plate.spacing = 1e-3;
+    plate.criterion = criterion;
+  }
+  return plates;
+}
+
 Case plates_case(const std::string &name, const std::string &text, bool slow,
                  std::function<std::vector<CrackedPlate>()> plates)
 {
   return {name, "K_c over K_Ic of a breaking plate: " + text, slow,
           [=] { return spread(name, plates()); }};
+}
+
+Case criterion_case(const std::string &word, dem::FractureLaw::Criterion criterion)
+{
+  const std::string name = "law_toughness_" + word;
+  return {name, "K_c over K_Ic of breaking plates by " + word + ", a/d = 10", true,
+          [=] { return spread(name, plates_of(criterion), true); }};
 }
 } // namespace
 
@@ -238,6 +263,9 @@ std::vector<Case> toughness_cases()
                   [] { return random_plates(2); }),
       plates_case("toughness_random_5", "random, radii 1 to 5, ten seeds", true,
                   [] { return random_plates(5); }),
+      criterion_case("maximum_tension", dem::FractureLaw::Criterion::maximum_tension),
+      criterion_case("principal_stress", dem::FractureLaw::Criterion::principal_stress),
+      criterion_case("energy", dem::FractureLaw::Criterion::energy),
       plates_case("toughness_poisson", "nu 0.1 to 0.45, plane strain and stress", true,
                   plates_of_poissons_ratios),
   };

@@ -105,7 +105,7 @@ struct Opened
 
   explicit Opened(const Packing<dim> &of) : packing(of)
   {
-    law.energy = 20 * packing.spacing * law.strength * law.strength;
+    law.energy = 20 * packing.spacing * law.strength.value * law.strength.value;
     force = make();
     p = at_rest(packing, material);
     p.global_id = packing.global_id.empty() ? p.global_id : particles::GlobalIds(packing.global_id);
@@ -289,9 +289,9 @@ TYPED_TEST(Cohesive, BalanceOverManyOpeningsAndClosings)
   const DemMaterial material{youngs_modulus, 0.3, density, PlaneMode::strain, 0.5};
   FractureLaw law = softening(30, packing.spacing);
   // What is left goes with the strain: the law is exactly linear for none.
-  law.strength *= 1e-4;
+  law.strength.value *= 1e-4;
   law.energy *= 1e-8;
-  const double reach = 2 * law.energy / law.strength, area = packing.faces[0].area,
+  const double reach = 2 * law.energy / law.strength.value, area = packing.faces[0].area,
                period = packing.spacing / 3000;
   auto loads = draw_apart<dim>(1, period);
   for (int end = 0; end < 2; ++end) {

@@ -154,7 +154,7 @@ TEST_F(RowKernel, RowsOf360000)
                      {fx.data(), fy.data()}, {torque.data()}};
   RowWindow window;
   std::vector<RowRange> exceeded;
-  kernel.forces(a, body.segments, {}, {}, window, exceeded);
+  kernel.forces(a, body.segments, {}, window, exceeded);
   const double shear = 2 * body.material.shear_modulus();
   double error = 0;
   for (int k = 0; k < body.n; ++k) {

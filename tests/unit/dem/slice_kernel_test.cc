@@ -100,7 +100,7 @@ struct SliceKernel : ::testing::Test
     std::vector<int> exceeded;
     slices.load(a, records);
     slices.add_pressures(a, records);
-    slices.forces(a, {}, {}, records, exceeded);
+    slices.forces(a, {}, records, exceeded);
     return p;
   }
 

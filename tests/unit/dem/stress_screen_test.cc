@@ -4,8 +4,8 @@
 #include "dem/principal_tension.h"
 #include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "tests/support/von_mises.h"
 #include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/fracture_laws.h"
 
 #include <numeric>
 #include <random>
@@ -30,24 +30,31 @@ struct Body
   double second_modulus = 0; // of the upper half; 0: one material
   double whole_face = 0;     // share of that of the lattice
   double yield_stress = 0;
+  std::optional<TensorLaw> tensor = {}; // in place of maximum tension
+  double second_poissons_ratio = 0.3;
 
   std::unique_ptr<ManyBodyForce<dim>> force(double strength) const
   {
     std::vector<DemMaterial> all = {material};
     std::vector<int> number;
     FractureLaw law{FractureLaw::Criterion::maximum_tension, strength, {}, whole_face};
+    if (tensor)
+      law = tensor->at(strength);
     if (second_modulus > 0) {
       all.push_back(material);
       all[1].youngs_modulus = second_modulus;
-      law.strengths = {strength, 0.8 * strength * second_modulus / material.youngs_modulus};
+      all[1].poissons_ratio = second_poissons_ratio;
+      law.strengths = {law.strength, law.strength};
+      law.strengths[1].value *= 0.8 * second_modulus / material.youngs_modulus;
       for (const double y : packing.centre[1])
         number.push_back(y > 0.2 * spacing);
     }
-    auto made = std::make_unique<ManyBodyForce<dim>>(packing, Materials(all, number), loads, law);
-    if (yield_stress > 0)
-      made->set_yield(
-          std::make_unique<tests::VonMises>(material.shear_modulus(), yield_stress, 0.1));
-    return made;
+    if (yield_stress > 0) {
+      YieldCurve curve;
+      curve.initial = yield_stress, curve.hardening = 0.1;
+      all[0].plasticity = VonMises{curve};
+    }
+    return std::make_unique<ManyBodyForce<dim>>(packing, Materials(all, number), loads, law);
   }
 
   /// Uniaxial tension about the origin at this strain, and noise of every particle.
@@ -246,6 +253,37 @@ TYPED_TEST(ScreenByStress, TwoMaterials)
       body.second_modulus = modulus;
       expect_same_faces<dim>(body, 0.05, true, 0.6); // most where the two meet
     }
+}
+
+TYPED_TEST(ScreenByStress, CriteriaOfTensors)
+{
+  constexpr int dim = TypeParam::value;
+  for (const bool cracked : {false, true})
+    for (const auto &packing : packings<dim>(cracked))
+      for (const TensorLaw &law : tensor_laws())
+        for (const double noise : {1e-3, 0.05, 0.3}) {
+          Body<dim> body{packing};
+          body.material.friction = cracked ? 0.4 : 0;
+          body.tensor = law;
+          expect_same_faces<dim>(body, noise);
+        }
+}
+
+TYPED_TEST(ScreenByStress, CriteriaOfTensorsInTwoMaterials)
+{
+  constexpr int dim = TypeParam::value;
+  for (const auto &packing : packings<dim>(false))
+    for (const TensorLaw &law : tensor_laws())
+      for (const double nu : {0.3, 0.1}) { // 0.1: another measure, every noted face is looked at
+        Body<dim> body{packing};
+        body.second_modulus = 0.6;
+        body.second_poissons_ratio = nu;
+        body.tensor = law;
+        const bool one_measure = nu == 0.3 || law.plain.criterion == "principal_stress" ||
+                                 law.plain.criterion == "mohr_coulomb" ||
+                                 (dim == 3 && law.plain.criterion != "energy");
+        expect_same_faces<dim>(body, 0.05, one_measure, 0.6);
+      }
 }
 
 TYPED_TEST(ScreenByStress, PlasticStrains)

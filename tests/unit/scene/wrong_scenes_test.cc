@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Corpus, DoubtfulScene, testing::ValuesIn(case_names("do
 // The scenes that the others are made from, as they are and resolved.
 TEST(DoubtfulScenes, SoundOnesAreNotDoubted)
 {
-  for (const std::string base : {"plate.json", "bar.json"}) {
+  for (const std::string base : {"plate.json", "bar.json", "periodic.json"}) {
     const ReadResult result = parse_scene(contents(support + "scenes/" + base), base);
     for (const core::Diagnostic &warning : result.warnings)
       EXPECT_NE(warning.message.find("against the rows"), std::string::npos)
@@ -144,7 +144,7 @@ TEST(WrongScenes, RandomDamageDoesNoHarm)
 {
   std::mt19937 random(1);
   const auto below = [&](std::size_t n) { return random() % n; };
-  for (const std::string base : {"plate.json", "bar.json"}) {
+  for (const std::string base : {"plate.json", "bar.json", "periodic.json"}) {
     const std::string text = contents(support + "scenes/" + base);
     for (int k = 0; k < 1000; ++k) {
       std::string damaged = text;

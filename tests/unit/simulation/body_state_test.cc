@@ -7,7 +7,6 @@
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/regime_control.h"
 #include "tests/support/small_plate.h"
-#include "tests/support/von_mises.h"
 
 #include <cstring>
 
@@ -208,6 +207,23 @@ TEST(BodyState, ASlidingClosedCrackGoesOnToTheLastBit)
                         60, 500, 1);
 }
 
+// Faces break under pressure by strengths that scatter: contacts take over, keep their distances and
+// slips.
+TEST(BodyState, FacesThatFailUnderPressureGoOnToTheLastBit)
+{
+  for (const char *criterion :
+       {R"("mohr_coulomb", "cohesion": 2e-3, "friction_angle": 0.5)",
+        R"("drucker_prager", "compressive_strength": 4e-3)"}) {
+    SCOPED_TRACE(criterion);
+    expect_same_course<2>({"/far_field=none", friction,
+                           std::string(R"(/material/fracture={"criterion": )") + criterion +
+                               R"(, "strength": 2e-3, "weibull": {"modulus": 8, "seed": 3}})",
+                           R"(/loads=[{"boundary": "top", "velocity": [2e-3, -2e-3], "ramp": 50},
+                  {"boundary": "bottom", "velocity": [-2e-3, 2e-3], "ramp": 50}])"},
+                          60, 260, 20);
+  }
+}
+
 // Fast enough that pieces fly and hit others.
 TEST(BodyState, FragmentsThatHitAgainGoOnToTheLastBit)
 {
@@ -252,18 +268,13 @@ TEST(BodyState, RegionsAtRestGoOnToTheLastBit)
 // bonds break in them.
 TEST(BodyState, PlasticFlowGoesOnToTheLastBit)
 {
-  const ForceMaker<2> make_plastic = [](const Scene &scene, auto packing, const auto &loads,
-                                        auto &figures, core::Log &log) {
-    auto force = make_many_body_force<2>(scene, std::move(packing), loads, figures, log);
-    auto &many_body = dynamic_cast<dem::ManyBodyForce<2> &>(*force);
-    many_body.set_yield(std::make_unique<tests::VonMises>(0.41, 3e-4, 0.3));
-    return force;
-  };
+  const std::string flows =
+      R"(/material/plasticity={"law": "von_mises", "yield_stress": 3e-4, "hardening": 0.3})";
   for (const char *far : {R"(/far_field={"cell_size": 4.1})", "/far_field=none"}) {
     SCOPED_TRACE(far);
-    const Scene scene = small_scene(torn + std::vector<std::string>{far, friction});
-    expect_same_course<2>(scene, 120, 300, 5, false, make_plastic);
-    Course<2> course(scene, false, make_plastic);
+    const Scene scene = small_scene(torn + std::vector<std::string>{far, friction, flows});
+    expect_same_course<2>(scene, 120, 300, 5, false);
+    Course<2> course(scene, false);
     while (course.time() < 120)
       course.step(false);
     const auto &force = dynamic_cast<dem::ManyBodyForce<2> &>(*course.body().force());

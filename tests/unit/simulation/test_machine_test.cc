@@ -56,6 +56,22 @@ TEST(TestMachine, ReadsAppliedTractionsAndTheMotionOfTheSides)
   }
 }
 
+// Without a load that has components, a pressure on a side of the box.
+TEST(TestMachine, ReadsAPressureAsCompression)
+{
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    SmallBody small(
+        small_scene(kind.overrides +
+                    std::vector<std::string>{R"(/loads=[{"boundary": "top", "pressure": 1e-4}])"}));
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    EXPECT_NEAR(r.load / (24 * 1e-4), -1, 1e-10);
+    EXPECT_NEAR(r.stress / 1e-4, -1, 1e-10);
+  }
+}
+
 // Particles lie inside the sides; a rotation moves those of different depths differently.
 TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
 {
@@ -76,7 +92,8 @@ TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
   }
 }
 
-// The mean over the side, whatever its cells: that of x^2 is W^2/12 but for the chords of the cells.
+// The mean over the side, whatever its cells: that of x^2 is W^2/12 but for the chords of the
+// cells.
 TEST(TestMachine, MeansOverTheAreaOfTheSide)
 {
   SmallBody small(small_scene({"/discrete_zone=none", pulled_ends}));
@@ -86,7 +103,8 @@ TEST(TestMachine, MeansOverTheAreaOfTheSide)
     largest = std::max(largest, h[0]);
   for (int i = 0; i < far.mesh().n_nodes(); ++i)
     far.displacement[1][i] = std::pow(far.mesh().nodes[i][0], 2);
-  EXPECT_NEAR(mean_displacement(small.body, 3, 1), 24 * 24 / 12., largest * largest / 6 * (1 + 1e-12));
+  EXPECT_NEAR(mean_displacement(small.body, 3, 1), 24 * 24 / 12.,
+              largest * largest / 6 * (1 + 1e-12));
   EXPECT_GE(mean_displacement(small.body, 3, 1), 24 * 24 / 12.);
 }
 

@@ -63,6 +63,7 @@ TEST_P(VerifyCase, Holds)
 INSTANTIATE_TEST_SUITE_P(Default, VerifyCase,
                          testing::Values("moduli", "rotation", "patch_band_2d", "patch_ring_2d",
                                          "patch_band_3d", "critical_step", "drift", "drift_3d",
-                                         "decay", "lab_shapes", "lab_kirsch", "lab_ring_short"));
+                                         "decay", "lab_shapes", "lab_kirsch", "lab_periodic",
+                                         "lab_ring_short"));
 } // namespace
 } // namespace ligament::program

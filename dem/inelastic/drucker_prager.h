@@ -1,0 +1,82 @@
+// The return to the surface of Drucker and Prager with Nikolaevskiy's dilatancy, theory.md
+// eq. (D25); compiled once for every instruction set.
+#if defined(LIGAMENT_DEM_DRUCKER_PRAGER_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIGAMENT_DEM_DRUCKER_PRAGER_H
+#undef LIGAMENT_DEM_DRUCKER_PRAGER_H
+#else
+#define LIGAMENT_DEM_DRUCKER_PRAGER_H
+#endif
+
+#include "dem/inelastic/tensor_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+template <int dim, typename D>
+class DruckerPragerReturn
+{
+  using V = hn::Vec<D>;
+  using Tensor = SymmetricTensor<dim, V>;
+
+public:
+  HWY_INLINE DruckerPragerReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
+
+  /// Where the stress is at least half as large as the first one that flows.
+  HWY_INLINE hn::Mask<D> is_near(const Tensor &stress) const
+  {
+    const V reached =
+        hn::MulAdd(hn::Set(d_, law_.friction), mean(d_, stress), shear(deviator(d_, stress)));
+    return hn::Ge(reached, hn::Set(d_, 0.5 * law_.yield));
+  }
+
+  /// The increment of e where `where`; the history follows. Returns where anything flows.
+  HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
+                              Tensor &increment) const
+  {
+    const V friction = hn::Set(d_, law_.friction), shear_modulus = hn::Set(d_, law_.shear);
+    const V middle = mean(d_, stress);
+    const Tensor s = deviator(d_, stress);
+    const V tau = shear(s);
+    const V yield =
+        hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield));
+    const V excess = hn::Sub(hn::MulAdd(friction, middle, tau), yield);
+    const auto flows = hn::And(where, hn::Gt(excess, hn::Zero(d_)));
+    if (hn::AllFalse(d_, flows))
+      return flows;
+    const double stiffness =
+        law_.shear + law_.bulk * law_.dilatancy * law_.friction + law_.hardening;
+    const V cone = hn::Mul(excess, hn::Set(d_, 1 / stiffness));
+    // Past the apex the shear stress would turn round: there it vanishes, and the mean stress is
+    // the largest that the material bears.
+    const auto apex = hn::Gt(hn::Mul(shear_modulus, cone), tau);
+    const V shear_strain = hn::IfThenElse(apex, hn::Div(tau, shear_modulus), cone);
+    V volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
+    if (law_.friction > 0) {
+      const V largest = hn::Div(hn::MulAdd(hn::Set(d_, law_.hardening), shear_strain, yield),
+                                friction);
+      volume = hn::IfThenElse(
+          apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)), volume);
+    }
+    const V along = hn::IfThenElseZero(
+        flows, hn::Div(hn::Mul(hn::Set(d_, 0.5), shear_strain),
+                       hn::Max(tau, hn::Set(d_, 1e-300))));
+    const V third = hn::IfThenElseZero(flows, hn::Mul(hn::Set(d_, 1 / 3.), volume));
+    history = hn::Add(history, hn::IfThenElseZero(flows, shear_strain));
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      increment.c[c] =
+          c < 3 ? hn::MulAdd(along, s.c[c], third) : hn::Mul(along, s.c[c]);
+    return flows;
+  }
+
+private:
+  HWY_INLINE V shear(const Tensor &s) const
+  {
+    return hn::Sqrt(hn::Mul(hn::Set(d_, 0.5), double_dot(s)));
+  }
+
+  D d_;
+  const FlowLaw &law_;
+};
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

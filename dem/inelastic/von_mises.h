@@ -1,0 +1,95 @@
+// The return to von Mises' yield surface, theory.md eq. (D24a); compiled once for every instruction
+// set.
+#if defined(LIGAMENT_DEM_VON_MISES_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIGAMENT_DEM_VON_MISES_H
+#undef LIGAMENT_DEM_VON_MISES_H
+#else
+#define LIGAMENT_DEM_VON_MISES_H
+#endif
+
+#include "dem/inelastic/tensor_lanes.h"
+
+#include <hwy/contrib/math/math-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::dem::HWY_NAMESPACE
+{
+template <int dim, typename D>
+class VonMisesReturn
+{
+  using V = hn::Vec<D>;
+  using Tensor = SymmetricTensor<dim, V>;
+
+public:
+  HWY_INLINE VonMisesReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
+
+  /// Where the stress is at least half as large as the first one that flows.
+  HWY_INLINE hn::Mask<D> is_near(const Tensor &stress) const
+  {
+    const double half = 0.5 * law_.yield;
+    return hn::Ge(double_dot(deviator(d_, stress)), hn::Set(d_, half * half / 1.5));
+  }
+
+  /// The increment of e where `where`; the history follows. Returns where anything flows.
+  HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
+                              Tensor &increment) const
+  {
+    const V zero = hn::Zero(d_);
+    const Tensor s = deviator(d_, stress);
+    const V equivalent = hn::Sqrt(hn::Mul(hn::Set(d_, 1.5), double_dot(s)));
+    V yield, slope;
+    find_yield(history, yield, slope);
+    const auto flows = hn::And(where, hn::Gt(equivalent, yield));
+    if (hn::AllFalse(d_, flows))
+      return flows;
+    const V three_shear = hn::Set(d_, 3 * law_.shear);
+    V strain = hn::Div(hn::Sub(equivalent, yield), hn::Add(three_shear, slope));
+    if (law_.n_points > 0 || law_.saturation > 0)
+      for (int step = 0; step < 3; ++step) { // Newton's
+        find_yield(hn::Add(history, strain), yield, slope);
+        const V excess = hn::Sub(hn::NegMulAdd(three_shear, strain, equivalent), yield);
+        strain = hn::Max(zero, hn::Add(strain, hn::Div(excess, hn::Add(three_shear, slope))));
+      }
+    strain = hn::IfThenElseZero(flows, strain);
+    history = hn::Add(history, strain);
+    const V along = hn::IfThenElseZero(
+        flows, hn::Div(hn::Mul(hn::Set(d_, 1.5), strain), equivalent));
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      increment.c[c] = hn::Mul(along, s.c[c]);
+    return flows;
+  }
+
+private:
+  HWY_INLINE void find_yield(V p, V &yield, V &slope) const
+  {
+    if (law_.n_points > 0) {
+      yield = hn::Set(d_, law_.stress[0]);
+      slope = hn::Zero(d_);
+      for (int k = 0; k < law_.n_points; ++k) {
+        const double rise = k + 1 < law_.n_points ? (law_.stress[k + 1] - law_.stress[k]) /
+                                                        (law_.strain[k + 1] - law_.strain[k])
+                                                  : 0;
+        const auto behind = hn::Ge(p, hn::Set(d_, law_.strain[k]));
+        const V value = hn::MulAdd(hn::Set(d_, rise), hn::Sub(p, hn::Set(d_, law_.strain[k])),
+                                   hn::Set(d_, law_.stress[k]));
+        yield = hn::IfThenElse(behind, value, yield);
+        slope = hn::IfThenElse(behind, hn::Set(d_, rise), slope);
+      }
+      return;
+    }
+    yield = hn::MulAdd(hn::Set(d_, law_.hardening), p, hn::Set(d_, law_.yield));
+    slope = hn::Set(d_, law_.hardening);
+    if (law_.saturation > 0) {
+      const V left = hn::Mul(hn::Set(d_, law_.saturation),
+                             hn::Exp(d_, hn::Mul(hn::Set(d_, -law_.rate), p)));
+      yield = hn::Add(yield, hn::Sub(hn::Set(d_, law_.saturation), left));
+      slope = hn::MulAdd(hn::Set(d_, law_.rate), left, slope);
+    }
+  }
+
+  D d_;
+  const FlowLaw &law_;
+};
+} // namespace ligament::dem::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,505 @@
+#include "dem/parts/inelastic_strains.h"
+
+#include "core/exact_sum.h"
+#include "dem/bond_law.h"
+
+#include <algorithm>
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <string>
+
+namespace ligament::dem
+{
+namespace
+{
+FlowLaw flow_law_of(const DemMaterial &material)
+{
+  FlowLaw law;
+  law.shear = material.shear_modulus();
+  law.bulk = material.youngs_modulus / (3 * (1 - 2 * material.poissons_ratio));
+  if (const auto *mises = std::get_if<VonMises>(&material.plasticity)) {
+    const YieldCurve &curve = mises->yield;
+    law.kind = FlowLaw::Kind::von_mises;
+    law.yield = curve.at(0);
+    law.hardening = curve.hardening;
+    law.saturation = curve.saturation;
+    law.rate = curve.rate;
+    law.n_points = int(curve.strain.size());
+  }
+  if (const auto *prager = std::get_if<DruckerPrager>(&material.plasticity)) {
+    law.kind = FlowLaw::Kind::drucker_prager;
+    law.yield = prager->cohesion;
+    law.hardening = prager->hardening;
+    law.friction = prager->friction;
+    law.dilatancy = prager->dilatancy;
+  }
+  return law;
+}
+
+/// An elastic law, for particles of any material that must not flow.
+constexpr int never_flows = 255;
+} // namespace
+
+template <int dim>
+InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
+                                        const BondedBody<dim> &body,
+                                        std::vector<WallFace<dim>> walls,
+                                        const std::vector<int> &loaded)
+    : body_(&body), walls_(std::move(walls))
+{
+  const auto &materials = body.materials().all();
+  if (std::none_of(materials.begin(), materials.end(),
+                   [](const DemMaterial &m) { return flows(m.plasticity); }))
+    return;
+  core::require(materials.size() < never_flows, "a body that flows has too many materials");
+  for (const DemMaterial &m : materials) {
+    check(m.plasticity);
+    parameters_.push_back(m.plasticity);
+    laws_.push_back(flow_law_of(m));
+  }
+  for (std::size_t k = 0; k < laws_.size(); ++k)
+    if (const auto *mises = std::get_if<VonMises>(&parameters_[k])) {
+      laws_[k].strain = mises->yield.strain.data();
+      laws_[k].stress = mises->yield.stress.data();
+    }
+  const int n = body.n_particles();
+  if (materials.size() > 1)
+    for (int i = 0; i < n; ++i)
+      law_of_.push_back(std::uint8_t(body.materials().number(i)));
+  // Streams don't lie a multiple of 4096 bytes apart, lest they share sets of the cache.
+  const long stride = (long(n) + most_lanes + 63) / 64 * 64 + 24;
+  numbers_ = core::LargeArray(Streams::n_streams * stride, false);
+  streams_ = {numbers_.data(), stride};
+  age_.assign((n + inelastic_block - 1) / inelastic_block, untouched);
+  if (body.bonds().n_directions() > 0) {
+    const auto &d = body.bonds().directions()[0];
+    whole_volume_ = body.bonds().n_directions() * d.area * d.distance / dim;
+  }
+  open_.assign(n, -1);
+  std::vector<char> has_load(n, 0);
+  for (const int i : loaded)
+    has_load[i] = 1;
+  for (int i = 0; i < n; ++i) {
+    auto cell = find_cell(i, packing.volume[i]);
+    if (!cell && has_load[i]) {
+      cell.emplace();
+      cell->number[OpenCell<dim>::volume] = packing.volume[i];
+      for (int row = 0; row < dim; ++row)
+        for (int a = 0; a < dim; ++a)
+          cell->number[OpenCell<dim>::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, a)] =
+              1;
+    }
+    if (cell) {
+      open_[i] = int(cells_.size());
+      cells_.push_back(*cell);
+    }
+  }
+  std::vector<int> loose;
+  for (int i = 0; i < n; ++i)
+    if (open_[i] >= 0 && !is_held(i, packing.volume[i]))
+      loose.push_back(i);
+  keep_elastic(loose);
+  find_neighbours();
+}
+
+template <int dim>
+void InelasticStrains<dim>::find_neighbours()
+{
+  neighbours_.resize(age_.size());
+  const auto join = [&](int i, int j) {
+    const int a = i / inelastic_block, b = j / inelastic_block;
+    for (const auto &[of, other] : {std::pair(a, b), std::pair(b, a)})
+      if (a != b && std::find(neighbours_[of].begin(), neighbours_[of].end(), other) ==
+                        neighbours_[of].end())
+        neighbours_[of].push_back(other);
+  };
+  const auto &bonds = body_->bonds();
+  for (const RowSegment &s : bonds.segments())
+    for (int k = 0; k < bonds.n_directions(); ++k)
+      for (int i = s.begin; i < s.end; ++i)
+        if (bonds.mask()[i] >> k & 1)
+          join(i, i + s.forward[k]);
+  bonds.for_each_irregular([&](BondId, const Bond<dim> &b) { join(b.i, b.j); });
+}
+
+template <int dim>
+bool InelasticStrains<dim>::is_held(int i, double volume) const
+{
+  Matrix held = Matrix::Zero();
+  body_->bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    const double q_i = b.lever_i.dot(b.normal), q_j = -b.lever_j.dot(b.normal);
+    const double q = i == b.i ? q_i : q_j, other = i == b.i ? q_j : q_i;
+    const Vector<dim> n = i == b.i ? b.normal : Vector<dim>(-b.normal),
+                      side = b.lever_i - q_i * b.normal;
+    const Matrix mixed = n * side.transpose();
+    held += b.area / b.distance *
+            (q * other * n * n.transpose() + 0.5 * (other - q) * (mixed + mixed.transpose()) -
+             side * side.transpose());
+  });
+  for (const auto &wall : walls_)
+    if (wall.i == i)
+      held += 0.5 * wall.area * wall.q * wall.normal * wall.normal.transpose();
+  constexpr double least = 0.1; // 1/2 in a whole cell
+  return Eigen::SelfAdjointEigenSolver<Matrix>(held, Eigen::EigenvaluesOnly).eigenvalues()[0] >=
+         least * volume;
+}
+
+template <int dim>
+auto InelasticStrains<dim>::moment(const Bond<dim> &b, int i) -> Matrix
+{
+  const Matrix m = b.area * (i == b.i ? Matrix(b.lever_i * b.normal.transpose())
+                                      : Matrix(-b.lever_j * b.normal.transpose()));
+  return 0.5 * (m + m.transpose());
+}
+
+template <int dim>
+std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volume) const
+{
+  using Cell = OpenCell<dim>;
+  const auto &bonds = body_->bonds();
+  if (bonds.n_directions() > 0 &&
+      bonds.mask()[i] == (std::uint32_t(1) << 2 * bonds.n_directions()) - 1)
+    return std::nullopt;
+  Matrix of_bonds = Matrix::Zero();
+  bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { of_bonds += moment(b, i); });
+  std::array<Matrix, dim> rows;
+  rows.fill(of_bonds / volume);
+  bool has_wall = false;
+  for (const auto &wall : walls_)
+    if (wall.i == i)
+      for (int c = 0; c < dim; ++c)
+        if (wall.prescribed[c] != 0) {
+          has_wall = true;
+          rows[c] += wall.area * wall.q / volume * wall.normal * wall.normal.transpose();
+        }
+  constexpr double round_off = 1e-9;
+  if (bonds.n_directions() == 0 && !has_wall && (rows[0] - Matrix::Identity()).norm() < round_off)
+    return std::nullopt;
+  Cell cell;
+  cell.number[Cell::volume] = volume;
+  for (int row = 0; row < dim; ++row)
+    for (int a = 0; a < dim; ++a)
+      for (int b = a; b < dim; ++b)
+        cell.number[Cell::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, b)] =
+            rows[row](a, b);
+  return cell;
+}
+
+template <int dim>
+void InelasticStrains<dim>::set_cell(int i, double volume)
+{
+  const auto cell = find_cell(i, volume);
+  core::require(cell.has_value(), "a cell that lost a face is open");
+  if (open_[i] < 0) {
+    open_[i] = int(cells_.size());
+    cells_.emplace_back();
+  }
+  // What this evaluation has found of its strain stays.
+  std::copy(cell->number + OpenCell<dim>::volume, cell->number + OpenCell<dim>::size,
+            cells_[open_[i]].number + OpenCell<dim>::volume);
+}
+
+template <int dim>
+bool InelasticStrains<dim>::has_begun() const
+{
+  return std::any_of(age_.begin(), age_.end(), [](std::uint8_t a) { return a != untouched; });
+}
+
+template <int dim>
+void InelasticStrains<dim>::keep_elastic(const std::vector<int> &particles)
+{
+  if (!has_law() || particles.empty())
+    return;
+  if (law_of_.empty())
+    law_of_.assign(body_->n_particles(), 0);
+  // One elastic law per material: the stiffness is still the material's.
+  const int n = int(parameters_.size());
+  if (int(laws_.size()) == n)
+    for (int k = 0; k < n; ++k) {
+      laws_.push_back(laws_[k]);
+      laws_.back().kind = FlowLaw::Kind::elastic;
+    }
+  for (const int i : particles)
+    if (law_of_[i] < n)
+      law_of_[i] = std::uint8_t(law_of_[i] + n);
+}
+
+template <int dim>
+InelasticSweep<dim> InelasticStrains<dim>::begin(bool may_flow, double time) const
+{
+  for (auto &cell : cells_)
+    std::fill(cell.number, cell.number + OpenCell<dim>::volume, 0.);
+  may_flow = may_flow && flowed_at_ != time;
+  if (may_flow) {
+    flowed_at_ = time;
+    // Neighbours begin, too, so that a front finds them with what their stress was before.
+    for (std::size_t b = 0; b < age_.size(); ++b)
+      if (age_[b] == begun)
+        for (const int other : neighbours_[b])
+          if (age_[other] == untouched)
+            age_[other] = coming;
+    for (auto &age : age_)
+      if (age == coming)
+        age = stored;
+      else if (age != untouched && age != lasting)
+        ++age;
+  }
+  return {streams_,
+          age_.data(),
+          int(age_.size()),
+          law_of_.empty() ? nullptr : law_of_.data(),
+          laws_.data(),
+          open_.data(),
+          cells_.data(),
+          body_->volumes().empty() ? nullptr : body_->volumes().data(),
+          whole_volume_,
+          whole_volume_ > 0 ? 1 / whole_volume_ : 0,
+          body_->is_plane_strain(),
+          may_flow};
+}
+
+template <int dim>
+void InelasticStrains<dim>::add_strain(const InelasticSweep<dim> &sweep, int i,
+                                       const Matrix &strain)
+{
+  double *const to = sweep.cells[sweep.open[i]].number + OpenCell<dim>::strain;
+  for (int k = 0; k < dim * dim; ++k)
+    to[k] += strain(k / dim, k % dim);
+}
+
+template <int dim>
+auto InelasticStrains<dim>::tensor(int i) const -> Tensor
+{
+  Tensor t = Tensor::Zero();
+  if (is_strained(i))
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      t[c] = streams_.stream(Streams::strain + c)[i];
+  return t;
+}
+
+template <int dim>
+auto InelasticStrains<dim>::strain(int i) const -> Matrix
+{
+  const Tensor t = tensor(i);
+  Matrix m;
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      m(a, b) = t[tensor_place<dim>(a, b)];
+  return m;
+}
+
+template <int dim>
+double InelasticStrains<dim>::history(int i) const
+{
+  return is_strained(i) ? streams_.stream(Streams::history)[i] : 0;
+}
+
+template <int dim>
+void InelasticStrains<dim>::set_strain(int i, const Tensor &strain)
+{
+  for (int c = 0; c < n_tensor<dim>; ++c)
+    streams_.stream(Streams::strain + c)[i] = strain[c];
+  std::uint8_t &age = age_[i / inelastic_block];
+  age = std::max(age, std::uint8_t(begun));
+}
+
+namespace
+{
+template <int dim>
+Vector<dim> turned(const Turn<dim> &turn, const Vector<dim> &a)
+{
+  return a + turn.change(a);
+}
+} // namespace
+
+template <int dim>
+BondMotion<dim> InelasticStrains<dim>::motion(const Bond<dim> &b, const Particles &p,
+                                              const Turn<dim> &turn_i,
+                                              const Turn<dim> &turn_j) const
+{
+  BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
+  if (is_strained(b.i))
+    m.elastic -= turned<dim>(turn_i, strain(b.i) * b.lever_i);
+  if (is_strained(b.j))
+    m.elastic += turned<dim>(turn_j, strain(b.j) * b.lever_j);
+  return m;
+}
+
+template <int dim>
+double InelasticStrains<dim>::flowed_volume(const Bond<dim> &b, int i) const
+{
+  return is_strained(i) ? moment(b, i).cwiseProduct(strain(i)).sum() : 0;
+}
+
+// Of both sides, (D20b): a bond's share of -2G V e:E + G V e:(e M).
+template <int dim>
+double InelasticStrains<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
+{
+  double sum = 0;
+  if (!is_strained(b.i) && !is_strained(b.j))
+    return sum;
+  const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
+  const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
+  const double shear = law_of(b).shear;
+  for (const int i : {b.i, b.j}) {
+    const Matrix e = strain(i);
+    const Vector<dim> stretch = i == b.i ? turned<dim>(turn_i, e * b.lever_i)
+                                         : Vector<dim>(-turned<dim>(turn_j, e * b.lever_j));
+    sum += b.shear_i * (e * e).cwiseProduct(moment(b, i)).sum() - shear * m.du.dot(stretch);
+  }
+  return sum;
+}
+
+template <int dim>
+Bond<dim> InelasticStrains<dim>::stretched(const Bond<dim> &b) const
+{
+  Bond<dim> now = b;
+  if (is_strained(b.i))
+    now.lever_i += strain(b.i) * b.lever_i;
+  if (is_strained(b.j))
+    now.lever_j += strain(b.j) * b.lever_j;
+  now.distance += b.normal.dot((now.lever_i - b.lever_i) - (now.lever_j - b.lever_j));
+  return now;
+}
+
+template <int dim>
+void InelasticStrains<dim>::add_force_on(int i, const Particles &p, const Evaluation<dim> &e,
+                                         Wrench<dim> &wrench) const
+{
+  if (!has_law())
+    return;
+  e.body.bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    if (!is_strained(b.i) && !is_strained(b.j))
+      return;
+    const BondMotion<dim> m = motion(b, p, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
+    const bool first = b.i == i;
+    const double shear = law_of(b).shear, sign = first ? 1 : -1;
+    const Vector<dim> change = sign * shear * (m.elastic - m.du);
+    const Vector<dim> stretch =
+        turned<dim>(Turn<dim>::of(p, i), strain(i) * (first ? b.lever_i : b.lever_j));
+    wrench.force += change;
+    wrench.torque += cross(first ? m.a_i : m.a_j, change) +
+                     cross(stretch, Vector<dim>(sign * shear * m.du));
+  });
+}
+
+template <int dim>
+void InelasticStrains<dim>::remove(const BondId &, const Bond<dim> &b, const Particles &p)
+{
+  if (!has_law())
+    return;
+  for (const int i : {b.i, b.j}) {
+    set_cell(i, p.volume[i]);
+    if (!is_held(i, p.volume[i]))
+      keep_elastic({i});
+  }
+}
+
+template <int dim>
+void InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
+                                        double before, double after)
+{
+  if (!is_strained(i))
+    return;
+  const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
+  const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
+  const bool first = b.i == i;
+  const Turn<dim> back = (first ? turn_i : turn_j).inverse();
+  const Vector<dim> du = first ? m.du : Vector<dim>(-m.du), own = du + back.change(du);
+  const double volume = p.volume[i], twice_shear = 2 * laws_[law_number(i)].shear;
+  const Matrix e = strain(i), lost = moment(b, i) / volume;
+  const Matrix x = b.area / b.distance * own * (first ? b.lever_i : b.lever_j).transpose();
+  Matrix rest = Matrix::Zero(); // M without the face
+  const double *const of = cells_[open_[i]].number + OpenCell<dim>::moment;
+  for (int r = 0; r < dim; ++r)
+    for (int c = 0; c < dim; ++c)
+      rest(r, c) = of[r * n_in_plane<dim> + in_plane_place<dim>(r, c)];
+  const Matrix change = twice_shear * (e * lost - x / volume) + after * rest -
+                        before * (rest + lost);
+  for (int r = 0; r < dim; ++r)
+    for (int c = r; c < dim; ++c)
+      streams_.stream(Streams::stress + tensor_place<dim>(r, c))[i] +=
+          0.5 * (change(r, c) + change(c, r));
+  if (body_->is_plane_strain())
+    streams_.stream(Streams::stress + 2)[i] += after - before;
+}
+
+template <int dim>
+double InelasticStrains<dim>::dissipation() const
+{
+  if (!has_begun())
+    return 0;
+  const double *const taken = streams_.stream(Streams::taken);
+  core::ExactSum sum;
+  for (int i = 0; i < body_->n_particles(); ++i)
+    if (is_strained(i) && taken[i] != 0)
+      sum.add(taken[i]);
+  return sum.value();
+}
+
+template <int dim>
+double InelasticStrains<dim>::stored_energy() const
+{
+  core::ExactSum sum;
+  if (!has_begun())
+    return 0;
+  for (int i = 0; i < body_->n_particles(); ++i)
+    if (const double h = history(i); h != 0) {
+      const int law = law_number(i) % int(parameters_.size());
+      const double volume = open_[i] >= 0 ? cells_[open_[i]].number[OpenCell<dim>::volume]
+                            : body_->volumes().empty() ? whole_volume_
+                                                       : body_->volumes()[i];
+      sum.add(volume * dem::stored_energy(parameters_[law], h));
+    }
+  return sum.value();
+}
+
+template <int dim>
+void InelasticStrains<dim>::save(core::State &state, const core::Names &names) const
+{
+  if (!has_law())
+    return;
+  std::vector<std::int64_t> keys, ages;
+  std::vector<std::vector<double>> values(Streams::n_streams);
+  for (const int i : names.ascending())
+    if (is_strained(i)) {
+      keys.push_back(names.name(i));
+      ages.push_back(age_[i / inelastic_block]);
+      for (int k = 0; k < Streams::n_streams; ++k)
+        values[k].push_back(streams_.stream(k)[i]);
+    }
+  core::Table table(std::move(keys));
+  table.add("age", ages);
+  for (int k = 0; k < Streams::n_streams; ++k)
+    table.add("number_" + std::to_string(k), values[k]);
+  state["inelastic"] = std::move(table);
+  core::save_value(state, "flow", "flowed_at", flowed_at_.value_or(std::nan("")));
+}
+
+template <int dim>
+void InelasticStrains<dim>::load(const core::State &state, const core::Names &names,
+                                 const Particles &)
+{
+  if (!has_law())
+    return;
+  const core::Table &table = core::table(state, "inelastic");
+  const auto ages = table.integers("age");
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    if (const int i = names.index(table.keys()[r]); i >= 0) {
+      std::uint8_t &age = age_[i / inelastic_block];
+      age = std::max(age, std::uint8_t(ages[r]));
+    }
+  for (int k = 0; k < Streams::n_streams; ++k) {
+    const auto values = table.reals("number_" + std::to_string(k));
+    for (std::size_t r = 0; r < table.n_rows(); ++r)
+      if (const int i = names.index(table.keys()[r]); i >= 0)
+        streams_.stream(k)[i] = values[r];
+  }
+  const double time = core::load_real(state, "flow", "flowed_at");
+  flowed_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
+}
+
+template class InelasticStrains<2>;
+template class InelasticStrains<3>;
+} // namespace ligament::dem

@@ -1,0 +1,102 @@
+// Strains of particles that no stress answers, theory.md section 1.10: what they change in the
+// force, beside the kernels in which they grow.
+#pragma once
+
+#include "core/large_array.h"
+#include "dem/parts/force_part.h"
+
+#include <optional>
+
+namespace ligament::dem
+{
+/// Of bodies with a material that flows; of others nothing here costs anything.
+template <int dim>
+class InelasticStrains : public ForcePart<dim>
+{
+public:
+  using Particles = particles::Particles<dim>;
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  using Tensor = Eigen::Matrix<double, n_tensor<dim>, 1>; // as n_tensor has it
+
+  InelasticStrains(const packings::Packing<dim> &packing, const BondedBody<dim> &body,
+                   std::vector<WallFace<dim>> walls, const std::vector<int> &loaded);
+
+  bool has_law() const { return !laws_.empty(); }
+  /// Whether any particle has had half of the stress under which it flows.
+  bool has_begun() const;
+
+  /// These never flow, whatever their material.
+  void keep_elastic(const std::vector<int> &particles);
+
+  /// At the begin of an evaluation: open cells have no strains yet. At a new time particles may
+  /// flow, once.
+  InelasticSweep<dim> begin(bool may_flow, double time) const;
+
+  /// What the side of the particle adds to the strain of its cell, in m^dim and its own axes.
+  static void add_strain(const InelasticSweep<dim> &sweep, int i, const Matrix &strain);
+
+  /// e of a particle, in its own axes: all of it, and of the axes of the body.
+  Tensor tensor(int i) const;
+  Matrix strain(int i) const;
+  bool is_strained(int i) const { return has_law() && age_[i / inelastic_block] != untouched; }
+  /// The law's number of a particle: accumulated plastic strain.
+  double history(int i) const;
+  void set_strain(int i, const Tensor &strain);
+
+  /// Of a bond, its elastic part without what the strains take, eq. (D22).
+  BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles, const Turn<dim> &turn_i,
+                         const Turn<dim> &turn_j) const;
+  /// Share of a bond in V M : e of its particle i, in m^3.
+  double flowed_volume(const Bond<dim> &bond, int i) const;
+  /// What strains change in the energy of a bond beside the pressures', in J.
+  double bond_energy(const Bond<dim> &bond, const Particles &particles) const;
+  /// The face as it is now, its levers stretched.
+  Bond<dim> stretched(const Bond<dim> &bond) const;
+
+  std::vector<int> particles() const override { return {}; }
+  void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
+                    Wrench<dim> &wrench) const override;
+  void add_energies(const Particles &, Evaluation<dim> &, std::vector<double> &) const override {}
+  void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
+  /// After it, with the pressures of particle i before and after: its stress is that without the
+  /// face.
+  void forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
+                   double after);
+
+  /// Energy in J that flow took, and the part of it that hardening stores.
+  double dissipation() const;
+  double stored_energy() const;
+
+  void save(core::State &state, const core::Names &names) const override;
+  void load(const core::State &state, const core::Names &names,
+            const Particles &particles) override;
+
+private:
+  using Streams = InelasticStreams<dim>;
+
+  int law_number(int i) const { return law_of_.empty() ? 0 : law_of_[i]; }
+  /// Of the particle, V M of its bonds and walls; null: a whole cell.
+  std::optional<OpenCell<dim>> find_cell(int i, double volume) const;
+  void set_cell(int i, double volume);
+  /// Whether the faces of a particle hold it so that flow gives way to the stress, eq. (D22b).
+  bool is_held(int i, double volume) const;
+  /// Blocks that share a bond.
+  void find_neighbours();
+  /// S a (x) n of a bond as its particle i sees it, symmetric, m^dim.
+  static Matrix moment(const Bond<dim> &bond, int i);
+
+  const BondedBody<dim> *body_;
+  std::vector<WallFace<dim>> walls_;
+  std::vector<FlowLaw> laws_;
+  std::vector<Plasticity> parameters_;   // of the laws, whose tables they hold
+  std::vector<std::uint8_t> law_of_;     // of the particles; empty: all 0
+  mutable core::LargeArray numbers_;
+  Streams streams_;
+  mutable std::vector<std::uint8_t> age_; // of the blocks
+  std::vector<std::vector<int>> neighbours_; // of the blocks
+  std::vector<int> open_;                 // of the particles
+  mutable std::vector<OpenCell<dim>> cells_;
+  double whole_volume_ = 0;
+  mutable std::optional<double> flowed_at_; // s
+};
+} // namespace ligament::dem

@@ -1,0 +1,107 @@
+#include "src/scene/check_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ligament::program
+{
+namespace
+{
+void check_law(const PlasticityParameters &p, const std::string &section, Findings &f)
+{
+  const bool mises = p.law == PlasticityLaw::von_mises;
+  const auto of_other = [&](const std::vector<std::string> &keys) {
+    for (const std::string &key : keys)
+      if (f.given(section + "/" + key))
+        f.error(section + "/" + key,
+                fmt::format("\"{}\" in {} is none of the law's", key, section),
+                fmt::format("the law is \"{}\"", word_of(p.law)), "remove it, or change the law");
+  };
+  if (!mises) {
+    of_other({"yield_stress", "saturation", "saturation_rate", "curve"});
+    for (const char *key : {"cohesion", "friction_angle"})
+      if (!f.given(section + "/" + key))
+        f.error(section + "/law", fmt::format("there is no \"{}\" in {}", key, section),
+                "\"drucker_prager\" needs it", "add it");
+    if (f.sound({section + "/dilatancy_angle", section + "/friction_angle"}) && p.friction_angle &&
+        p.dilatancy_angle > *p.friction_angle)
+      f.error(section + "/dilatancy_angle",
+              fmt::format("\"dilatancy_angle\" in {} is above the friction angle", section),
+              "flow would give energy instead of taking it", "make it smaller");
+    return;
+  }
+  of_other({"cohesion", "friction_angle", "dilatancy_angle"});
+  const bool has_curve = !p.curve.empty();
+  if (has_curve == p.yield_stress.has_value())
+    f.error(section + (has_curve ? "/yield_stress" : "/law"),
+            fmt::format(has_curve ? "both a \"yield_stress\" and a \"curve\" in {}"
+                                  : "neither a \"yield_stress\" nor a \"curve\" in {}",
+                        section),
+            "one of them says when flow begins", has_curve ? "remove one" : "add one");
+  if (has_curve)
+    for (const char *key : {"hardening", "saturation", "saturation_rate"})
+      if (f.given(section + "/" + key))
+        f.error(section + "/" + key,
+                fmt::format("\"{}\" beside a \"curve\" in {}", key, section),
+                "the curve says how the yield stress grows", "remove it");
+  if (p.saturation.has_value() != p.saturation_rate.has_value())
+    f.error(section + (p.saturation ? "/saturation" : "/saturation_rate"),
+            fmt::format("only one of \"saturation\" and \"saturation_rate\" in {}", section),
+            "Voce's curve needs both", "add the other one");
+  for (std::size_t k = 0; k < p.curve.size(); ++k) {
+    const std::string key = fmt::format("{}/curve/{}", section, k);
+    if (k == 0 ? p.curve[0].strain != 0 : p.curve[k].strain <= p.curve[k - 1].strain)
+      f.error(key + "/strain",
+              fmt::format(k == 0 ? "the \"curve\" in {} does not begin at the strain 0"
+                                 : "the strains of the \"curve\" in {} don't rise",
+                          section),
+              "it gives the yield stress over the plastic strain",
+              k == 0 ? "add a point with the first yield stress" : "put its points in order");
+    if (k > 0 && p.curve[k].stress < p.curve[k - 1].stress)
+      f.error(key + "/stress", fmt::format("the stress of the \"curve\" in {} falls", section),
+              "softening without a length depends on the spacing", "let it be level or rise");
+  }
+}
+} // namespace
+
+void check_plasticity(const Scene &scene, Findings &f)
+{
+  std::vector<std::pair<std::string, const MaterialParameters *>> materials = {
+      {"/material", &scene.material}};
+  for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
+    materials.emplace_back(fmt::format("/inclusions/{}", k), &scene.inclusions[k].material);
+  std::string first;
+  for (const auto &[key, material] : materials)
+    if (material->plasticity && f.sound({key + "/plasticity"})) {
+      check_law(*material->plasticity, key + "/plasticity", f);
+      if (first.empty())
+        first = key + "/plasticity";
+    }
+  if (first.empty())
+    return;
+  const auto refuse = [&](bool is_wrong, const std::string &with, const std::string &reason,
+                          const std::string &remedy) {
+    if (is_wrong)
+      f.error(first, "\"plasticity\" cannot be used with " + with, reason, remedy);
+  };
+  refuse(scene.time.rest_threshold > 0, "a \"rest_threshold\"",
+         "what a threshold holds at rest could flow", "remove the threshold; exact rest is free");
+  refuse(scene.time.loading != Loading::dynamic,
+         fmt::format("\"loading\" \"{}\"", word_of(scene.time.loading)),
+         "equilibria are sought without flow", "choose \"dynamic\"");
+  refuse(scene.far_field &&
+             coupling::is_energy_weighted(scene.coupling.scheme),
+         "an energy-weighted scheme", "it blends energies that flow would change",
+         "choose \"fine_scale_split\"");
+  const auto &base = scene.material;
+  refuse(std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
+                     [&](const Inclusion &i) {
+                       return i.material.youngs_modulus != base.youngs_modulus ||
+                              i.material.poissons_ratio != base.poissons_ratio;
+                     }),
+         "inclusions of other elastic constants",
+         "the pressures of particles at such faces are solved for together, without flow",
+         "give all materials the same Young's modulus and Poisson's ratio");
+}
+} // namespace ligament::program

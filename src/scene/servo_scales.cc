@@ -1,0 +1,27 @@
+#include "src/scene/servo_scales.h"
+
+#include <algorithm>
+
+namespace ligament::program
+{
+double servo_response(const Scene &scene, const ServoParameters &servo)
+{
+  if (servo.response_time > 0)
+    return servo.response_time;
+  const auto &material = scene.material;
+  const double c_s =
+      std::sqrt(material.youngs_modulus / (2 * (1 + material.poissons_ratio)) / material.density);
+  Point size = scene.specimen.size;
+  std::sort(size.begin(), size.begin() + scene.dimension, std::greater<>());
+  constexpr double transits = 4;
+  // Beams swing more slowly than waves cross them, by about their slenderness.
+  return transits * size[0] / c_s * size[0] / size[1];
+}
+
+bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge)
+{
+  return !gauge.name.empty() &&
+         (servo.gauge == gauge.name ||
+          servo.gauge.compare(0, gauge.name.size() + 1, gauge.name + "_") == 0);
+}
+} // namespace ligament::program

@@ -1,0 +1,12 @@
+// What of a servo follows from the scene: time to answer, speed that its course asks for.
+#pragma once
+
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// s, within which the machine answers: as given, or from the travel times of waves.
+double servo_response(const Scene &scene, const ServoParameters &servo);
+/// The column that the servo follows is one of this gauge.
+bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge);
+} // namespace ligament::program
