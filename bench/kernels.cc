@@ -352,7 +352,7 @@ void measure_plastic(const std::string &name, const packings::Packing<dim> &pack
     if (yield_stress > 0) {
       dem::YieldCurve curve;
       curve.initial = yield_stress, curve.hardening = 0.1;
-      material.plasticity = dem::VonMises{curve};
+      material.plasticity = dem::VonMisesFlow{curve};
     }
     dem::FractureLaw fracture;
     if (strength > 0)

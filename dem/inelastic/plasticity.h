@@ -65,14 +65,14 @@ struct YieldCurve
 };
 
 /// Flow at the equivalent stress sqrt(3/2 s:s) = Y(p), along the deviator s.
-struct VonMises
+struct VonMisesFlow
 {
   YieldCurve yield;
 };
 
 /// Flow at friction sigma_m + sqrt(1/2 s:s) = Y, with volume strain (Nikolaevskiy): theory.md
 /// eq. (D25).
-struct DruckerPrager
+struct DruckerPragerFlow
 {
   double cohesion = 0;  // Y, Pa
   double hardening = 0; // of Y over the accumulated plastic shear strain, Pa
@@ -81,7 +81,7 @@ struct DruckerPrager
 };
 
 /// std::monostate: elastic.
-using Plasticity = std::variant<std::monostate, VonMises, DruckerPrager>;
+using Plasticity = std::variant<std::monostate, VonMisesFlow, DruckerPragerFlow>;
 
 inline bool flows(const Plasticity &law)
 {
@@ -99,9 +99,9 @@ double flow_share(const Plasticity &law, const Strain<dim> &stress, double out_o
                   std::pow(zz - mean, 2);
   for (int c = dim == 2 ? 2 : 3; c < n_strains<dim>; ++c)
     square += 2 * stress[c] * stress[c];
-  if (const auto *mises = std::get_if<VonMises>(&law))
+  if (const auto *mises = std::get_if<VonMisesFlow>(&law))
     return std::sqrt(1.5 * square) / mises->yield.at(0);
-  if (const auto *prager = std::get_if<DruckerPrager>(&law))
+  if (const auto *prager = std::get_if<DruckerPragerFlow>(&law))
     return (prager->friction * mean + std::sqrt(0.5 * square)) / prager->cohesion;
   return 0;
 }
@@ -109,9 +109,9 @@ double flow_share(const Plasticity &law, const Strain<dim> &stress, double out_o
 /// Energy in J/m^3 that hardening has stored at this history.
 inline double stored_energy(const Plasticity &law, double history)
 {
-  if (const auto *mises = std::get_if<VonMises>(&law))
+  if (const auto *mises = std::get_if<VonMisesFlow>(&law))
     return mises->yield.stored(history);
-  if (const auto *prager = std::get_if<DruckerPrager>(&law))
+  if (const auto *prager = std::get_if<DruckerPragerFlow>(&law))
     return 0.5 * prager->hardening * history * history;
   return 0;
 }
@@ -119,9 +119,9 @@ inline double stored_energy(const Plasticity &law, double history)
 /// Throws core::InputError when a number lies outside its bounds.
 inline void check(const Plasticity &law)
 {
-  if (const auto *mises = std::get_if<VonMises>(&law))
+  if (const auto *mises = std::get_if<VonMisesFlow>(&law))
     mises->yield.check();
-  if (const auto *prager = std::get_if<DruckerPrager>(&law)) {
+  if (const auto *prager = std::get_if<DruckerPragerFlow>(&law)) {
     core::require(prager->cohesion > 0 && prager->hardening >= 0,
                   "the cohesion must be positive and must not fall");
     core::require(prager->dilatancy >= 0 && prager->dilatancy <= prager->friction,

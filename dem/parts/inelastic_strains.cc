@@ -18,7 +18,7 @@ FlowLaw flow_law_of(const DemMaterial &material)
   FlowLaw law;
   law.shear = material.shear_modulus();
   law.bulk = material.youngs_modulus / (3 * (1 - 2 * material.poissons_ratio));
-  if (const auto *mises = std::get_if<VonMises>(&material.plasticity)) {
+  if (const auto *mises = std::get_if<VonMisesFlow>(&material.plasticity)) {
     const YieldCurve &curve = mises->yield;
     law.kind = FlowLaw::Kind::von_mises;
     law.yield = curve.at(0);
@@ -27,7 +27,7 @@ FlowLaw flow_law_of(const DemMaterial &material)
     law.rate = curve.rate;
     law.n_points = int(curve.strain.size());
   }
-  if (const auto *prager = std::get_if<DruckerPrager>(&material.plasticity)) {
+  if (const auto *prager = std::get_if<DruckerPragerFlow>(&material.plasticity)) {
     law.kind = FlowLaw::Kind::drucker_prager;
     law.yield = prager->cohesion;
     law.hardening = prager->hardening;
@@ -59,7 +59,7 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
     laws_.push_back(flow_law_of(m));
   }
   for (std::size_t k = 0; k < laws_.size(); ++k)
-    if (const auto *mises = std::get_if<VonMises>(&parameters_[k])) {
+    if (const auto *mises = std::get_if<VonMisesFlow>(&parameters_[k])) {
       laws_[k].strain = mises->yield.strain.data();
       laws_[k].stress = mises->yield.stress.data();
     }

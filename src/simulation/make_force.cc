@@ -28,7 +28,7 @@ dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
     return {};
   if (p->law == PlasticityLaw::drucker_prager) {
     const double angle = *p->friction_angle;
-    return dem::DruckerPrager{2 * std::sqrt(3.) * *p->cohesion * std::cos(angle) /
+    return dem::DruckerPragerFlow{2 * std::sqrt(3.) * *p->cohesion * std::cos(angle) /
                                   (3 - std::sin(angle)),
                               p->hardening, cone_slope(angle), cone_slope(p->dilatancy_angle)};
   }
@@ -41,7 +41,7 @@ dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
     curve.strain.push_back(point.strain);
     curve.stress.push_back(point.stress);
   }
-  return dem::VonMises{curve};
+  return dem::VonMisesFlow{curve};
 }
 
 dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)

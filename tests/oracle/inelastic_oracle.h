@@ -39,9 +39,9 @@ public:
       stress[i] = own_stress(s, i);
       if (!is_held(i))
         continue;
-      if (const auto *mises = std::get_if<dem::VonMises>(&law_))
+      if (const auto *mises = std::get_if<dem::VonMisesFlow>(&law_))
         flow(*mises, i);
-      if (const auto *prager = std::get_if<dem::DruckerPrager>(&law_))
+      if (const auto *prager = std::get_if<dem::DruckerPragerFlow>(&law_))
         flow(*prager, i);
       stress[i] = own_stress(s, i);
     }
@@ -145,7 +145,7 @@ private:
     return t;
   }
 
-  void flow(const dem::VonMises &law, int i)
+  void flow(const dem::VonMisesFlow &law, int i)
   {
     const Eigen::Matrix3d s =
         stress[i] - stress[i].trace() / 3 * Eigen::Matrix3d::Identity();
@@ -161,7 +161,7 @@ private:
     history[i] += low;
   }
 
-  void flow(const dem::DruckerPrager &law, int i)
+  void flow(const dem::DruckerPragerFlow &law, int i)
   {
     const double mean = stress[i].trace() / 3;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), s = stress[i] - mean * one;

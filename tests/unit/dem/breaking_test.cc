@@ -51,7 +51,7 @@ struct Body
       YieldCurve curve;
       curve.initial = 0.02, curve.hardening = 0.1;
       DemMaterial material = materials.base();
-      material.plasticity = VonMises{curve};
+      material.plasticity = VonMisesFlow{curve};
       all = material;
     }
     auto force =

@@ -61,7 +61,7 @@ double strip_error(Kind kind, PlaneMode plane, double across, bool is_random = f
   DemMaterial material{1., 0.3, 1, plane, 0};
   YieldCurve curve;
   curve.initial = 2e-3, curve.hardening = 0.1;
-  material.plasticity = VonMises{curve};
+  material.plasticity = VonMisesFlow{curve};
   const double strain = 0.01, duration = 2000;
   std::vector<core::BoundaryLoad<2>> loads(2);
   loads[0].boundary = 0, loads[0].value[0] = 0.;
@@ -140,7 +140,7 @@ TYPED_TEST(InelasticBody, DruckerPragerKeepsToItsConeAndDilates)
 {
   constexpr int dim = TypeParam::value;
   DemMaterial material{1., 0.25, 1., PlaneMode::strain, 0};
-  const DruckerPrager law{1e-3, 0, 0.6, 0.35};
+  const DruckerPragerFlow law{1e-3, 0, 0.6, 0.35};
   material.plasticity = law;
   const double g = material.shear_modulus(), k = 1 / (3 * (1 - 2 * material.poissons_ratio));
   packings::RandomParameters<dim> seeds;
@@ -197,7 +197,7 @@ TYPED_TEST(InelasticBody, TurnsWithItsStrains)
   DemMaterial material{1., 0.3, 1., PlaneMode::strain, 0};
   YieldCurve curve;
   curve.initial = 1e-3, curve.hardening = 0.2;
-  material.plasticity = VonMises{curve};
+  material.plasticity = VonMisesFlow{curve};
   const auto packing = packings::make_lattice_packing<dim>(
       box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 9 : 5));
   Eigen::Matrix<double, dim, dim> strain = Eigen::Matrix<double, dim, dim>::Zero();

@@ -53,8 +53,8 @@ std::vector<Plasticity> laws()
   linear.initial = 0.004, linear.hardening = 0.3;
   voce.initial = 0.003, voce.hardening = 0.05, voce.saturation = 0.01, voce.rate = 60;
   table.strain = {0, 0.002, 0.01}, table.stress = {0.003, 0.006, 0.009};
-  return {VonMises{linear}, VonMises{voce}, VonMises{table}, DruckerPrager{0.004, 0.1, 0.5, 0.3},
-          DruckerPrager{0.003, 0, 0.8, 0}};
+  return {VonMisesFlow{linear}, VonMisesFlow{voce}, VonMisesFlow{table}, DruckerPragerFlow{0.004, 0.1, 0.5, 0.3},
+          DruckerPragerFlow{0.003, 0, 0.8, 0}};
 }
 
 /// Random states one after the other, each turned further.
@@ -124,7 +124,7 @@ Plasticity far_away()
 {
   YieldCurve curve;
   curve.initial = 1e9;
-  return VonMises{curve};
+  return VonMisesFlow{curve};
 }
 
 template <int dim>
@@ -303,12 +303,12 @@ std::array<double, 3> stretch(const Packing<dim> &packing, const Plasticity &law
 
 Plasticity scaled(Plasticity law, double scale)
 {
-  if (auto *mises = std::get_if<VonMises>(&law)) {
+  if (auto *mises = std::get_if<VonMisesFlow>(&law)) {
     mises->yield.initial *= scale, mises->yield.saturation *= scale;
     for (double &s : mises->yield.stress)
       s *= scale;
   }
-  if (auto *prager = std::get_if<DruckerPrager>(&law))
+  if (auto *prager = std::get_if<DruckerPragerFlow>(&law))
     prager->cohesion *= scale;
   return law;
 }

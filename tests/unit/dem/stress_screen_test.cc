@@ -52,7 +52,7 @@ struct Body
     if (yield_stress > 0) {
       YieldCurve curve;
       curve.initial = yield_stress, curve.hardening = 0.1;
-      all[0].plasticity = VonMises{curve};
+      all[0].plasticity = VonMisesFlow{curve};
     }
     return std::make_unique<ManyBodyForce<dim>>(packing, Materials(all, number), loads, law);
   }
