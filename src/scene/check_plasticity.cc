@@ -94,6 +94,10 @@ void check_plasticity(const Scene &scene, Findings &f)
              coupling::is_energy_weighted(scene.coupling.scheme),
          "an energy-weighted scheme", "it blends energies that flow would change",
          "choose \"fine_scale_split\"");
+  refuse(std::any_of(scene.loads.begin(), scene.loads.end(),
+                     [](const LoadParameters &l) { return l.pressure.has_value(); }),
+         "a pressure that follows the surface", "it does not enter the strains of what flows yet",
+         "give a \"traction\"");
   const auto &base = scene.material;
   refuse(std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
                      [&](const Inclusion &i) {
