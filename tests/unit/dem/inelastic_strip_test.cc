@@ -87,15 +87,20 @@ double strip_error(Kind kind, PlaneMode plane, double across, bool is_random = f
   return stress / continuum_stress(material, curve, strain) - 1;
 }
 
-// Cells that fill the sides exactly: 0.1 % is asked of six particles across; the steps are small.
+// Square cells fill the sides exactly: 0.1 % is asked of six across, in small steps. Hexagonal rows
+// end in half cells, random cells are clipped: their errors fall with the number across.
 TEST(InelasticStrip, TensionFollowsTheContinuum)
 {
-  const double rows = 6 * std::sqrt(3.) / 2;
   EXPECT_NEAR(strip_error(Kind::square, PlaneMode::strain, 6), 0, 1e-3);
   EXPECT_NEAR(strip_error(Kind::square, PlaneMode::stress, 6), 0, 1e-3);
-  EXPECT_NEAR(strip_error(Kind::hexagonal, PlaneMode::strain, rows), 0, 1e-3);
-  EXPECT_NEAR(strip_error(Kind::hexagonal, PlaneMode::stress, rows), 0, 1e-3);
   EXPECT_NEAR(strip_error(Kind::square, PlaneMode::strain, 6, true), 0, 0.02);
+  const double rows = 6 * std::sqrt(3.) / 2;
+  for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+    const double six = strip_error(Kind::hexagonal, plane, rows),
+                 twelve = strip_error(Kind::hexagonal, plane, 2 * rows);
+    EXPECT_LT(std::abs(six), 5e-3);
+    EXPECT_LT(std::abs(twelve), std::abs(six));
+  }
 }
 
 template <typename D>

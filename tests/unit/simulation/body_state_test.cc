@@ -274,7 +274,7 @@ TEST(BodyState, PlasticFlowGoesOnToTheLastBit)
     SCOPED_TRACE(far);
     const Scene scene = small_scene(torn + std::vector<std::string>{far, friction, flows});
     expect_same_course<2>(scene, 120, 300, 5, false);
-    Course<2> course(scene, false);
+    Course<2> course(scene, false, make_many_body_force<2>);
     while (course.time() < 120)
       course.step(false);
     const auto &force = dynamic_cast<dem::ManyBodyForce<2> &>(*course.body().force());
