@@ -26,6 +26,8 @@ void for_each_number(C &c, Visit &&visit)
     }
   };
   visit("distance", c.face.distance);
+  visit("own_distance", c.own_distance);
+  visit("share_i", c.share_i);
   vector("lever_j", c.face.lever_j);
   vector("passed", c.passed);
   vector("slip", c.slip);
