@@ -59,8 +59,7 @@ public:
   /// follow the motion, face after face; what that takes is booked.
   void open(const Particles &particles, double time, Evaluation<dim> &evaluation);
   /// The same in a state in which the body may not stay: the next step opens from the last one.
-  /// To the last digit if `is_exact`; in a step the next one makes up for what is left.
-  void try_to_open(const Particles &particles, Evaluation<dim> &evaluation, bool is_exact = true);
+  void try_to_open(const Particles &particles, Evaluation<dim> &evaluation);
   /// The next state is not one step away from the last.
   void expect_a_jump() { has_jumped_ = true; }
   /// As if nothing had been tried since the last step.
@@ -108,18 +107,7 @@ public:
 
 private:
   using Face = CohesiveFace<dim>;
-  /// Openings that go with each other, face after face, there and back: answer(face in this state,
-  /// force if it were shut, how much of it an opening takes) is the opening in space.
-  template <typename Answer>
-  void sweep(const Particles &particles, Evaluation<dim> &evaluation,
-             std::map<int, double> &pressure, bool is_exact, Answer &&answer);
   static Name name_of(const Bond<dim> &bond, const Particles &particles);
-  /// Pressures of all parts, those of the rows included, of the particles of these faces.
-  std::map<int, double> whole_pressures(const Particles &particles,
-                                        const Evaluation<dim> &evaluation) const;
-
-  /// Each by the way in which the faces around it open.
-  void take_directions(const Particles &particles);
   Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles) const;
 
   const BondedBody<dim> &body_;

@@ -227,16 +227,17 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
 }
 
 // Along a parabola, on which forces stay in balance to the third order in the loads: they do the
-// work that the ledger books.
+// work that the ledger books. Where faces soften a response has corners, and every row is balanced.
 template <int dim>
 std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit, const Look &look)
 {
   auto &system = solver_.system();
   system.put_back(start_);
   const long broken_before = n_broken();
+  const bool softens = body_.force() && body_.force()->softens();
   constexpr double rows_of_whole = 50;
-  const int n_rows =
-      std::max(2, int(std::ceil(rows_of_whole * double(end_ - begin_) / double(end_))));
+  const int n_rows = std::max(softens ? 1 : 2,
+                              int(std::ceil(rows_of_whole * double(end_ - begin_) / double(end_))));
   double at = 0; // share of the growth
   const auto bent = [&](double share) {
     return share_ > 0 ? share * share / (share_ * share_) : 0;
@@ -252,6 +253,10 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
     else {
       move(at, share);
       system.displace(bend_, bent(share) - bent(at));
+      if (softens) {
+        Eigen::VectorXd moved;
+        solver_.find_equilibrium(clock.now.time, moved);
+      }
     }
     at = share;
     commit(velocities(clock.now.time));
