@@ -71,6 +71,9 @@ Scene scene_of(const Bar &bar)
 {
   // Twice as long as it is wide, in whole cells.
   Scene scene = unit_scene(bar.dimension, {2 * bar.across, bar.across, bar.across}, nu);
+  if (bar.packing == PackingKind::fcc) // rows half a spacing apart lie along y
+    for (const int c : {0, 1})
+      scene.specimen.size[c] = std::round(scene.specimen.size[c]);
   scene.plane = bar.plane;
   scene.zone.packing = bar.packing;
   scene.damping.mass = drag;
@@ -95,10 +98,12 @@ Scene scene_of(const Bar &bar)
 template <int dim>
 double error_of(const Bar &bar)
 {
-  BreakingRun<dim> run(scene_of(bar));
+  const Scene scene = scene_of(bar);
+  BreakingRun<dim> run(scene);
   while (run.time() < ramp + rest)
     run.step();
-  const double stress = run.body().force()->reaction(1)[0] / std::pow(bar.across, dim - 1);
+  const double section = bar.across * (dim == 2 ? 1 : scene.specimen.size[1]);
+  const double stress = run.body().force()->reaction(1)[0] / section;
   const bool held = dim == 2 && bar.plane == PlaneMode::strain;
   return std::abs(stress / (held ? plane_strain_stress() : uniaxial_stress()) - 1);
 }
