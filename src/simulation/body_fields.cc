@@ -73,6 +73,12 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("stress", std::move(tensor)));
   if (body.force()->can_flow())
     add_flow(*body.force(), state, fields.fields);
+  if (body.force()->softens()) {
+    std::vector<double> share, opening;
+    body.force()->softening(state, share, opening);
+    fields.fields.push_back(make_field("softened", std::move(share)));
+    fields.fields.push_back(make_field("opening", std::move(opening)));
+  }
   return fields;
 }
 
