@@ -8,6 +8,7 @@
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/law.h"
+#include "src/verification/cases/softening.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -57,6 +58,7 @@ std::vector<Case> all_cases()
   add(flow_strip_cases());
   add(flow_cone_cases());
   add(flow_balance_cases());
+  add(softening_cases());
   add(random_scene_cases());
   return cases;
 }
