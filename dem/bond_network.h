@@ -80,11 +80,9 @@ public:
   template <typename Visit>
   void for_each_bond_of_some(const std::vector<int> *particles, Visit &&visit) const;
 
-  /// The same for the bonds of one particle: all, and those of the table.
+  /// The same for the bonds of one particle.
   template <typename Visit>
   void for_each_bond_of(int particle, Visit &&visit) const;
-  template <typename Visit>
-  void for_each_entry_of(int particle, Visit &&visit) const;
 
   /// The bond no longer carries.
   void remove(const BondId &id);
@@ -97,6 +95,9 @@ public:
                              double thickness);
 
 private:
+  /// Of one particle those of the table.
+  template <typename Visit>
+  void for_each_entry_of(int particle, Visit &&visit) const;
   void find_segments(const std::vector<std::array<int, 2 * max_directions>> &offset);
   void index_table();
   const RowSegment &segment_of(int particle) const;

@@ -18,14 +18,8 @@ BondedBody<dim>::BondedBody(const packings::Packing<dim> &packing, const Materia
   for (const auto &wall : walls)
     wall_share_[wall.i] += wall.area * wall.lever.dot(wall.prescribed.cwiseProduct(wall.normal)) /
                            packing.volume[wall.i];
-  for (int i = 0; i < packing.size(); ++i) {
+  for (int i = 0; i < packing.size(); ++i)
     update_volumetric_stiffness(i, packing.volume[i]);
-    double levers = 0;
-    bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-      levers += b.area * (i == b.i ? b.lever_i : b.lever_j).norm();
-    });
-    largest_lever_share_ = std::max(largest_lever_share_, levers / packing.volume[i]);
-  }
 }
 
 template <int dim>

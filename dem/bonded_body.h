@@ -30,8 +30,6 @@ public:
   const std::vector<packings::BoundaryFace<dim>> &boundary_faces() const { return boundary_faces_; }
   /// m^3; empty: a lattice's.
   const std::vector<double> &volumes() const { return volumes_; }
-  /// Of all particles: sum of S |a| / V over the bonds.
-  double largest_lever_share() const { return largest_lever_share_; }
 
   /// lambda_i / V_i in Pa/m^3, energy weight included; 0: no volumetric stiffness.
   const std::vector<double> &lambda_per_volume() const { return lambda_per_volume_; }
@@ -71,7 +69,6 @@ private:
   std::vector<double> volumes_;
   std::map<int, double> wall_share_; // sum of S q / V over faces held along their normal
   std::vector<double> lambda_per_volume_, energy_weights_;
-  double largest_lever_share_ = 0;
   EdgeCells<dim> edge_;
   std::vector<int> other_particles_;
 };

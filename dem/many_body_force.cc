@@ -238,6 +238,47 @@ void ManyBodyForce<dim>::stresses(const Particles &p, Components<n_strains<dim>>
 }
 
 template <int dim>
+void ManyBodyForce<dim>::stresses_out_of_plane(const Particles &p,
+                                               std::vector<double> &stress) const
+{
+  stress.clear();
+  if (!can_flow() || !body_.is_plane_strain())
+    return;
+  Evaluation<dim> e(body_);
+  find_pressures(p, e);
+  stress.resize(p.size());
+  for (int i = 0; i < p.size(); ++i)
+    stress[i] = out_of_plane(i, e);
+}
+
+template <int dim>
+double ManyBodyForce<dim>::out_of_plane(int i, const Evaluation<dim> &e) const
+{
+  if (!body_.is_plane_strain())
+    return 0;
+  return e.pressure[i] - 2 * materials().of(i).shear_modulus() * strains_.tensor(i)[2];
+}
+
+template <int dim>
+std::array<double, 6> ManyBodyForce<dim>::inelastic_strain(const Particles &p, int i) const
+{
+  const auto turn = Turn<dim>::of(p, i);
+  const Eigen::Matrix<double, dim, dim> own = strains_.strain(i);
+  const auto turn_columns = [&](const Eigen::Matrix<double, dim, dim> &m) {
+    Eigen::Matrix<double, dim, dim> turned = m;
+    for (int c = 0; c < dim; ++c)
+      turned.col(c) += turn.change(Vector<dim>(m.col(c)));
+    return turned;
+  };
+  // R e R^T: e is symmetric.
+  const Eigen::Matrix<double, dim, dim> e = turn_columns(turn_columns(own).transpose());
+  if constexpr (dim == 2)
+    return {e(0, 0), e(1, 1), strains_.tensor(i)[2], e(0, 1), 0, 0};
+  else
+    return {e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(0, 2)};
+}
+
+template <int dim>
 double ManyBodyForce<dim>::max_tension(const Particles &p, const std::vector<int> &of) const
 {
   Evaluation<dim> e(body_);
@@ -290,8 +331,8 @@ Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
   const auto stress = stressed(p, evaluation_).stresses_of(watched);
   for (std::size_t k = 0; k < watched.size(); ++k) {
     const int i = watched[k];
-    const double zz = body_.is_plane_strain() ? evaluation_.pressure[i] : 0;
-    const double share = flow_share<dim>(materials().of(i).plasticity, stress[k], zz);
+    const double share =
+        dem::flow_share<dim>(materials().of(i).plasticity, stress[k], out_of_plane(i, evaluation_));
     if (share > most.share)
       most = {share, get(p.reference, i)};
   }
@@ -312,8 +353,12 @@ std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
     skipped.push_back({"dilatation sweep", "Poisson's ratio is 0"});
   if (!can_break())
     skipped.push_back({"bond checks", "no fracture criterion"});
-  skipped.push_back({"stress tensors in the loop", "the criterion reads tractions; tensors are "
-                                                   "computed for output only"});
+  // A criterion that reads them asks for those of what is near its limit only.
+  if (!can_flow() && !search_.reads_stresses())
+    skipped.push_back({"stress tensors in the loop",
+                       can_break() ? "the criterion reads tractions; tensors are computed for "
+                                     "output only"
+                                   : "nothing reads them but the output"});
   if (contacts_.all().empty())
     skipped.push_back({"contacts until a bond breaks", "no initial crack"});
   return skipped;

@@ -90,6 +90,10 @@ public:
   /// of the body before its energy was weighted.
   void stresses(const Particles &particles, Components<n_strains<dim>> &stress) const override;
 
+  /// Of a body in plane strain with a material that flows.
+  void stresses_out_of_plane(const Particles &particles,
+                             std::vector<double> &stress) const override;
+
   /// Largest tension on a face in Pa over the bonds of these particles; 0 when there is none.
   double max_tension(const Particles &particles, const std::vector<int> &of) const;
 
@@ -130,7 +134,7 @@ public:
   particles::ForceLosses losses() const override
   {
     return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
-            cohesive_work()};
+            cohesive_work(), strains_.stored_energy()};
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
@@ -145,6 +149,12 @@ public:
   bool can_flow() const override { return strains_.has_law(); }
   Utilisation<dim> flow_utilisation(const Particles &particles,
                                     const std::vector<Watch> &watch) const override;
+  double flow_share(const Strain<dim> &stress, double out_of_plane) const override
+  {
+    return dem::flow_share<dim>(materials().base().plasticity, stress, out_of_plane);
+  }
+  double plastic_strain(int particle) const override { return strains_.history(particle); }
+  std::array<double, 6> inelastic_strain(const Particles &particles, int particle) const override;
   /// Of materials that flow: once at every new time of compute(), whose forces are those after it.
   InelasticStrains<dim> &strains() { return strains_; }
   const InelasticStrains<dim> &strains() const { return strains_; }
@@ -181,6 +191,8 @@ private:
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
+  /// Stress of a particle out of the plane in Pa, 2D.
+  double out_of_plane(int particle, const Evaluation<dim> &evaluation) const;
   /// What the loads are at a time, what they pull with, and what they did.
   void set_loads(double time);
   void find_reactions(const Particles &particles, Evaluation<dim> &evaluation) const;

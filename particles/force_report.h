@@ -43,10 +43,11 @@ struct ForceLosses
 {
   double fracture = 0; // released by breaking bonds
   double friction = 0;
-  double plastic = 0;
+  double plastic = 0; // taken by flow
   /// By which the leap-frog's invariant fell because forces jumped, theory.md (E10).
   double breaking_step_error = 0;
   double cohesive = 0; // opened faces that soften
+  double hardening = 0; // the part of `plastic` that hardening stores; the rest is heat
 };
 
 template <int dim>
@@ -68,6 +69,13 @@ public:
   {
     for (auto &component : stress)
       component.assign(particles.size(), 0.);
+  }
+
+  /// Overwrites: stress out of the plane of all particles in Pa where it is another one than
+  /// elasticity gives in plane strain; empty: nowhere.
+  virtual void stresses_out_of_plane(const Particles<dim> &, std::vector<double> &stress) const
+  {
+    stress.clear();
   }
 
   virtual long n_bonds() const { return 0; }
@@ -108,6 +116,19 @@ public:
   /// itself or not.
   virtual Utilisation<dim> flow_utilisation(const Particles<dim> &,
                                             const std::vector<Watch> &) const
+  {
+    return {};
+  }
+  /// Share of the stress under which the material of the far field would flow, of a stress of its
+  /// in Pa (Voigt order, in-plane in 2D) with this one out of the plane.
+  virtual double flow_share(const Strain<dim> & /*stress*/, double /*out_of_plane*/) const
+  {
+    return 0;
+  }
+  /// Accumulated plastic strain of a particle, and the strain that no stress answers: xx, yy, zz,
+  /// xy, yz, xz in the axes of space.
+  virtual double plastic_strain(int /*particle*/) const { return 0; }
+  virtual std::array<double, 6> inelastic_strain(const Particles<dim> &, int /*particle*/) const
   {
     return {};
   }

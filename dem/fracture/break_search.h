@@ -35,6 +35,7 @@ public:
 
   const FractureLaw &law() const { return criteria_.law(); }
   bool can_break() const { return criteria_.can_break(); }
+  bool reads_stresses() const { return criteria_.need_stress(); }
   bool breaks_under_pressure() const { return criteria_.break_under_pressure(); }
   /// By maximum tension if there was no criterion; in Pa.
   void set_strength(double strength, const BondedBody<dim> &body);

@@ -22,7 +22,9 @@ const std::vector<FieldInfo> &field_table()
       {"zone", "1", Kind::scalar, name, true, false, true},
       {"softened", "1", Kind::scalar, number, false, false, false}, // where faces soften
       {"opening", "m", Kind::scalar, number, false, false, false},
-      {"broken_bond_share", "1", Kind::scalar, number, true, false, false}};
+      {"broken_bond_share", "1", Kind::scalar, number, true, false, false},
+      {"plastic_strain", "1", Kind::scalar, number, true, false, false, true},
+      {"inelastic_strain", "1", Kind::tensor, number, true, false, false, true}};
   return table;
 }
 

@@ -94,6 +94,7 @@ struct FieldInfo
   Field::Kind kind;
   Field::Storage storage;
   bool on_particles, on_nodes, on_cells;
+  bool of_flow = false; // only where a material flows
 };
 const std::vector<FieldInfo> &field_table();
 

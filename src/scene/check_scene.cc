@@ -127,6 +127,14 @@ void check_time(const Scene &scene, Findings &f)
               "the fracture criterion is \"none\"", "");
 }
 
+bool is_of_flow(const std::string &word, int dimension)
+{
+  const std::string name = shown_field(word, dimension).field;
+  const auto &table = field_table();
+  return std::any_of(table.begin(), table.end(),
+                     [&](const FieldInfo &info) { return info.name == name && info.of_flow; });
+}
+
 /// Components across the plane are 0 in 2D.
 void check_pictures(const Scene &scene, Findings &f)
 {
@@ -134,9 +142,14 @@ void check_pictures(const Scene &scene, Findings &f)
   for (std::size_t k = 0; k < scene.output.pictures.size(); ++k) {
     const std::string key = fmt::format("/output/pictures/{}", k);
     const std::string &field = scene.output.pictures[k].field;
-    if (f.sound({key}) && std::find(words.begin(), words.end(), field) == words.end())
+    if (!f.sound({key}))
+      continue;
+    if (std::find(words.begin(), words.end(), field) == words.end())
       f.error(key + "/field", fmt::format("there is no \"{}\" in 2D", field), "it is 0 everywhere",
               "use one of " + core::listed(words));
+    else if (!scene.flows() && is_of_flow(field, scene.dimension))
+      f.error(key + "/field", fmt::format("a picture of \"{}\"", field), "no material flows",
+              "give one its \"plasticity\", or remove the picture");
   }
 }
 } // namespace

@@ -6,6 +6,7 @@
 #include "src/scene/choices.h"
 #include "src/scene/gauge_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -149,7 +150,7 @@ struct PlasticityParameters
   PlasticityLaw law = PlasticityLaw::von_mises;
   double hardening = 0; // Pa
   // Of von_mises.
-  std::optional<double> yield_stress;           // Pa
+  std::optional<double> yield_stress;                // Pa
   std::optional<double> saturation, saturation_rate; // Pa, -
   std::vector<YieldPoint> curve;
   // Of drucker_prager.
@@ -438,5 +439,13 @@ struct Scene
   std::vector<InitialMotion> initial_motion;
   TimeParameters time;
   OutputParameters output;
+
+  /// Whether any material may flow.
+  bool flows() const
+  {
+    return material.plasticity.has_value() ||
+           std::any_of(inclusions.begin(), inclusions.end(),
+                       [](const Inclusion &i) { return i.material.plasticity.has_value(); });
+  }
 };
 } // namespace ligament::program

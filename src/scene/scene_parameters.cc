@@ -199,7 +199,7 @@ void declare_coupling(Section &s, CouplingParameters &c)
   s.add("multiplier_cells", c.multiplier_cells, "edge of the multipliers' hat functions in cells; energy-weighted schemes only").at_least(1).at_most(10);
   s.add("ghost_force_correction", c.ghost_force_correction, "normal strains (xx, yy, zz) at which constant forces cancel the overlap's ghost forces, 0: off; energy-weighted schemes only").at_least(-0.1).at_most(0.1);
   s.add("solver", c.solver, "which library solves the systems of the overlap", coupling::solver_names);
-  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons", words(Guard()));
+  s.add("guard", c.guard, "what happens when a face of the overlap bears 0.9 of what breaks it or breaks, overlap or far field would flow (from 0.8 of that on there is a warning), or the body leaves the range of its regime; with warn nothing counts from then on, neither for the peak nor for comparisons", words(Guard()));
   s.add("regime", c.regime, "kinematics of overlap and far field: small rotation, large rotation, finite strain; automatic starts linear and changes when the motion asks for it", words(RegimeChoice()));
   s.add("coarse_mass", c.coarse_mass, "factor on the masses of the coarse motion and of the far field, for fewer steps to a static answer; down to spacing/cell_size, with damping only").above(0).at_most(1);
 }

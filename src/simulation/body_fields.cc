@@ -37,6 +37,19 @@ void put_tensor(const Strain<dim> &s, const CoupledBody<dim> &body, double *out)
     std::copy(t, t + 6, out);
   }
 }
+template <int dim>
+void add_flow(const particles::ParticleForce<dim> &force, const particles::Particles<dim> &state,
+              std::vector<Field> &fields)
+{
+  std::vector<double> accumulated(state.size()), strain;
+  for (int i = 0; i < state.size(); ++i) {
+    accumulated[i] = force.plastic_strain(i);
+    const auto e = force.inelastic_strain(state, i);
+    strain.insert(strain.end(), e.begin(), e.end());
+  }
+  fields.push_back(make_field("plastic_strain", std::move(accumulated)));
+  fields.push_back(make_field("inelastic_strain", std::move(strain)));
+}
 } // namespace
 
 template <int dim>
@@ -51,10 +64,15 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   fields.fields.push_back(make_field("velocity", interleave(state.velocity)));
   Components<n_strains<dim>> stress;
   body.force()->stresses(state, stress);
-  std::vector<double> tensor(6 * state.size());
+  std::vector<double> tensor(6 * state.size()), out_of_plane;
   for (int i = 0; i < state.size(); ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
+  body.force()->stresses_out_of_plane(state, out_of_plane);
+  for (std::size_t i = 0; i < out_of_plane.size(); ++i)
+    tensor[6 * i + 2] = out_of_plane[i];
   fields.fields.push_back(make_field("stress", std::move(tensor)));
+  if (body.force()->can_flow())
+    add_flow(*body.force(), state, fields.fields);
   if (body.force()->softens()) {
     std::vector<double> share, opening;
     body.force()->softening(state, share, opening);

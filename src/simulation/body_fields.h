@@ -7,8 +7,8 @@
 
 namespace ligament::program
 {
-/// Displacement, velocity, stress of all particles; empty without a zone. ConstantFields has the
-/// others.
+/// Displacement, velocity, stress of all particles, and what flow has left where a material flows;
+/// empty without a zone. StateFields has the others.
 template <int dim>
 ParticleFields particle_fields(const CoupledBody<dim> &body);
 

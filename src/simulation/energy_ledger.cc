@@ -28,6 +28,11 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"residual", residual()}};
 }
 
+std::vector<std::pair<std::string, double>> EnergyLedger::flow_channels() const
+{
+  return {{"plastic_heat", force.plastic - force.hardening}, {"plastic_stored", force.hardening}};
+}
+
 template <int dim>
 EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime &step,
                          double damping)

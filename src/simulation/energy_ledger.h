@@ -32,6 +32,8 @@ struct EnergyLedger
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;
+  /// The same of what flow took; only of bodies with a material that flows.
+  std::vector<std::pair<std::string, double>> flow_channels() const;
 };
 
 /// Valid between the forces and the kick of a step in which the far field acts. `damping` in J is

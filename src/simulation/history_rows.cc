@@ -13,24 +13,15 @@ namespace
 {
 constexpr int rows_per_flush = 50;
 
-/// Taken by flow, what hardening stores included; only where a material flows.
-const Column plastic = {"plastic", "J"};
-
-bool has_flow(const Scene &scene)
-{
-  return scene.material.plasticity.has_value() ||
-         std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
-                     [](const Inclusion &i) { return i.material.plasticity.has_value(); });
-}
-
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
 std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
                                 const std::vector<ServoTarget<dim>> &servos)
 {
   std::vector<Column> columns = history_columns(dim, scene.time.has_phases(), !scene.tools.empty());
-  if (has_flow(scene))
-    columns.push_back(plastic);
+  if (scene.flows())
+    for (const auto &channel : EnergyLedger().flow_channels())
+      columns.push_back({channel.first, "J"});
   for (const auto &servo : servos)
     columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
@@ -49,8 +40,7 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
-      has_flow_(has_flow(scene)), gauges_(scene, body),
-      servos_(servo_targets(scene, body, gauges_)),
+      has_flow_(scene.flows()), gauges_(scene, body), servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
 }
@@ -69,7 +59,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
     if ((name != "settled" || has_phases_) && (name.compare(0, 5, "tool_") != 0 || has_tools_))
       writer_.set(name, value);
   if (has_flow_)
-    writer_.set(plastic.name, row.ledger.force.plastic);
+    for (const auto &[name, value] : row.ledger.flow_channels())
+      writer_.set(name, value);
   if (has_phases_)
     writer_.set("static", row.is_static);
   writer_.set("broken_bonds", double(row.n_broken));

@@ -1,10 +1,12 @@
 #include "src/simulation/overlap_guard.h"
 
+#include "fem/cell_map.h"
 #include "src/output/format.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace ligament::program
 {
@@ -31,6 +33,9 @@ OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
   watch_.assign(body.zone->state.size(), Watch::none);
   for (const auto &m : overlap->members)
     watch_[m.particle] = m.pad ? Watch::exempt : Watch::watched;
+  is_blended_.assign(body.far->mesh().n_cells(), 0);
+  for (const auto &cell : overlap->cells)
+    is_blended_[cell.cell] = cell.layer == 0;
   body.force()->set_noted_share(limit);
 }
 
@@ -63,13 +68,6 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
                        n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
                        place<dim>(first->position), n_broken_ == 1 ? "it" : "they", remedy);
   }
-  const auto flow = body.force()->flow_utilisation(body.zone->state, watch_);
-  if (flow.share >= 1) {
-    found_ = true;
-    return fmt::format("the overlap would flow at {}, where particles and mesh stay elastic: they "
-                       "bear {:.0f} % of the yield stress; {}",
-                       place<dim>(flow.place), 100 * flow.share, remedy);
-  }
   const auto most = body.force()->utilisation(body.zone->state, watch_);
   if (most.share < limit)
     return {};
@@ -79,6 +77,83 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
                      100 * most.share, place<dim>(most.place), remedy);
 }
 
+// Green's strain of the motion at the middle of each cell: a cell that turns is not strained.
+template <int dim>
+void OverlapGuard<dim>::look_at_cells(const CoupledBody<dim> &body, Flow &flow) const
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  const auto &mesh = body.far->mesh();
+  for (int c = 0; c < mesh.n_cells(); ++c) {
+    if (is_blended_[c])
+      continue;
+    const auto gradients = fem::centre_gradients(mesh, c);
+    Matrix h = Matrix::Zero();
+    for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+      h += get(body.far->displacement, mesh.cells[c][a]) * gradients.col(a).transpose();
+    const Matrix e = 0.5 * (h + h.transpose() + h.transpose() * h);
+    Strain<dim> strain;
+    for (int k = 0; k < dim; ++k)
+      strain[k] = e(k, k);
+    if constexpr (dim == 2)
+      strain[2] = 2 * e(0, 1);
+    else
+      strain.template tail<3>() << 2 * e(1, 2), 2 * e(0, 2), 2 * e(0, 1);
+    const Strain<dim> stress = body.far->body().stiffness * strain;
+    const double zz =
+        body.plane == PlaneMode::strain ? body.poissons_ratio * (stress[0] + stress[1]) : 0;
+    const double share = body.force()->flow_share(stress, zz);
+    if (share < near_flow_limit)
+      continue;
+    Vector<dim> middle = Vector<dim>::Zero();
+    for (const int node : mesh.cells[c]) {
+      middle += mesh.nodes[node] / fem::n_cell_nodes<dim>;
+      flow.lower = flow.lower.cwiseMin(mesh.nodes[node]);
+      flow.upper = flow.upper.cwiseMax(mesh.nodes[node]);
+    }
+    if (share > flow.most.share) {
+      flow.most = {share, middle};
+      flow.in_mesh = true;
+    }
+  }
+}
+
+template <int dim>
+auto OverlapGuard<dim>::find_flow(const CoupledBody<dim> &body) const -> Flow
+{
+  Flow flow;
+  flow.most = body.force()->flow_utilisation(body.zone->state, watch_);
+  flow.lower.setConstant(std::numeric_limits<double>::infinity());
+  flow.upper = -flow.lower;
+  if (flow.most.share >= near_flow_limit)
+    flow.lower = flow.upper = flow.most.place;
+  look_at_cells(body, flow);
+  return flow;
+}
+
+template <int dim>
+auto OverlapGuard<dim>::look_at_flow(const CoupledBody<dim> &body) -> std::optional<FlowFinding>
+{
+  if (watch_.empty() || found_ || !body.force()->can_flow())
+    return {};
+  const Flow found = find_flow(body);
+  if (found.most.share < (found_near_flow_ ? flow_limit : near_flow_limit))
+    return {};
+  found_near_flow_ = true;
+  found_ = found.most.share >= flow_limit;
+  // What is near flow would lie inside, the overlap around it.
+  const double length = body.coupler->overlap()->parameters.length;
+  const Vector<dim> lower = (found.lower.array() - length).matrix().cwiseMax(body.lower),
+                    upper = (found.upper.array() + length).matrix().cwiseMin(body.upper);
+  return FlowFinding{
+      fmt::format(
+          "{} {} {}, where it stays elastic: it bears {:.0f} % of the stress that makes its "
+          "material flow; let /discrete_zone/region contain at least the box from {} to {}",
+          found.in_mesh ? "the far field" : "the overlap",
+          found_ ? "would flow at" : "comes near flow at", place<dim>(found.most.place),
+          100 * found.most.share, place<dim>(lower), place<dim>(upper)),
+      found_};
+}
+
 template <int dim>
 void OverlapGuard<dim>::save(core::State &state) const
 {
@@ -86,6 +161,7 @@ void OverlapGuard<dim>::save(core::State &state) const
   core::save_value(state, "recorder", "guard_broken", std::int64_t(n_broken_));
   core::save_sum(state, "guard_energy", energy_);
   core::save_value(state, "recorder", "guard_found", std::int64_t(found_));
+  core::save_value(state, "recorder", "guard_near_flow", std::int64_t(found_near_flow_));
 }
 
 template <int dim>
@@ -95,6 +171,7 @@ void OverlapGuard<dim>::load(const core::State &state)
   n_broken_ = long(core::load_integer(state, "recorder", "guard_broken"));
   energy_ = core::load_sum(state, "guard_energy");
   found_ = core::load_integer(state, "recorder", "guard_found") != 0;
+  found_near_flow_ = core::load_integer(state, "recorder", "guard_near_flow") != 0;
 }
 
 template class OverlapGuard<2>;

@@ -128,6 +128,9 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (const auto finding = guard_.look(body))
     if (const auto stop = report_excess(*finding, step))
       return stop;
+  if (step.step / ratio % OverlapGuard<dim>::flow_interval == 0)
+    if (const auto stop = look_at_flow(body, step))
+      return stop;
   if (!broken_time_ && (in_static_phase_ || step.step / ratio % break_interval == 0))
     look_for_break(body, step);
   if (broken_time_ && scene_.time.stop_when == StopWhen::specimen_broken)
@@ -150,6 +153,19 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
     record_fields(body, step);
   if (progress)
     progress_.print(progress_state(body, step, read_ledger(body, step, damping)));
+  return {};
+}
+
+template <int dim>
+std::optional<Stop> Recorder<dim>::look_at_flow(const CoupledBody<dim> &body,
+                                                const coupling::StepTime &step)
+{
+  const auto finding = guard_.look_at_flow(body);
+  if (!finding)
+    return {};
+  if (finding->is_excess)
+    return report_excess(finding->text, step);
+  log_.warning(fmt::format("at {:.4g} s {}", step.time, finding->text));
   return {};
 }
 
@@ -364,6 +380,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   const auto timing = timers_.scope(section_);
   if (const auto finding = guard_.look(body))
     report(*finding, step);
+  if (const auto finding = guard_.look_at_flow(body); finding && finding->is_excess)
+    report(finding->text, step);
   attempt([&] {
     record_history(body, step, damping);
     history_.flush();

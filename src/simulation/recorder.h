@@ -80,6 +80,7 @@ public:
 private:
   template <typename Write>
   void attempt(Write &&write);
+  std::optional<Stop> look_at_flow(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
   bool keeps_copies(const CoupledBody<dim> &body) const;
   void keep_copies(const CoupledBody<dim> &body, double time, double load);

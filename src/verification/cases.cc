@@ -4,6 +4,7 @@
 #include "src/verification/bodies/waves_twin.h"
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
+#include "src/verification/cases/flow.h"
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/law.h"
@@ -54,6 +55,9 @@ std::vector<Case> all_cases()
   add(lab_oblique_cases());
   add(lab_ring_cases());
   add(law_cases());
+  add(flow_strip_cases());
+  add(flow_cone_cases());
+  add(flow_balance_cases());
   add(softening_cases());
   add(random_scene_cases());
   return cases;

@@ -116,7 +116,7 @@ private:
         const Matrix ab = a * b.transpose();
         sum -= f.area / (f.q_i + f.q_j) * 0.5 * (ab + ab.transpose());
       }
-    return Eigen::SelfAdjointEigenSolver<Matrix>(sum).eigenvalues()[0] >= 0.1 * packing_.volume[i];
+    return Eigen::SelfAdjointEigenSolver<Matrix>(sum).eigenvalues()[0] >= 0.05 * packing_.volume[i];
   }
 
   Matrix in_plane(int i) const { return strain[i].template topLeftCorner<dim, dim>(); }

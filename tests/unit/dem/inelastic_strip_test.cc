@@ -112,8 +112,7 @@ TYPED_TEST_SUITE(InelasticBody, Dimensions);
 
 /// A homogeneous strain as all particles see it.
 template <int dim>
-void deform(Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &strain,
-            const Spin<dim> &turn)
+void deform(Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &strain, const Spin<dim> &turn)
 {
   for (int i = 0; i < p.size(); ++i) {
     for (auto &r : p.rotation)
@@ -154,7 +153,8 @@ TYPED_TEST(InelasticBody, DruckerPragerKeepsToItsConeAndDilates)
   for (const auto &packing :
        {packings::make_lattice_packing<dim>(
             box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 9 : 5)),
-        packings::make_random_packing<dim>(seeds).packing}) {
+        packings::make_random_packing<dim>(seeds).packing})
+  {
     ManyBodyForce<dim> force(packing, material, {});
     auto p = at_rest(packing, material);
     const int inner = inner_particle(p);
@@ -192,6 +192,42 @@ TYPED_TEST(InelasticBody, DruckerPragerKeepsToItsConeAndDilates)
       left[2] = -a[2];
     EXPECT_NEAR(k * left.sum(), law.cohesion / law.friction, 1e-9);
     EXPECT_LT((left - left.mean() * Eigen::Vector3d::Ones()).norm(), 1e-9);
+  }
+}
+
+// The area under the yield curve above its first stress, cell by cell; none without hardening.
+TYPED_TEST(InelasticBody, HardeningStoresItsPartOfTheWork)
+{
+  constexpr int dim = TypeParam::value;
+  YieldCurve level, straight, voce, table;
+  level.initial = straight.initial = voce.initial = 1e-3;
+  straight.hardening = voce.hardening = 0.2;
+  voce.saturation = 1e-3, voce.rate = 150;
+  table.strain = {0, 2e-3, 5e-3}, table.stress = {1e-3, 1.5e-3, 1.8e-3};
+  const auto packing = packings::make_lattice_packing<dim>(
+      box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 9 : 5));
+  for (const YieldCurve &curve : {level, straight, voce, table}) {
+    DemMaterial material{1., 0.3, 1., PlaneMode::strain, 0};
+    material.plasticity = VonMisesFlow{curve};
+    ManyBodyForce<dim> force(packing, material, {});
+    auto p = at_rest(packing, material);
+    Eigen::Matrix<double, dim, dim> strain = Eigen::Matrix<double, dim, dim>::Zero();
+    for (int s = 1; s <= 20; ++s) {
+      strain(0, 0) = 1e-2 * s / 20;
+      deform<dim>(p, strain, Spin<dim>::Zero());
+      force.compute(p, s);
+    }
+    double stored = 0;
+    for (int i = 0; i < packing.size(); ++i) {
+      constexpr int n = 4000; // midpoints
+      const double history = force.strains().history(i);
+      for (int k = 0; k < n; ++k)
+        stored += packing.volume[i] * history / n * (curve.at(history * (k + 0.5) / n) - 1e-3);
+    }
+    const auto losses = force.losses();
+    EXPECT_NEAR(losses.hardening, stored, 1e-5 * stored);
+    EXPECT_GT(losses.plastic, losses.hardening);
+    EXPECT_EQ(losses.hardening > 0, curve.at(1) > 1e-3);
   }
 }
 

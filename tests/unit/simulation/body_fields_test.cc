@@ -2,6 +2,8 @@
 #include "src/simulation/body_fields.h"
 #include "tests/support/small_plate.h"
 
+#include <Eigen/Geometry>
+
 #include <map>
 
 using namespace ligament;
@@ -22,11 +24,12 @@ BodyState complete_state(const SmallBody &small, std::vector<BrokenBond> bonds =
 }
 
 /// All that the table promises, no more, and a value for every item.
-void expect_fields(const std::vector<Field> &fields, bool FieldInfo::*on, std::size_t n_items)
+void expect_fields(const std::vector<Field> &fields, bool FieldInfo::*on, std::size_t n_items,
+                   bool flows = false)
 {
   std::size_t n = 0;
   for (const FieldInfo &info : field_table())
-    if (info.*on) {
+    if (info.*on && (flows || !info.of_flow)) {
       ++n;
       const Field *field = find_field(fields, info.name);
       ASSERT_NE(field, nullptr) << info.name;
@@ -41,20 +44,59 @@ const std::vector<double> &values(const BodyState &state, const char *name)
   return find_field(state.particles.fields, name)->values;
 }
 
+// Those of flow are there where a material flows.
+const std::string flows = R"(/material/plasticity={"yield_stress": 1e-3, "hardening": 0.1})";
+
 TEST(StateFields, AreThoseOfTheTable)
 {
-  for (const char *scene : {"/coupling/overlap_cells=2", "/far_field=none", "/discrete_zone=none"})
+  for (const std::string scene :
+       {"/coupling/overlap_cells=2", "/far_field=none", "/discrete_zone=none", flows.c_str()})
   {
     SCOPED_TRACE(scene);
     const SmallBody small(small_scene({scene}));
     const BodyState state = complete_state(small);
     if (state.particles.size() > 0)
-      expect_fields(state.particles.fields, &FieldInfo::on_particles, state.particles.size());
+      expect_fields(state.particles.fields, &FieldInfo::on_particles, state.particles.size(),
+                    scene == flows);
     if (state.cells.n_cells() > 0) {
       expect_fields(state.cells.node_fields, &FieldInfo::on_nodes, state.cells.n_nodes());
       expect_fields(state.cells.cell_fields, &FieldInfo::on_cells, state.cells.n_cells());
     }
   }
+}
+
+// A homogeneous strain beyond yielding, in a body that has turned: the stress lies on the yield
+// surface, its part out of the plane included; the strain has the axes of space.
+TEST(StateFields, FlowLeavesItsStrain)
+{
+  constexpr double strain = 0.01, angle = 0.4;
+  SmallBody small(small_scene({"/far_field=none", flows}));
+  const Eigen::Rotation2Dd turn(angle);
+  Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();
+  stretch(1, 1) += strain;
+  small.deform(turn * stretch - Eigen::Matrix2d::Identity());
+  auto &particles = small.body.zone->state;
+  std::fill(particles.rotation[0].begin(), particles.rotation[0].end(), angle);
+  small.body.force()->compute(particles, 1);
+  const BodyState state = complete_state(small);
+  std::size_t middle = 0;
+  const auto &x = state.particles.reference;
+  for (std::size_t i = 0; i < x.size() / 3; ++i)
+    if (std::hypot(x[3 * i], x[3 * i + 1]) < std::hypot(x[3 * middle], x[3 * middle + 1]))
+      middle = i;
+  const double p = values(state, "plastic_strain")[middle];
+  EXPECT_GT(p, 0.5 * strain);
+  EXPECT_NEAR(values(state, "equivalent_stress")[middle], 1e-3 + 0.1 * p, 1e-12);
+  const double *const e = &values(state, "inelastic_strain")[6 * middle];
+  EXPECT_NEAR(e[0] + e[1] + e[2], 0, 1e-15);
+  // Along the pull p, across it half of that: yy in the body's own axes.
+  const Eigen::Vector2d along = turn * Eigen::Vector2d(0, 1), across = turn * Eigen::Vector2d(1, 0);
+  Eigen::Matrix2d in_plane;
+  in_plane << e[0], e[3], e[3], e[1];
+  EXPECT_NEAR(along.dot(in_plane * along), p, 1e-12);
+  EXPECT_NEAR(across.dot(in_plane * across), -p / 2, 1e-12);
+  EXPECT_NEAR(e[2], -p / 2, 1e-12);
+  EXPECT_NEAR(along.dot(in_plane * across), 0, 1e-12);
 }
 
 // Particles say where they are in the coupling as the overlap does.

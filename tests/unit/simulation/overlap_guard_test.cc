@@ -2,6 +2,11 @@
 #include "src/simulation/overlap_guard.h"
 #include "tests/support/small_plate.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
 using namespace ligament;
 using namespace ligament::program;
 using namespace ligament::tests;
@@ -85,5 +90,83 @@ TEST(OverlapGuard, PadsAreTheMeshs)
   ASSERT_GE(i, 0);
   // Wholly among pads: its neighbour above is one, too.
   EXPECT_FALSE(plate.look(0.95, [&](int k) { return k == i; }));
+}
+
+/// Under a stress along y alone von Mises' stress is sqrt(1 - nu + nu^2) of it in plane strain.
+struct YieldingPlate
+{
+  static constexpr double limit = 1e-3, nu = 0.22;
+  SmallBody small{small_scene(
+      {fmt::format(R"(/material/plasticity={{"law": "von_mises", "yield_stress": {:.17g}}})",
+                   limit *std::sqrt(1 - nu + nu * nu) / (1 - nu * nu))})};
+  OverlapGuard<2> guard{small.body};
+  double time = 0;
+
+  auto look()
+  {
+    small.body.force()->compute(small.body.zone->state, ++time);
+    return guard.look_at_flow(small.body);
+  }
+  auto look(double share)
+  {
+    Eigen::Matrix2d gradient = Eigen::Matrix2d::Zero();
+    gradient(1, 1) = share * limit;
+    gradient(0, 0) = -nu / (1 - nu) * gradient(1, 1);
+    small.deform(gradient);
+    return look();
+  }
+};
+
+TEST(FlowGuard, HasAWordNearFlowAndOneBeyondIt)
+{
+  YieldingPlate plate;
+  EXPECT_FALSE(plate.look(0.78));
+  const auto near = plate.look(0.82);
+  ASSERT_TRUE(near);
+  EXPECT_FALSE(near->is_excess);
+  EXPECT_NE(near->text.find("82 %"), std::string::npos) << near->text;
+  EXPECT_FALSE(plate.look(0.97)) << "once is enough";
+  const auto beyond = plate.look(1.02);
+  ASSERT_TRUE(beyond);
+  EXPECT_TRUE(beyond->is_excess);
+  EXPECT_FALSE(plate.look(1.1)) << "once is enough";
+}
+
+// Cells that no particle sees: the zone would have to reach them with the overlap around them.
+TEST(FlowGuard, NamesTheBoxThatTheZoneWouldNeed)
+{
+  YieldingPlate plate;
+  const auto &mesh = plate.small.body.far->mesh();
+  for (int i = 0; i < mesh.n_nodes(); ++i)
+    plate.small.body.far->displacement[1][i] =
+        1.3 * plate.limit * std::max(0., mesh.nodes[i][1] - 45);
+  const auto finding = plate.look();
+  ASSERT_TRUE(finding);
+  EXPECT_TRUE(finding->is_excess);
+  EXPECT_EQ(finding->text.find("the far field would flow"), 0u) << finding->text;
+  double x0, y0, x1, y1;
+  const auto box = finding->text.find("box from (");
+  ASSERT_NE(box, std::string::npos);
+  ASSERT_EQ(std::sscanf(finding->text.c_str() + box, "box from (%lf m, %lf m) to (%lf m, %lf m)",
+                        &x0, &y0, &x1, &y1),
+            4)
+      << finding->text;
+  EXPECT_NEAR(x0, -12, 1e-9);
+  EXPECT_NEAR(x1, 12, 1e-9);
+  EXPECT_NEAR(y1, 60, 1e-9);
+  // The first cell that flows lies within a cell of 45.
+  EXPECT_NEAR(y0, 45 - plate.small.body.coupler->overlap()->parameters.length, 4.1);
+}
+
+TEST(FlowGuard, TurningIsNoStrain)
+{
+  YieldingPlate plate;
+  constexpr double angle = 0.5;
+  Eigen::Matrix2d gradient;
+  gradient << std::cos(angle) - 1, -std::sin(angle), std::sin(angle), std::cos(angle) - 1;
+  plate.small.deform(gradient);
+  auto &rotation = plate.small.body.zone->state.rotation[0];
+  std::fill(rotation.begin(), rotation.end(), angle);
+  EXPECT_FALSE(plate.look());
 }
 } // namespace
