@@ -125,7 +125,10 @@ public:
   double frictional_work() const { return contacts_.frictional_work(); }
   particles::ForceLosses losses() const override
   {
-    return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error()};
+    particles::ForceLosses losses = {fracture_energy(), frictional_work(), plastic_dissipation(),
+                                     breaking_step_error()};
+    losses.viscous = viscous_dissipation();
+    return losses;
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
@@ -133,7 +136,7 @@ public:
   long n_bonds() const override { return body_.bonds().n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
-  bool can_flow() const override { return strains_.has_law(); }
+  bool can_flow() const override { return strains_.has_plasticity(); }
   Utilisation<dim> flow_utilisation(const Particles &particles,
                                     const std::vector<Watch> &watch) const override;
   /// Of materials that flow: once at every new time of compute(), whose forces are those after it.
@@ -141,6 +144,8 @@ public:
   const InelasticStrains<dim> &strains() const { return strains_; }
   /// Energy in J that flow took: with it the leap-frog's balance is closed.
   double plastic_dissipation() const { return strains_.dissipation(); }
+  /// Energy in J that viscosity took: what branches keep is potential energy.
+  double viscous_dissipation() const { return strains_.viscous_dissipation(); }
 
   /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength) { search_.set_strength(strength, body_); }

@@ -46,6 +46,7 @@ struct ForceLosses
   double plastic = 0;
   /// By which the leap-frog's invariant fell because forces jumped, theory.md (E10).
   double breaking_step_error = 0;
+  double viscous = 0;
 };
 
 template <int dim>

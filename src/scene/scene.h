@@ -154,6 +154,18 @@ struct PlasticityParameters
   double dilatancy_angle = 0;                     // rad
 };
 
+/// A spring and a dashpot in series.
+struct BranchParameters
+{
+  double share = 0, relaxation_time = 0; // of the shear modulus, s
+};
+
+struct ViscosityParameters
+{
+  std::vector<BranchParameters> branches;
+  std::optional<double> shear_viscosity; // Pa s
+};
+
 struct MaterialParameters
 {
   double youngs_modulus; // Pa
@@ -162,6 +174,7 @@ struct MaterialParameters
   double friction = 0;
   FractureParameters fracture;
   std::optional<PlasticityParameters> plasticity;
+  std::optional<ViscosityParameters> viscosity;
 };
 
 /// Particles of another material: those with their centre in one of the regions. The k-th one, from

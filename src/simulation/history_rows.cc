@@ -15,12 +15,25 @@ constexpr int rows_per_flush = 50;
 
 /// Taken by flow, what hardening stores included; only where a material flows.
 const Column plastic = {"plastic", "J"};
+/// Where a material is viscous.
+const Column viscous = {"viscous", "J"};
+
+template <typename Parameters>
+bool any_has(const Scene &scene, std::optional<Parameters> MaterialParameters::*law)
+{
+  return (scene.material.*law).has_value() ||
+         std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
+                     [&](const Inclusion &i) { return (i.material.*law).has_value(); });
+}
 
 bool has_flow(const Scene &scene)
 {
-  return scene.material.plasticity.has_value() ||
-         std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
-                     [](const Inclusion &i) { return i.material.plasticity.has_value(); });
+  return any_has(scene, &MaterialParameters::plasticity);
+}
+
+bool has_viscosity(const Scene &scene)
+{
+  return any_has(scene, &MaterialParameters::viscosity);
 }
 
 /// Those of every run, then those of the gauges, which must be others.
@@ -31,6 +44,8 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
   std::vector<Column> columns = history_columns(dim, scene.time.has_phases(), !scene.tools.empty());
   if (has_flow(scene))
     columns.push_back(plastic);
+  if (has_viscosity(scene))
+    columns.push_back(viscous);
   for (const auto &servo : servos)
     columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
@@ -49,7 +64,7 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
-      has_flow_(has_flow(scene)), gauges_(scene, body),
+      has_flow_(has_flow(scene)), has_viscosity_(has_viscosity(scene)), gauges_(scene, body),
       servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
@@ -70,6 +85,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
       writer_.set(name, value);
   if (has_flow_)
     writer_.set(plastic.name, row.ledger.force.plastic);
+  if (has_viscosity_)
+    writer_.set(viscous.name, row.ledger.force.viscous);
   if (has_phases_)
     writer_.set("static", row.is_static);
   writer_.set("broken_bonds", double(row.n_broken));
