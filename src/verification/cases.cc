@@ -7,6 +7,7 @@
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/law.h"
+#include "src/verification/cases/law_viscous.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -53,6 +54,7 @@ std::vector<Case> all_cases()
   add(lab_oblique_cases());
   add(lab_ring_cases());
   add(law_cases());
+  add(law_viscous_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -247,12 +247,12 @@ TYPED_TEST(Viscous, PatchOfUniformStrain)
 /// missing of it at the end, what viscosity took.
 template <int dim>
 std::array<double, 3> fly(const Packing<dim> &packing, const DemMaterial &material, double scale,
-                          int n_steps, double fraction = 0.8)
+                          int n_steps, double fraction = 0.8, const FractureLaw &fracture = {})
 {
   Particles<dim> p;
   packings::fill_particles(packing, material.density, p);
   auto f = std::make_unique<ManyBodyForce<dim>>(packing, material,
-                                                std::vector<core::BoundaryLoad<dim>>());
+                                                std::vector<core::BoundaryLoad<dim>>(), fracture);
   auto &force = *f;
   particles::ParticleSolver<dim> solver(std::move(p), std::move(f));
   const double dt = fraction * force.stable_step(solver.state);
@@ -274,9 +274,10 @@ std::array<double, 3> fly(const Packing<dim> &packing, const DemMaterial &materi
     solver.compute_forces(time += dt);
   }
   const double taken = force.viscous_dissipation();
+  const particles::ForceLosses losses = force.losses();
   return {start,
-          solver.kinetic_energy(dt) + solver.potential_energy() + force.plastic_dissipation() +
-              taken - start,
+          solver.kinetic_energy(dt) + solver.potential_energy() + losses.plastic + taken +
+              losses.fracture + losses.breaking_step_error + losses.friction - start,
           taken};
 }
 
@@ -299,6 +300,22 @@ TYPED_TEST(Viscous, DissipationClosesTheBalance)
             EXPECT_NEAR(lost / start, 0, 30 * scale) << law.index();
           }
         }
+}
+
+// Faces that break take their part of what the dashpots and branches keep along.
+TYPED_TEST(Viscous, FacesBreakInBalance)
+{
+  constexpr int dim = TypeParam::value;
+  constexpr double scale = 1e-6;
+  for (const auto &packing : {lattice_body<dim>(), random_body<dim>()})
+    for (const Viscosity &viscosity : viscosities(0.01)) {
+      DemMaterial material{1., 0.3, 1, PlaneMode::strain, 0};
+      material.viscosity = viscosity;
+      const FractureLaw law = {FractureLaw::Criterion::face_tension, 2 * scale};
+      const auto [start, lost, taken] = fly<dim>(packing, material, scale, 60, 0.8, law);
+      EXPECT_GT(taken, 0.002 * start);
+      EXPECT_NEAR(lost / start, 0, 1e-3);
+    }
 }
 
 TYPED_TEST(Viscous, BalanceOfManyStepsNearTheCriticalOne)
