@@ -75,6 +75,14 @@ void BondedBody<dim>::set_other_particles(std::vector<int> particles)
                          other_particles_.end());
 }
 
+template <int dim>
+void BondedBody<dim>::add_other_particle(int particle)
+{
+  const auto place = std::lower_bound(other_particles_.begin(), other_particles_.end(), particle);
+  if (place == other_particles_.end() || *place != particle)
+    other_particles_.insert(place, particle);
+}
+
 template class BondedBody<2>;
 template class BondedBody<3>;
 } // namespace ligament::dem

@@ -57,6 +57,7 @@ public:
   /// Particles whose pressure has parts beside those of lattice bonds, ascending.
   const std::vector<int> &other_particles() const { return other_particles_; }
   void set_other_particles(std::vector<int> particles);
+  void add_other_particle(int particle);
 
 private:
   /// For a cell of so many m^3.

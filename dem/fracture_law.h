@@ -5,9 +5,11 @@
 #include "dem/fracture/face_tension.h"
 #include "dem/fracture/maximum_tension.h"
 #include "dem/fracture/mohr_coulomb.h"
+#include "dem/fracture/opening_tension.h"
 #include "dem/fracture/principal_stress.h"
 #include "dem/fracture/strain_energy.h"
 #include "dem/fracture/von_mises.h"
+#include "dem/laws/cohesive.h"
 
 #include <vector>
 
@@ -27,6 +29,7 @@ struct FractureLaw
     static constexpr CriterionRef drucker_prager = dem::criterion<DruckerPrager>();
     static constexpr CriterionRef mohr_coulomb = dem::criterion<MohrCoulomb>();
     static constexpr CriterionRef energy = dem::criterion<StrainEnergy>();
+    static constexpr CriterionRef opening_tension = dem::criterion<OpeningTension>();
 
     constexpr Criterion(CriterionRef criterion = none) : CriterionRef(criterion) {}
   };
@@ -39,5 +42,32 @@ struct FractureLaw
   double whole_face = 0;
   /// Of each material; empty: `criterion` for all. Bonds between two obey both.
   std::vector<Criterion> criteria = {};
+  /// G_c in J per m^2 of projected crack, theory.md section 1.13, of each material where a body has
+  /// several; with 0 a bond breaks at once. A bond between two takes the smaller one.
+  double energy = 0;
+  std::vector<double> energies = {};
+  Softening softening = {};
+  double mode_ratio = 1; // beta: shear strength over tensile strength of a face that opens
+
+  bool softens() const
+  {
+    return energy > 0 ||
+           std::any_of(energies.begin(), energies.end(), [](double g) { return g > 0; });
+  }
+  /// Of a bond between materials of these numbers.
+  double energy_of(int a, int b) const
+  {
+    return energies.empty() ? energy : std::min(energies[a], energies[b]);
+  }
+  /// Faces that soften begin and end under tension alone, at strengths that are known beforehand.
+  bool can_soften() const
+  {
+    const auto opens = [](Criterion c) {
+      return c == Criterion::opening_tension || c == Criterion::maximum_tension;
+    };
+    const auto scatters = [](const FaceStrength &s) { return s.scatter.modulus > 0; };
+    return opens(criterion) && std::all_of(criteria.begin(), criteria.end(), opens) &&
+           !scatters(strength) && std::none_of(strengths.begin(), strengths.end(), scatters);
+  }
 };
 } // namespace ligament::dem

@@ -6,13 +6,25 @@
 
 namespace ligament::dem
 {
+namespace
+{
+/// Of the two particles at present, in m.
+template <int dim>
+double centre_distance(const Bond<dim> &b, const particles::Particles<dim> &p)
+{
+  return (b.distance * b.normal + get(p.displacement, b.j) - get(p.displacement, b.i)).norm();
+}
+} // namespace
+
 template <int dim>
 double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
 {
   if (b.joins_materials)
     return 0;
   const auto m = stressed(p, evaluation_).motion(b);
-  return law_of(b).twice_energy(m.du) / 2 + bending_energy(b, p) + strains_.bond_energy(b, p);
+  const Vector<dim> du = m.du - cohesive_.opening(b, p);
+  return law_of(b).twice_energy(du) / 2 + bending_energy(b, p) -
+         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p);
 }
 
 template <int dim>
@@ -50,8 +62,9 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
     return (b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0)) -
            strains_.flowed_volume(b, i);
   };
-  const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, m.du, m.a_i)),
-                                                        std::pair(b.j, share(b.j, -m.du, m.a_j))};
+  const Vector<dim> du = m.du - cohesive_.opening(b, p);
+  const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, du, m.a_i)),
+                                                        std::pair(b.j, share(b.j, -du, m.a_j))};
   const std::array<double, 2> before = {pressure[b.i], pressure[b.j]};
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
@@ -95,6 +108,29 @@ std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) cons
 }
 
 template <int dim>
+std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
+                                                        const std::vector<BondId> &bonds)
+{
+  if (bonds.empty() || !fracture().softens())
+    return bonds;
+  const StressedBody<dim> state = stressed(p, evaluation_);
+  std::vector<BondId> at_once;
+  for (const BondId &id : bonds) {
+    const Bond<dim> b = body_.bonds().bond(id);
+    const double energy = search_.energy_of(b, materials());
+    if (energy == 0) {
+      at_once.push_back(id);
+      continue;
+    }
+    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
+    body_.add_other_particle(b.i);
+    body_.add_other_particle(b.j);
+    began_at_ = time_;
+  }
+  return at_once;
+}
+
+template <int dim>
 Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
 {
   const StressedBody<dim> state = stressed(p, evaluation_);
@@ -118,13 +154,19 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     bonded.push_back(state.wrench_on(i));
   }
   for (const BondId &id : bonds) {
-    const Bond<dim> b = body_.bonds().bond(id);
+    Bond<dim> b = body_.bonds().bond(id);
     const Vector<dim> pressing =
         search_.breaks_under_pressure() ? pressing_force(b, p) : Vector<dim>(Vector<dim>::Zero());
+    const auto *const face = cohesive_.find(b, p);
+    const bool softened = face != nullptr;
+    const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
+    if (softened) // touches as it is now: after a slide that is not where it was bonded
+      b.distance = std::min(b.distance, centre_distance(b, p));
     broken_.add(b, p, time_,
                 energy_before - energy -
-                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()));
+                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()),
+                of_opening);
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);
@@ -134,9 +176,14 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   find_reactions(p, evaluation_);
   book_work(p); // nothing moved
   broken_.take_mean(p, near, before, dt());
+  cohesive_.take_up(p, evaluation_);
   clear_forces_at_rest(p, evaluation_);
 }
 
+template std::vector<BondId> ManyBodyForce<2>::begin_softening(const Particles &,
+                                                               const std::vector<BondId> &);
+template std::vector<BondId> ManyBodyForce<3>::begin_softening(const Particles &,
+                                                               const std::vector<BondId> &);
 template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);
 template void ManyBodyForce<3>::drop_bond(const BondId &, const Bond<3> &, const Particles &);
 template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &);

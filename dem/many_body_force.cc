@@ -9,12 +9,23 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                                   std::vector<core::BoundaryLoad<dim>> loads,
                                   const FractureLaw &fracture)
     : surface_(packing, materials, loads), body_(packing, materials, surface_.walls()),
-      rows_(body_), slices_(body_), strains_(packing, body_, surface_.walls(), surface_.particles()),
-      interfaces_(body_.bonds()), contacts_(packing, materials, body_.images()),
-      jumps_(body_, loads),
-      search_(fracture, body_, interfaces_.members(), packing.global_id), evaluation_(body_),
-      trial_(body_), energy_evaluation_(body_)
+      rows_(body_), slices_(body_),
+      strains_(packing, body_, surface_.walls(), surface_.particles()),
+      cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_.bonds()),
+      contacts_(packing, materials, body_.images()), jumps_(body_, loads),
+      search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
+      evaluation_(body_), trial_(body_), energy_evaluation_(body_)
 {
+  core::require(interfaces_.empty() || !fracture.softens(),
+                "/material/fracture/energy: faces that soften need a body of one elastic material; "
+                "give the inclusions the material's \"youngs_modulus\" and \"poissons_ratio\", or "
+                "leave out \"energy\"");
+  core::require(!fracture.softens() || fracture.can_soften(),
+                "faces soften under maximum tension alone, at strengths that do not scatter");
+  core::require(!fracture.softens() || !strains_.has_law(),
+                "faces of a body that flows don't soften");
+  core::require(!fracture.softens() || !body_.images().is_any(),
+                "faces of a body with joined sides don't soften");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
   core::require(!strains_.has_law() || interfaces_.empty(),
@@ -99,11 +110,25 @@ template <int dim>
 void ManyBodyForce<dim>::find_forces(Particles &p, Evaluation<dim> &e) const
 {
   find_other_pressures(p, e);
+  find_forces_under(p, e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_forces_under(Particles &p, Evaluation<dim> &e) const
+{
   rows_.set_forces(p, e);
   for (const auto *part : parts_)
     part->add_forces(p, e);
   jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
   clear_forces_at_rest(p, e);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::find_forces_of_step(Particles &p)
+{
+  find_other_pressures(p, evaluation_);
+  cohesive_.open(p, time_, evaluation_);
+  find_forces_under(p, evaluation_);
 }
 
 template <int dim>
@@ -171,15 +196,18 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   jumps_.wake(rest_);
   search_.ask(evaluation_, strains_);
   evaluation_.may_flow = true;
-  find_forces(p, evaluation_);
+  find_forces_of_step(p);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   book_work(p);
-  if (broken_.have_broken_at(time))
+  if (broken_.have_broken_at(time) || began_at_ == time)
     return;
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
-  break_bonds(p, search_.exceeding_bonds(state));
+  std::vector<BondId> breaking = cohesive_.torn();
+  const auto at_once = begin_softening(p, search_.exceeding_bonds(state));
+  breaking.insert(breaking.end(), at_once.begin(), at_once.end());
+  break_bonds(p, breaking);
 }
 
 template <int dim>
@@ -192,12 +220,11 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   rows_.set_energies(p, e, energy_);
   for (const auto *part : parts_)
     part->add_energies(p, e, energy_);
-  return particles::block_sum(
-             p.part.owned,
-             [&](int i) {
-               return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
-                      (own_energy_.empty() ? 0 : own_energy_[i]);
-             })
+  return particles::block_sum(p.part.owned,
+                              [&](int i) {
+                                return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
+                                       (own_energy_.empty() ? 0 : own_energy_[i]);
+                              })
       .value();
 }
 
@@ -231,6 +258,21 @@ Utilisation<dim> ManyBodyForce<dim>::utilisation(const Particles &p,
                                                  const std::vector<Watch> &watch) const
 {
   return search_.utilisation(stressed(p, evaluation_), watch);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::softening(const Particles &p, std::vector<double> &share,
+                                   std::vector<double> &opening) const
+{
+  particles::ForceReport<dim>::softening(p, share, opening);
+  for (const auto &bond : broken_.all())
+    for (const int i : {bond.i, bond.j})
+      share[i] = 1;
+  for (const auto &[name, face] : cohesive_.all())
+    for (const int i : {face.bond.i, face.bond.j}) {
+      share[i] = std::max(share[i], std::min(face.opening.damage, 1.));
+      opening[i] = std::max(opening[i], face.opening.jump.norm());
+    }
 }
 
 template <int dim>

@@ -7,6 +7,7 @@
 #include "dem/fracture/broken_bonds.h"
 #include "dem/fracture_law.h"
 #include "dem/interfaces.h"
+#include "dem/parts/cohesive_faces.h"
 #include "dem/parts/contact_forces.h"
 #include "dem/parts/inelastic_strains.h"
 #include "dem/parts/periodic_jumps.h"
@@ -117,6 +118,9 @@ public:
 
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return broken_.energy(); }
+  /// Energy in J that opened faces which soften.
+  double cohesive_work() const { return cohesive_.work(); }
+  const CohesiveFaces<dim> &cohesive() const { return cohesive_; }
   /// Energy in J by which the leap-frog's invariant fell because forces jumped, theory.md (E10):
   /// where bonds broke, and where contacts opened or closed. Belongs to the energy balance; second
   /// order in the step.
@@ -126,12 +130,15 @@ public:
   particles::ForceLosses losses() const override
   {
     particles::ForceLosses losses = {fracture_energy(), frictional_work(), plastic_dissipation(),
-                                     breaking_step_error()};
+                                     breaking_step_error(), cohesive_work()};
     losses.viscous = viscous_dissipation();
     return losses;
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
+  bool softens() const override { return fracture().softens(); }
+  void softening(const Particles &particles, std::vector<double> &share,
+                 std::vector<double> &opening) const override;
   bool can_break() const override { return search_.can_break(); }
   long n_bonds() const override { return body_.bonds().n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
@@ -170,6 +177,10 @@ private:
   void find_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Pressures; overwrites forces and torques by those of all parts but contacts.
   void find_forces(Particles &particles, Evaluation<dim> &evaluation) const;
+  /// Forces and torques alone, after the pressures of the parts.
+  void find_forces_under(Particles &particles, Evaluation<dim> &evaluation) const;
+  /// find_forces() of the step's own evaluation: faces that soften open first.
+  void find_forces_of_step(Particles &particles);
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
@@ -181,6 +192,8 @@ private:
   void clear_forces_at_rest(Particles &particles, const Evaluation<dim> &evaluation) const;
   double dt() const { return time_ - last_time_; }
 
+  /// Returns those that break at once; the others soften from now on.
+  std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
   /// Of a bond on its first particle, in N, where it presses; else 0.
   Vector<dim> pressing_force(const Bond<dim> &bond, const Particles &particles) const;
@@ -208,11 +221,12 @@ private:
   RowBonds<dim> rows_;
   SliceBonds<dim> slices_;
   InelasticStrains<dim> strains_;
+  CohesiveFaces<dim> cohesive_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
   PeriodicJumps<dim> jumps_;
   /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
-  std::vector<ForcePart<dim> *> parts_ = {&slices_,     &surface_,  &strains_,
+  std::vector<ForcePart<dim> *> parts_ = {&slices_,     &surface_,  &strains_, &cohesive_,
                                           &interfaces_, &contacts_, &jumps_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
@@ -224,5 +238,6 @@ private:
   mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
   double time_ = 0, last_time_ = 0; // s
+  double began_at_ = -1;            // s, softening of faces, last
 };
 } // namespace ligament::dem

@@ -12,6 +12,8 @@ void ManyBodyForce<dim>::save(core::State &state, const core::Names &names, cons
     part->save(state, names);
   core::save_value(state, "force", "time", time_);
   core::save_value(state, "force", "last_time", last_time_);
+  if (fracture().softens())
+    core::save_value(state, "force", "began_at", began_at_);
 }
 
 template <int dim>
@@ -23,8 +25,12 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
   broken_.load(state, names);
   for (auto *part : parts_)
     part->load(state, names, p);
+  for (const int i : cohesive_.particles())
+    body_.add_other_particle(i);
   time_ = core::load_real(state, "force", "time");
   last_time_ = core::load_real(state, "force", "last_time");
+  if (core::table(state, "force").has("began_at"))
+    began_at_ = core::load_real(state, "force", "began_at");
 }
 
 // Bonds of strangers are passed over.

@@ -27,7 +27,9 @@ struct PrincipalTension
 
   /// What no tension is above that a traction on a face with this normal has along the largest
   /// principal stress of a tensor (Voigt order), eq. (D12d).
-  static double bound(const Strain<dim> &s, const Vector<dim> &normal, const Vector<dim> &traction)
+  /// Of faces with |n.e1| of at least `least`.
+  static double bound(const Strain<dim> &s, const Vector<dim> &normal, const Vector<dim> &traction,
+                      double least = cone)
   {
     double largest;
     Vector<dim> own;
@@ -42,7 +44,7 @@ struct PrincipalTension
              s[5] * normal[0] + s[1] * normal[1] + s[3] * normal[2],
              s[4] * normal[0] + s[3] * normal[1] + s[2] * normal[2]};
     }
-    return largest + (traction - own).norm() / cone;
+    return largest + (traction - own).norm() / least;
   }
 
   /// Direction of the largest principal stress (Voigt order), unit.

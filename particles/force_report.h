@@ -46,6 +46,7 @@ struct ForceLosses
   double plastic = 0;
   /// By which the leap-frog's invariant fell because forces jumped, theory.md (E10).
   double breaking_step_error = 0;
+  double cohesive = 0; // opened faces that soften
   double viscous = 0;
 };
 
@@ -77,6 +78,17 @@ public:
   {
     static const std::vector<BrokenBond<dim>> none;
     return none;
+  }
+
+  /// Whether faces soften before they break.
+  virtual bool softens() const { return false; }
+  /// Overwrites, of all particles: the largest share of a face of theirs that has softened, and the
+  /// largest opening of one in m.
+  virtual void softening(const Particles<dim> &particles, std::vector<double> &share,
+                         std::vector<double> &opening) const
+  {
+    share.assign(particles.size(), 0.);
+    opening.assign(particles.size(), 0.);
   }
 
   /// Faces that reach this share of their limit (above 0, at most 1) at a compute are kept in mind

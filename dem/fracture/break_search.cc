@@ -45,8 +45,9 @@ void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particle
 template <int dim>
 BreakSearch<dim>::BreakSearch(const FractureLaw &law, const BondedBody<dim> &body,
                               std::vector<int> at_interfaces,
-                              const std::vector<std::int64_t> &names)
-    : criteria_(law, body, names), at_interfaces_(std::move(at_interfaces))
+                              const std::vector<std::int64_t> &names,
+                              const CohesiveFaces<dim> &softening)
+    : criteria_(law, body, names), softening_(softening), at_interfaces_(std::move(at_interfaces))
 {
   if (body.images().is_any())
     body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
@@ -111,7 +112,7 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
-  if (state.body().edge().may_break(b))
+  if (state.body().edge().may_break(b) && !softening_.has(b, p))
     t.utilisation = criteria_.bound(b, t.normal, t.traction, state.body().materials());
   return t;
 }
@@ -146,10 +147,10 @@ void BreakSearch<dim>::clear_by_stress(const StressedBody<dim> &state, Evaluatio
       part->for_each_moment(p, e, add);
   };
   const LatticeArrays<dim> a = e.arrays(p);
-  std::vector<int> kept = screen_.keep(noted, e.noted.own_terms,
-                                       {body.bonds(), a, limit, per_volume, for_each_moment,
-                                        criteria_.tangent(), PrincipalTension<dim>::cone,
-                                        criteria_.measure()});
+  std::vector<int> kept =
+      screen_.keep(noted, e.noted.own_terms,
+                   {body.bonds(), a, limit, per_volume, for_each_moment, criteria_.tangent(),
+                    PrincipalTension<dim>::cone, criteria_.measure()});
   if (!at_images_.empty()) {
     std::vector<int> all;
     std::copy_if(noted.begin(), noted.end(), std::back_inserter(all), [&](int i) {
@@ -207,6 +208,10 @@ BreakSearch<dim>::suspected_bonds(const StressedBody<dim> &state) const
   for (const int i : few)
     test_bonds_of(i, false, [&](int k) { return std::binary_search(few.begin(), few.end(), k); });
   bonds.for_each_interface(test);
+  if (noted.own_terms) // stresses of the kernels don't know openings
+    for (const int i : softening_.particles())
+      for (const bool lattice : {true, false})
+        test_bonds_of(i, lattice, [](int) { return false; });
   return found;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dem/fracture/bond_criteria.h"
+#include "dem/parts/cohesive_faces.h"
 #include "dem/stress_screen.h"
 #include "dem/stressed_body.h"
 
@@ -27,9 +28,10 @@ public:
   using Particles = particles::Particles<dim>;
 
   /// Particles `at_interfaces` have bonds to another material; names of all particles that no
-  /// numbering changes (empty: their indices), which scatter of strengths reads.
+  /// numbering changes (empty: their indices), which scatter of strengths reads. Faces that soften
+  /// have broken as far as the search knows.
   BreakSearch(const FractureLaw &law, const BondedBody<dim> &body, std::vector<int> at_interfaces,
-              const std::vector<std::int64_t> &names);
+              const std::vector<std::int64_t> &names, const CohesiveFaces<dim> &softening);
 
   const FractureLaw &law() const { return criteria_.law(); }
   bool can_break() const { return criteria_.can_break(); }
@@ -68,6 +70,11 @@ public:
 
   /// The bond no longer carries.
   void remove(const Bond<dim> &bond) { screen_.remove(bond); }
+  /// What it takes to open a bond wholly, in J per m^2 of projected crack.
+  double energy_of(const Bond<dim> &bond, const Materials &materials) const
+  {
+    return law().energy_of(materials.number(bond.i), materials.number(bond.j));
+  }
   /// Other bonds, or others' strengths, from now on.
   void reset(const BondedBody<dim> &body);
 
@@ -84,6 +91,7 @@ private:
                      double least) const;
 
   BondCriteria<dim> criteria_;
+  const CohesiveFaces<dim> &softening_;
   std::vector<int> at_interfaces_; // ascending
   std::vector<int> at_images_;     // with a bond to an image, which the screen doesn't know
   double noted_share_ = 1;         // of the limit

@@ -22,12 +22,14 @@ void BrokenBonds<dim>::end_step(const Particles &p, double dt)
 }
 
 template <int dim>
-void BrokenBonds<dim>::add(const Bond<dim> &b, const Particles &p, double time, double energy)
+void BrokenBonds<dim>::add(const Bond<dim> &b, const Particles &p, double time, double energy,
+                           double of_opening)
 {
   broken_at_ = time;
   energy_.add(energy);
   all_.push_back({b.i, b.j, p.global_id[b.i], p.global_id[b.j], time,
-                  Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area, energy});
+                  Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area,
+                  energy + of_opening});
 }
 
 template <int dim>

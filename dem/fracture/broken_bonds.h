@@ -29,8 +29,9 @@ public:
   /// Whether some did at this time (s): then no other does.
   bool have_broken_at(double time) const { return broken_at_ == time; }
 
-  /// `energy` in J, released.
-  void add(const Bond<dim> &bond, const Particles &particles, double time, double energy);
+  /// `energy` in J, released; and what had opened the face before, which is booked elsewhere.
+  void add(const Bond<dim> &bond, const Particles &particles, double time, double energy,
+           double of_opening = 0);
 
   /// Forces and torques of the particles `near` (ascending), which are those after the break,
   /// become the mean with those before it. Over the step before, the force before would have made

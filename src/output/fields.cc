@@ -20,6 +20,8 @@ const std::vector<FieldInfo> &field_table()
       {"global_id", "1", Kind::scalar, name, true, false, false},
       {"material", "1", Kind::scalar, name, true, false, true},
       {"zone", "1", Kind::scalar, name, true, false, true},
+      {"softened", "1", Kind::scalar, number, false, false, false}, // where faces soften
+      {"opening", "m", Kind::scalar, number, false, false, false},
       {"broken_bond_share", "1", Kind::scalar, number, true, false, false}};
   return table;
 }

@@ -16,8 +16,8 @@ std::vector<Column> history_columns(int dimension, bool has_phases, bool has_too
                                  {"stress", "Pa"}, {"displacement", "m"}, {"strain", "1"}};
   for (const char *energy :
        {"kinetic_discrete", "potential_discrete", "kinetic_far", "potential_far", "blended",
-        "impulses", "breaking", "fracture", "friction", "damper_fine", "damper_gap", "damping",
-        "absorbed", "regime_change", "external_work", "residual"})
+        "impulses", "breaking", "fracture", "friction", "cohesive", "damper_fine", "damper_gap",
+        "damping", "absorbed", "regime_change", "external_work", "residual"})
     columns.push_back({energy, "J"});
   if (has_phases)
     columns.insert(columns.end() - 2, {"settled", "J"}); // before external_work and residual

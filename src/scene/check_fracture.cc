@@ -47,10 +47,7 @@ private:
   void tension()
   {
     const bool strength = f_.given(key("strength")), toughness = f_.given(key("toughness"));
-    if (strength && toughness)
-      f_.error(key("toughness"), fmt::format("both \"strength\" and \"toughness\" in {}", section_),
-               "the strength of a bond follows from the toughness", "remove one of them");
-    if (toughness && scene_.zone.packing == PackingKind::file)
+    if (toughness && !strength && scene_.zone.packing == PackingKind::file)
       f_.error(
           key("toughness"),
           fmt::format("\"toughness\" in {} cannot be used with the packing \"file\"", section_),
@@ -66,7 +63,8 @@ private:
       f_.warning(key(strength ? "strength" : "toughness"),
                  "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"",
                  "");
-    for (const char *const name : {"compressive_strength", "cohesion", "friction_angle", "weibull"})
+    for (const char *const name :
+         {"energy", "compressive_strength", "cohesion", "friction_angle", "weibull"})
       if (f_.given(key(name)))
         f_.warning(key(name), fmt::format("\"{}\" in {} is not used", name, section_),
                    "the \"criterion\" is \"none\"", "");
@@ -78,7 +76,7 @@ private:
     const bool opens =
         p_.criterion == Criterion::maximum_tension || p_.criterion == Criterion::face_tension ||
         p_.criterion == Criterion::principal_stress || p_.criterion == Criterion::energy;
-    if (f_.given(key("toughness")) && !opens)
+    if (f_.given(key("toughness")) && !f_.given(key("strength")) && !opens)
       f_.error(key("toughness"),
                fmt::format("\"toughness\" in {} cannot be used with the criterion \"{}\"", section_,
                            word_of(p_.criterion)),

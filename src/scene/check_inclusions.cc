@@ -21,6 +21,7 @@ public:
   void material(const Inclusion &inclusion, const std::string &key)
   {
     check_fracture(inclusion.material, key + "/fracture", scene_, f_);
+    check_softening(scene_, inclusion.material, key + "/fracture", f_);
     const std::string criterion = key + "/fracture/criterion";
     if (!f_.given(criterion) && f_.sound({criterion, "/material/fracture/criterion"}) &&
         scene_.material.fracture.criterion != Criterion::none)

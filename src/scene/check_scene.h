@@ -68,6 +68,10 @@ void check_viscosity(const Scene &scene, Findings &f);
 void check_fracture(const MaterialParameters &material, const std::string &section,
                     const Scene &scene, Findings &findings);
 
+/// Whether faces can soften as it says.
+void check_softening(const Scene &scene, const MaterialParameters &material,
+                     const std::string &section, Findings &findings);
+
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);
 

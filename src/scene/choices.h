@@ -55,6 +55,13 @@ enum class PlasticityLaw
   drucker_prager
 };
 
+/// The curve along which a face softens.
+enum class SofteningCurve
+{
+  linear,
+  bilinear
+};
+
 /// The kinematics of overlap and far field: that of the motion, or a fixed one.
 enum class RegimeChoice
 {
@@ -160,6 +167,12 @@ inline const std::vector<std::string> &words(Criterion)
 inline const std::vector<std::string> &words(PlasticityLaw)
 {
   static const std::vector<std::string> list = {"von_mises", "drucker_prager"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(SofteningCurve)
+{
+  static const std::vector<std::string> list = {"linear", "bilinear"};
   return list;
 }
 

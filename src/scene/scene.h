@@ -120,6 +120,9 @@ struct FractureParameters
   Criterion criterion = Criterion::none;
   std::optional<double> strength;  // Pa
   std::optional<double> toughness; // Pa m^0.5: strength = c K/sqrt(d), c calibrated at set-up
+  std::optional<double> energy;    // J/m^2: G_c of faces that soften
+  SofteningCurve softening = SofteningCurve::linear;
+  double mode_ratio = 1;
   // Of the criteria that have more than one strength.
   std::optional<double> compressive_strength; // Pa
   std::optional<double> cohesion;             // Pa

@@ -86,8 +86,11 @@ void declare_weibull(Section &s, WeibullParameters &w)
 void declare_fracture(Section &s, FractureParameters &f)
 {
   s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or a measure of the stress tensors of its particles with the traction of its face (largest principal stress, von Mises, Drucker-Prager, Mohr-Coulomb, elastic energy); or nothing", words(Criterion()));
-  s.add("strength", f.strength, "uniaxial tension at which a bond breaks, of mohr_coulomb its cut-off in tension; either this or toughness").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
-  s.add("toughness", f.toughness, "K_Ic; the strength follows from it and from the spacing; either this or strength").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
+  s.add("strength", f.strength, "uniaxial tension at which a bond breaks or, with an energy or a toughness beside it, begins to soften; of mohr_coulomb its cut-off in tension").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
+  s.add("energy", f.energy, "G_c per area of crack: faces that reach the strength soften and break when they have taken it; without, they break at once").in("J/m^2").usually(1e-2, 1e7, "N/m kJ/m^2").above(0);
+  s.add("softening", f.softening, "what a face still bears as it opens: one straight line, or two, with the corner at a third of the strength and an opening of 0.8 G_c/f_t as for concrete", words(SofteningCurve()));
+  s.add("mode_ratio", f.mode_ratio, "shear strength over tensile strength of a face that opens").at_least(0.1).at_most(10);
+  s.add("toughness", f.toughness, "K_Ic; alone: the strength follows from it and from the spacing; with a strength: faces soften with the energy K_Ic^2/E'").in("Pa*m^0.5").usually(1e3, 1e9, "MPa*m^0.5 kPa*m^0.5").above(0);
   s.add("compressive_strength", f.compressive_strength, "of drucker_prager, and of mohr_coulomb in place of the cohesion: uniaxial compression at which bonds break").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("cohesion", f.cohesion, "of mohr_coulomb: shear at which a plane without normal stress fails").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
   s.add("friction_angle", f.friction_angle, "of mohr_coulomb: by whose tangent a pressure adds to the shear that a plane bears; broken faces rub with \"friction\"").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);

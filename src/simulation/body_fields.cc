@@ -55,6 +55,12 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   for (int i = 0; i < state.size(); ++i)
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
   fields.fields.push_back(make_field("stress", std::move(tensor)));
+  if (body.force()->softens()) {
+    std::vector<double> share, opening;
+    body.force()->softening(state, share, opening);
+    fields.fields.push_back(make_field("softened", std::move(share)));
+    fields.fields.push_back(make_field("opening", std::move(opening)));
+  }
   return fields;
 }
 

@@ -13,6 +13,7 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
           {"breaking", force.breaking_step_error},
           {"fracture", force.fracture},
           {"friction", force.friction},
+          {"cohesive", force.cohesive},
           {"damper_fine", body.fine_damper},
           {"damper_gap", body.gap_filter},
           {"damping", damping},

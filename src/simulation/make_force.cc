@@ -3,6 +3,7 @@
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
+#include "src/scene/fracture_energy.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -178,6 +179,13 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
   for (std::size_t m = 0; m < materials.size(); ++m) {
     const std::string name = m == 0 ? "" : fmt::format("_inclusion_{}", m);
     law.criteria.push_back(criterion_of(*materials[m]));
+    law.energies.push_back(fracture_energy(scene, *materials[m]).value_or(0));
+    if (law.criteria[m] == dem::FractureLaw::Criterion::none)
+      law.energies[m] = 0;
+    if (law.energies[m] > 0) {
+      law.criteria[m] = dem::FractureLaw::Criterion::opening_tension;
+      figures["fracture_energy" + name] = {law.energies[m], "J/m^2"};
+    }
     law.strengths.push_back(law.criteria[m] == dem::FractureLaw::Criterion::none
                                 ? dem::FaceStrength()
                                 : face_strength_of<dim>(scene, *materials[m], name, figures, log));
@@ -187,7 +195,12 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
   if (law.criterion != dem::FractureLaw::Criterion::none && !scene.material.fracture.strength)
     law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
                      (dim == 2 ? scene.specimen.thickness : 1);
+  law.energy = law.energies[0];
+  if (scene.material.fracture.softening == SofteningCurve::bilinear)
+    law.softening = {1 / 3., 0.8};
+  law.mode_ratio = scene.material.fracture.mode_ratio;
   if (materials.size() == 1) {
+    law.energies.clear();
     law.criteria.clear();
     law.strengths.clear();
   }
