@@ -93,6 +93,16 @@ void InelasticStrains<dim>::load(const core::State &state, const core::Names &na
   }
   const double time = core::load_real(state, "flow", "flowed_at");
   flowed_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
+  if (!is_viscous())
+    return;
+  // Of particles that are new the strain so far is no rate: the next step takes no time.
+  std::vector<char> is_known(body_->n_particles(), 0);
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    if (const int i = names.index(table.keys()[r]); i >= 0)
+      is_known[i] = 1;
+  for (int i = 0; i < body_->n_particles(); ++i)
+    if (laws_[law_number(i)].viscous && !is_known[i])
+      flowed_at_ = std::nullopt;
 }
 
 template class InelasticStrains<2>;

@@ -48,8 +48,8 @@ void InelasticStrains<dim>::set_viscous_step(double time) const
   if (flowed_at_)
     return;
   for (int i = 0; i < body_->n_particles(); ++i)
-    if (laws_[law_number(i)].viscous)
-      age_[i / inelastic_block] = coming;
+    if (auto &age = age_[i / inelastic_block]; age == untouched && laws_[law_number(i)].viscous)
+      age = coming;
 }
 
 template <int dim>
