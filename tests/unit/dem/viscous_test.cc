@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 namespace ligament::dem::testing
 {
 template <typename D>
@@ -315,6 +317,33 @@ TYPED_TEST(Viscous, FacesBreakInBalance)
       const auto [start, lost, taken] = fly<dim>(packing, material, scale, 60, 0.8, law);
       EXPECT_GT(taken, 0.002 * start);
       EXPECT_NEAR(lost / start, 0, 1e-3);
+    }
+}
+
+// A body that stands still while faces break: what they took from the strain is no rate.
+TYPED_TEST(Viscous, ABreakIsNoRate)
+{
+  constexpr int dim = TypeParam::value;
+  for (const auto &packing : {lattice_body<dim>(), random_body<dim>()})
+    for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress}) {
+      if (dim == 3 && plane == PlaneMode::stress)
+        continue;
+      DemMaterial material{1., 0.3, 1., plane, 0};
+      material.viscosity.dashpot = 10;
+      ManyBodyForce<dim> force(packing, material, {});
+      auto p = at_rest(packing, material);
+      disturb<dim>(p, packing.spacing, 0.02, Spin<dim>::Zero(), 3);
+      std::vector<int> all(packing.size());
+      std::iota(all.begin(), all.end(), 0);
+      force.compute(p, 1);
+      force.compute(p, 2);
+      force.set_strength(0.5 * force.max_tension(p, all));
+      for (int time = 3; time < 8; ++time) {
+        force.compute(p, time);
+        for (const int i : all)
+          EXPECT_LT(force.strains().viscous_strain(i).norm(), 1e-11);
+      }
+      EXPECT_GT(force.broken_bonds().size(), 1u);
     }
 }
 
