@@ -40,8 +40,8 @@ bool has_own_strains(const DemMaterial &material)
   return flows(material.plasticity) || is_viscous(material.viscosity);
 }
 
-/// An elastic law, for particles of any material that must not flow.
-constexpr int never_flows = 255;
+/// Three of each material: its own, an elastic one, and one that keeps what has slid.
+constexpr int most_laws = 255;
 } // namespace
 
 template <int dim>
@@ -55,16 +55,20 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
   if (std::none_of(materials.begin(), materials.end(),
                    [](const DemMaterial &m) { return has_own_strains(m); }))
     return;
-  core::require(materials.size() < never_flows, "a body that flows has too many materials");
+  core::require(3 * materials.size() < most_laws, "a body that flows has too many materials");
   for (const DemMaterial &m : materials) {
     check(m.plasticity);
     parameters_.push_back(m.plasticity);
     has_plasticity_ = has_plasticity_ || flows(m.plasticity);
     laws_.push_back(flow_law_of(m));
-    viscous_.emplace_back(m.viscosity, m.shear_modulus());
     if (dem::is_viscous(m.viscosity))
       most_branches_ = std::max(most_branches_, int(m.viscosity.branches.size()));
   }
+  // Of the materials, and of their particles that stay as they are.
+  for (int copy = 0; copy < 2; ++copy)
+    for (const DemMaterial &m : materials)
+      viscous_.emplace_back(m.viscosity, m.shear_modulus());
+  laws_.reserve(3 * laws_.size());
   for (std::size_t k = 0; k < laws_.size(); ++k)
     if (dem::is_viscous(materials[k].viscosity))
       laws_[k].viscous = &viscous_[k].step();
@@ -404,18 +408,18 @@ void InelasticStrains<dim>::remove(const BondId &, const Bond<dim> &b, const Par
   for (const int i : {b.i, b.j}) {
     set_cell(i, p.volume[i]);
     if (!is_held(i, p.volume[i])) {
-      forget_viscosity(i, p.volume[i]);
+      forget_viscosity(i);
       keep_elastic({i});
     }
   }
 }
 
 template <int dim>
-void InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
-                                        double before, double after)
+double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
+                                          double before, double after)
 {
   if (!is_strained(i))
-    return;
+    return 0;
   const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
   const bool first = b.i == i;
@@ -439,8 +443,7 @@ void InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particl
     jump[2] = after - before;
   for (int c = 0; c < n_tensor<dim>; ++c)
     streams_.stream(Streams::stress + c)[i] += jump[c];
-  if (laws_[law_number(i)].viscous)
-    lose_face(i, volume, jump, lost, after);
+  return laws_[law_number(i)].viscous ? lose_face(i, volume, jump, lost, after) : 0;
 }
 
 template class InelasticStrains<2>;

@@ -85,9 +85,9 @@ public:
   void add_energies(const Particles &, Evaluation<dim> &, std::vector<double> &) const override {}
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
   /// After it, with the pressures of particle i before and after: its stress is that without the
-  /// face.
-  void forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
-                   double after);
+  /// face. Returns by how much what its viscous part keeps, theory.md eq. (D28), grew, in J.
+  double forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
+                     double after);
 
   /// Energy in J that flow took, and the part of it that hardening stores.
   double dissipation() const;
@@ -111,12 +111,10 @@ private:
   Tensor damped_strain(int i) const;
   /// sym(e M) of a particle.
   Tensor moved(int i, const Tensor &e) const;
-  /// Energy of its viscous part beside that of eq. (D20b), in J/m^3.
-  double kept_energy(int i) const;
   /// The viscous part of a particle whose stress jumped as it lost a face and what that had of M.
-  void lose_face(int i, double volume, const Tensor &jump, const Matrix &lost, double pressure);
-  /// Before a particle stays elastic.
-  void forget_viscosity(int i, double volume);
+  double lose_face(int i, double volume, const Tensor &jump, const Matrix &lost, double pressure);
+  /// Of a particle that stays elastic from now on.
+  void forget_viscosity(int i);
   int law_number(int i) const { return law_of_.empty() ? 0 : law_of_[i]; }
   /// Of the particle, V M of its bonds and walls; null: a whole cell.
   std::optional<OpenCell<dim>> find_cell(int i, double volume) const;
@@ -132,7 +130,7 @@ private:
   std::vector<WallFace<dim>> walls_;
   std::vector<FlowLaw> laws_;
   std::vector<Plasticity> parameters_;   // of the laws, whose tables they hold
-  mutable std::vector<ViscousNumbers> viscous_; // of the materials
+  mutable std::vector<ViscousNumbers> viscous_; // of the materials, twice
   int most_branches_ = -1; // of a viscous material; -1: there is none
   bool has_plasticity_ = false;
   std::vector<std::uint8_t> law_of_;     // of the particles; empty: all 0

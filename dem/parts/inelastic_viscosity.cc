@@ -43,8 +43,8 @@ void InelasticStrains<dim>::set_viscous_step(double time) const
 {
   if (!is_viscous())
     return;
-  for (ViscousNumbers &v : viscous_)
-    v.set_step(flowed_at_ ? time - *flowed_at_ : 0);
+  for (std::size_t k = 0; k < parameters_.size(); ++k)
+    viscous_[k].set_step(flowed_at_ ? time - *flowed_at_ : 0);
   if (flowed_at_)
     return;
   for (int i = 0; i < body_->n_particles(); ++i)
@@ -106,7 +106,7 @@ auto InelasticStrains<dim>::moved(int i, const Tensor &e) const -> Tensor
 // The springs of the branches stretch with the whole, their dashpots don't follow at once; what the
 // dashpot beside them resists begins anew, lest it takes the face that is missing for a rate.
 template <int dim>
-void InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump, const Matrix &lost,
+double InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump, const Matrix &lost,
                                       double pressure)
 {
   const FlowLaw &law = laws_[law_number(i)];
@@ -117,7 +117,7 @@ void InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump, 
   for (int a = 0; a < dim; ++a)
     for (int b = 0; b < dim; ++b)
       in_plane(a, b) = damped[tensor_place<dim>(a, b)];
-  streams_.stream(Streams::dissipated)[i] -=
+  const double grown =
       volume * (dot(damped, jump) - law.shear * (in_plane * in_plane).cwiseProduct(lost).sum());
   Tensor one = Tensor::Zero();
   one.template head<dim>().setOnes();
@@ -136,28 +136,24 @@ void InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump, 
     streams_.stream(Streams::driving + c)[i] += deviator[c] / (2 * law.shear);
     streams_.stream(Streams::rated + c)[i] = seen[c];
   }
+  return grown;
 }
 
+// Its branches hold on to what has slid, the dashpot beside them lets go with the next step, which
+// books both: a law of its own behind those of elastic particles.
 template <int dim>
-double InelasticStrains<dim>::kept_energy(int i) const
+void InelasticStrains<dim>::forget_viscosity(int i)
 {
-  const FlowLaw &law = laws_[law_number(i)];
-  const Tensor driving = viscous_tensor(i, Streams::driving), damped = damped_strain(i),
-               slid = viscous_tensor(i, Streams::viscous) - damped;
-  double kept = dot(damped, moved(i, damped)) - dot(slid, slid);
-  for (int k = 0; k < law.viscous->n_branches; ++k) {
-    const Tensor own = driving - viscous_tensor(i, Streams::branches + k * n_tensor<dim>);
-    kept += law.viscous->branches[k].share * dot(own, own);
-  }
-  return law.shear * kept + dot(damped, viscous_tensor(i, Streams::stress));
-}
-
-// What it keeps is spent: its strain stays.
-template <int dim>
-void InelasticStrains<dim>::forget_viscosity(int i, double volume)
-{
-  if (laws_[law_number(i)].viscous && is_strained(i))
-    streams_.stream(Streams::dissipated)[i] += volume * kept_energy(i);
+  const int n = int(parameters_.size());
+  if (!laws_[law_number(i)].viscous || law_number(i) >= n)
+    return;
+  keep_elastic({i});
+  if (int(laws_.size()) == 2 * n)
+    for (int k = 0; k < n; ++k) {
+      laws_.push_back(laws_[n + k]);
+      laws_.back().viscous = &viscous_[n + k].step();
+    }
+  law_of_[i] = std::uint8_t(law_of_[i] + n);
 }
 
 template class InelasticStrains<2>;
