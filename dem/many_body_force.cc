@@ -126,6 +126,7 @@ void ManyBodyForce<dim>::find_forces_under(Particles &p, Evaluation<dim> &e) con
 template <int dim>
 void ManyBodyForce<dim>::find_forces_of_step(Particles &p)
 {
+  cohesive_.forget_trial();
   find_other_pressures(p, evaluation_);
   cohesive_.open(p, time_, evaluation_);
   find_forces_under(p, evaluation_);

@@ -137,6 +137,7 @@ public:
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
   bool softens() const override { return fracture().softens(); }
+  double last_softening() const override { return began_at_; }
   void softening(const Particles &particles, std::vector<double> &share,
                  std::vector<double> &opening) const override;
   bool can_break() const override { return search_.can_break(); }

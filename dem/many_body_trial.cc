@@ -1,4 +1,5 @@
 // Looks at states in which the body does not stay: for a solver that seeks its equilibrium.
+#include "dem/bond_law.h"
 #include "dem/linear_terms.h"
 #include "dem/many_body_force.h"
 
@@ -8,11 +9,12 @@ template <int dim>
 void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_share)
 {
   core::require(!strains_.has_law(), "bodies that flow have no trial states");
-  core::require(!fracture().softens(), "bodies with faces that soften have no trial states");
   set_loads(time);
   search_.ask_trial(trial_, noted_share);
   trial_.has_loads = true;
-  find_forces(p, trial_);
+  find_other_pressures(p, trial_);
+  cohesive_.try_to_open(p, trial_);
+  find_forces_under(p, trial_);
   touching_ = contacts_.add_trial_forces(p);
   evaluation_.reactions = trial_.reactions;
 }
@@ -28,7 +30,14 @@ void ManyBodyForce<dim>::compute_bonds(Particles &p, bool has_loads)
 {
   Evaluation<dim> &e = energy_evaluation_;
   e.has_loads = has_loads;
-  find_forces(p, e);
+  const auto openings = cohesive_.openings();
+  if (!has_loads)
+    cohesive_.put_back(std::vector<Opening<dim>>(openings.size(), {Vector<dim>::Zero()}));
+  find_other_pressures(p, e);
+  if (has_loads)
+    cohesive_.open_to_first_order(p, e);
+  find_forces_under(p, e);
+  cohesive_.put_back(openings);
   e.has_loads = true;
   jumps_.show(true);
 }
@@ -51,7 +60,8 @@ void ManyBodyForce<dim>::add_touching(Particles &p)
   }
 }
 
-// A bond between materials as one of its two sides in series, without the volumes.
+// A bond between materials as one of its two sides in series, without the volumes; of one that
+// softens what it has lost.
 template <int dim>
 void ManyBodyForce<dim>::add_other_tangent(
     const Particles &p, const std::function<void(const particles::QuadraticTerm<dim> &)> &add) const
@@ -65,6 +75,17 @@ void ManyBodyForce<dim>::add_other_tangent(
     term.stiffness.head(dim).setConstant(b.weight * b.area / compliance);
     add(term);
   });
+  for (const auto &[name, face] : cohesive_.all()) {
+    constexpr double least = 0.01; // what holds its particles beside it counts, too
+    const auto left = cohesive_.softness(face, p);
+    set_bond_rows(face.bond, p, term);
+    if (left.opens)
+      term.kind = particles::QuadraticTerm<dim>::Kind::softening;
+    term.stiffness.head(dim).setConstant(-law_of(face.bond).shear *
+                                         (1 - std::max(left.share, least)));
+    term.stiffness.tail(n_spins<dim>) *= -(1 - std::max(left.bending_share, least));
+    add(term);
+  }
   term.kind = particles::QuadraticTerm<dim>::Kind::contact;
   for (const auto &c : touching_) {
     term.location = get(p.reference, c.i) + c.lever_i;
@@ -86,6 +107,7 @@ void ManyBodyForce<dim>::resume_at(double time)
   broken_.forget_step();
   last_time_ = time_ = time;
   contacts_.forget_steps();
+  cohesive_.expect_a_jump();
 }
 
 // The rest of the class is instantiated in its own file.

@@ -82,6 +82,8 @@ public:
 
   /// Whether faces soften before they break.
   virtual bool softens() const { return false; }
+  /// When a face last began to do so, in s; below 0 when none has.
+  virtual double last_softening() const { return -1; }
   /// Overwrites, of all particles: the largest share of a face of theirs that has softened, and the
   /// largest opening of one in m.
   virtual void softening(const Particles<dim> &particles, std::vector<double> &share,

@@ -21,6 +21,7 @@ struct QuadraticTerm
     bond,      // between members 0 and 1: extension, shear, bending, twist
     wall,      // between member 0 and a prescribed boundary
     contact,   // between members 0 and 1, which touch
+    softening, // between members 0 and 1: what a bond has lost that opens further
     volumetric // of member 0, which its neighbours (the other members) enter
   };
   Kind kind = Kind::bond;
@@ -136,7 +137,8 @@ public:
   /// Adds what faces that touched in the last trial answer to the motion that the velocities and
   /// spins are, over 1 s; to first order.
   virtual void add_touching(Particles<dim> &) {}
-  /// Terms near to what add_tangent() lacks of it: of these faces, and between materials.
+  /// Terms near to what add_tangent() lacks of it: of these faces, between materials, and of bonds
+  /// that soften, below 0.
   virtual void add_other_tangent(const Particles<dim> &,
                                  const std::function<void(const QuadraticTerm<dim> &)> &) const
   {

@@ -114,7 +114,42 @@ struct CohesiveLaw
                     along * stiffness * along + stiffness.trace() * across, across + beta2 * along);
   }
 
+  /// Whether an open face would go back on its secant.
+  bool unloads(const Opening<dim> &o, const Vector<dim> &normal) const
+  {
+    const double across = normal.dot(o.jump);
+    return unloads(std::hypot(across, mode_ratio * (o.jump - across * normal).norm()), o);
+  }
+
+  /// d force / d jump of a face that is open, where it follows a small change; `last_force` tells
+  /// how one opens that is still shut.
+  Matrix tangent(const Opening<dim> &o, const Vector<dim> &last_force,
+                 const Vector<dim> &normal) const
+  {
+    const Matrix across = normal * normal.transpose();
+    const double beta2 = mode_ratio * mode_ratio;
+    const Matrix metric = across + beta2 * (Matrix::Identity() - across);
+    if (o.damage >= 1)
+      return Matrix::Zero();
+    constexpr double shut = 1e-6; // of the reach
+    const auto [share, slope] = shape.at(o.damage);
+    const double secant = strength * share / std::max(o.largest, shut * reach),
+                 size = std::sqrt(o.jump.dot(metric * o.jump));
+    if (unloads(size, o))
+      return secant * metric;
+    const Vector<dim> way = size > 0 ? o.jump : Vector<dim>(metric.inverse() * last_force);
+    const Vector<dim> pulled = metric * way / std::sqrt(way.dot(metric * way));
+    return secant * metric + (strength * slope / reach - secant) * pulled * pulled.transpose();
+  }
+
 private:
+  /// At this effective opening.
+  static bool unloads(double size, const Opening<dim> &o)
+  {
+    constexpr double round_off = 1e-9;
+    return size < (1 - round_off) * o.largest;
+  }
+
   /// f/kappa, N/m.
   double bond_stiffness(const Opening<dim> &o) const
   {

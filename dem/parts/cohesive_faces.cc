@@ -54,10 +54,11 @@ struct SofteningFace
   }
 
   /// Share of bending and twist that is left: they fall as the face's stiffness does.
-  double bending_share() const
+  double bending_share() const { return bending_share(face.opening); }
+  double bending_share(const Opening<dim> &o) const
   {
-    const double force = face.law.strength * face.law.left(face.opening);
-    return force / (force + law.shear * face.opening.largest);
+    const double force = face.law.strength * face.law.left(o);
+    return force / (force + law.shear * o.largest);
   }
 
   /// What the opening changes in what acts on i and on j.
@@ -130,9 +131,9 @@ void for_each_number(F &face, Visit &&visit)
   };
   visit("strength", face.law.strength);
   visit("reach", face.law.reach);
-  vector("opening", face.opening.jump);
-  visit("largest", face.opening.largest);
-  visit("damage", face.opening.damage);
+  vector("opening", face.stayed.jump);
+  visit("largest", face.stayed.largest);
+  visit("damage", face.stayed.damage);
   vector("last_force", face.last_force);
   vector("last_turn", face.last_turn);
   visit("spent", face.spent);
@@ -179,7 +180,7 @@ void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Parti
   const SofteningFace<dim> now(face, p);
   face.law.strength = face.law.effective(force, now.normal);
   face.whole_energy = energy;
-  face.last_force = now.in_own_axes(force);
+  face.force = face.last_force = now.in_own_axes(force);
   take_direction(face, face.last_force);
   face.last_turn = relative_turn(b, p);
   faces_.emplace(name_of(b, p), face);
@@ -207,64 +208,171 @@ std::map<int, double> CohesiveFaces<dim>::whole_pressures(const Particles &p,
 }
 
 // Faces of one particle see each other through its pressure; one after the other they converge as
-// Gauss and Seidel's method does.
+// Gauss and Seidel's method does, and there and back the answers to small changes are symmetric.
+template <int dim>
+template <typename Answer>
+void CohesiveFaces<dim>::sweep(const Particles &p, Evaluation<dim> &e,
+                               std::map<int, double> &pressure, bool is_exact, Answer &&answer)
+{
+  const auto &lambda = body_.lambda_per_volume();
+  const auto open = [&](Face &face) {
+    const SofteningFace<dim> now(face, p);
+    const int i = face.bond.i, j = face.bond.j;
+    const auto stiffness = now.stiffness(lambda[i], lambda[j]);
+    const Vector<dim> shut = now.force(pressure[i], pressure[j]) + stiffness * now.jump;
+    const Opening<dim> next = answer(now, shut, stiffness);
+    const Vector<dim> opened = next.jump - now.jump;
+    const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
+    pressure[i] += to_i, e.pressure[i] += to_i;
+    pressure[j] += to_j, e.pressure[j] += to_j;
+    face.opening = {now.in_own_axes(next.jump), next.largest, next.damage};
+    return opened.norm() / face.law.reach;
+  };
+  constexpr int most = 100;
+  constexpr double round_off = 1e-14;
+  for (int round = 0; round < (is_exact ? most : 1); ++round) {
+    double largest = 0;
+    for (auto face = faces_.begin(); face != faces_.end(); ++face)
+      largest = std::max(largest, open(face->second));
+    for (auto face = faces_.rbegin(); face != faces_.rend(); ++face)
+      largest = std::max(largest, open(face->second));
+    if (largest < round_off)
+      return;
+  }
+}
+
+template <int dim>
+void CohesiveFaces<dim>::try_to_open(const Particles &p, Evaluation<dim> &e, bool is_exact)
+{
+  std::map<int, double> pressure = whole_pressures(p, e);
+  sweep(p, e, pressure, is_exact,
+        [](const SofteningFace<dim> &now, const Vector<dim> &shut, const auto &stiffness) {
+          const Opening<dim> &stayed = now.face.stayed;
+          return now.face.law.answer({now.in_space(stayed.jump), stayed.largest, stayed.damage},
+                                     shut, stiffness, now.normal);
+        });
+  for (auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p);
+    face.force = now.in_own_axes(now.force(pressure[face.bond.i], pressure[face.bond.j]));
+  }
+}
+
+template <int dim>
+void CohesiveFaces<dim>::forget_trial()
+{
+  for (auto &[name, face] : faces_) {
+    face.opening = face.stayed;
+    face.force = face.last_force;
+  }
+}
+
 template <int dim>
 void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &e)
 {
   if (faces_.empty() || opened_at_ == time)
     return;
   opened_at_ = time;
-  constexpr int sweeps = 2;
-  const auto &lambda = body_.lambda_per_volume();
-  std::map<int, double> pressure = whole_pressures(p, e);
-  struct Start
-  {
-    Opening<dim> opening;
-    double bending_share;
-  };
-  std::vector<Start> starts;
-  for (auto &[name, face] : faces_) {
-    const double bending_share = SofteningFace<dim>(face, p).bending_share();
-    take_direction(face, face.opening.jump);
-    starts.push_back({face.opening, bending_share});
-  }
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    auto start = starts.begin();
-    for (auto &[name, face] : faces_) {
-      const SofteningFace<dim> now(face, p);
-      const int i = face.bond.i, j = face.bond.j;
-      const auto stiffness = now.stiffness(lambda[i], lambda[j]);
-      const Vector<dim> shut = now.force(pressure[i], pressure[j]) + stiffness * now.jump;
-      const Opening<dim> last = {now.in_space(start->opening.jump), start->opening.largest,
-                                 start->opening.damage};
-      const Opening<dim> next = face.law.answer(last, shut, stiffness, now.normal);
-      const Vector<dim> opened = next.jump - now.jump;
-      const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
-      pressure[i] += to_i, e.pressure[i] += to_i;
-      pressure[j] += to_j, e.pressure[j] += to_j;
-      face.opening = {now.in_own_axes(next.jump), next.largest, next.damage};
-      ++start;
-    }
-  }
-  auto start = starts.begin();
+  try_to_open(p, e, has_jumped_);
+  has_jumped_ = false;
   for (auto &[name, face] : faces_) {
     const SofteningFace<dim> now(face, p);
-    const Vector<dim> force =
-        now.in_own_axes(now.force(pressure[face.bond.i], pressure[face.bond.j]));
     const Spin<dim> turn = relative_turn(face.bond, p);
-    const Vector<dim> opened = face.opening.jump - start->opening.jump;
-    const double taken = 0.5 * (face.last_force + force).dot(opened) +
-                         (start->bending_share - now.bending_share()) *
+    const Vector<dim> opened = face.opening.jump - face.stayed.jump;
+    const double taken = 0.5 * (face.last_force + face.force).dot(opened) +
+                         (now.bending_share(face.stayed) - now.bending_share()) *
                              bending_product(face.bond, face.last_turn, turn);
     face.spent += face.law.strength * face.law.reach *
-                  (face.law.shape.area_from(start->opening.damage) -
+                  (face.law.shape.area_from(face.stayed.damage) -
                    face.law.shape.area_from(face.opening.damage));
     work_.add(taken);
     face.work += taken;
-    face.last_force = force;
+    face.stayed = face.opening;
+    face.last_force = face.force;
     face.last_turn = turn;
-    ++start;
   }
+  take_directions(p);
+}
+
+template <int dim>
+void CohesiveFaces<dim>::take_directions(const Particles &p)
+{
+  struct Way
+  {
+    const Face *face;
+    Vector<dim> jump, normal;
+  };
+  std::multimap<int, Way> at;
+  for (const auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p);
+    for (const int i : {face.bond.i, face.bond.j})
+      at.insert({i, {&face, now.jump, now.normal}});
+  }
+  for (auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p);
+    Vector<dim> way = now.jump;
+    const Vector<dim> along = now.jump.norm() > 0 ? now.jump : now.in_space(face.force);
+    for (const int i : {face.bond.i, face.bond.j})
+      for (auto [k, last] = at.equal_range(i); k != last; ++k)
+        if (k->second.face != &face)
+          way += (k->second.jump.dot(along) < 0 ? -1 : 1) * k->second.jump;
+    if (way.norm() > 0)
+      take_direction(face, now.in_own_axes(way));
+  }
+}
+
+// A face that is shut stays so.
+template <int dim>
+void CohesiveFaces<dim>::open_to_first_order(const Particles &p, Evaluation<dim> &e)
+{
+  std::map<int, double> pressure = whole_pressures(p, e);
+  const std::vector<Opening<dim>> about = openings();
+  std::map<const Face *, const Opening<dim> *> about_of;
+  auto of = about.begin();
+  for (const auto &[name, face] : faces_)
+    about_of[&face] = &*of++;
+  sweep(p, e, pressure, true,
+        [&](const SofteningFace<dim> &now, const Vector<dim> &shut,
+            const auto &stiffness) -> Opening<dim> {
+          const Opening<dim> &there = *about_of.at(&now.face);
+          const Vector<dim> jump = now.in_space(there.jump), force = now.in_space(now.face.force);
+          if (there.damage < 1 ? force.dot(now.normal) <= 0 : jump.dot(now.normal) <= 0)
+            return {jump, there.largest, there.damage};
+          const auto tangent =
+              now.face.law.tangent({jump, there.largest, there.damage}, force, now.normal);
+          return {(stiffness + tangent).inverse() * (shut - force + tangent * jump), there.largest,
+                  there.damage};
+        });
+}
+
+template <int dim>
+auto CohesiveFaces<dim>::softness(const Face &face, const Particles &p) const -> Softness
+{
+  const SofteningFace<dim> now(face, p);
+  const double bond = now.law.shear;
+  if (now.in_space(face.force).dot(now.normal) <= 0 && face.opening.damage < 1)
+    return {false, 1, now.bending_share()};
+  const auto tangent = face.law.tangent({now.jump, face.opening.largest, face.opening.damage},
+                                        now.in_space(face.force), now.normal);
+  const double left = std::max(tangent.trace() / dim, 0.);
+  const bool opens = face.opening.damage < 1 && !face.law.unloads(face.opening, face.bond.normal);
+  return {opens, left / (left + bond), now.bending_share()};
+}
+
+template <int dim>
+std::vector<Opening<dim>> CohesiveFaces<dim>::openings() const
+{
+  std::vector<Opening<dim>> all;
+  for (const auto &[name, face] : faces_)
+    all.push_back(face.opening);
+  return all;
+}
+
+template <int dim>
+void CohesiveFaces<dim>::put_back(const std::vector<Opening<dim>> &openings)
+{
+  auto of = openings.begin();
+  for (auto &[name, face] : faces_)
+    face.opening = *of++;
 }
 
 template <int dim>
@@ -272,7 +380,8 @@ void CohesiveFaces<dim>::take_up(const Particles &p, const Evaluation<dim> &e)
 {
   for (auto &[name, face] : faces_) {
     const SofteningFace<dim> now(face, p);
-    face.last_force = now.in_own_axes(now.force(e.pressure[face.bond.i], e.pressure[face.bond.j]));
+    face.force = now.in_own_axes(now.force(e.pressure[face.bond.i], e.pressure[face.bond.j]));
+    face.last_force = face.force;
   }
 }
 
@@ -430,6 +539,8 @@ void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names
     Face face = make(*id, b, p);
     for_each_number<dim>(
         face, [&](const std::string &column, double &value) { value = columns.at(column)[r]; });
+    face.opening = face.stayed;
+    face.force = face.last_force;
     faces_.emplace(name_of(b, p), face);
   }
   const double time = core::load_real(state, "cohesive_clock", "opened_at");

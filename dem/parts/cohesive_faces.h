@@ -18,8 +18,10 @@ struct CohesiveFace
   Bond<dim> bond;
   CohesiveLaw<dim> law;
   bool turns_with_i;    // the opening, with the particle of the smaller global id
-  Opening<dim> opening; // in the axes of that particle
-  Vector<dim> last_force = Vector<dim>::Zero(); // N, in these axes, of the last step
+  Opening<dim> opening; // in the axes of that particle, as the forces see it
+  Opening<dim> stayed;  // the same as the last step left it
+  Vector<dim> force = Vector<dim>::Zero();      // N, in these axes, of the last step or trial
+  Vector<dim> last_force = Vector<dim>::Zero(); // of the last step
   Spin<dim> last_turn = Spin<dim>::Zero();      // of j against i
   double spent = 0;                             // J, below the curve of softening so far
   double whole_energy = 0;                      // J, of a crack along the face
@@ -56,6 +58,26 @@ public:
   /// Once at every new time, between the pressures of the parts and those of the rows: openings
   /// follow the motion, face after face; what that takes is booked.
   void open(const Particles &particles, double time, Evaluation<dim> &evaluation);
+  /// The same in a state in which the body may not stay: the next step opens from the last one.
+  /// To the last digit if `is_exact`; in a step the next one makes up for what is left.
+  void try_to_open(const Particles &particles, Evaluation<dim> &evaluation, bool is_exact = true);
+  /// The next state is not one step away from the last.
+  void expect_a_jump() { has_jumped_ = true; }
+  /// As if nothing had been tried since the last step.
+  void forget_trial();
+  /// As in the state of the last trial or step, and to first order in how far this one is from it.
+  void open_to_first_order(const Particles &particles, Evaluation<dim> &evaluation);
+  /// Openings as the forces see them, in the order of all(), to be put back.
+  std::vector<Opening<dim>> openings() const;
+  void put_back(const std::vector<Opening<dim>> &openings);
+  /// About what is left of the stiffness of a bond and of its bending, where changes are small;
+  /// first whether it would open further.
+  struct Softness
+  {
+    bool opens;
+    double share, bending_share;
+  };
+  Softness softness(const CohesiveFace<dim> &face, const Particles &particles) const;
   /// Those that bear nothing any more and are open, or have slid far.
   std::vector<BondId> torn() const;
   /// Forces jumped: the next step starts from those of the present state.
@@ -86,11 +108,18 @@ public:
 
 private:
   using Face = CohesiveFace<dim>;
+  /// Openings that go with each other, face after face, there and back: answer(face in this state,
+  /// force if it were shut, how much of it an opening takes) is the opening in space.
+  template <typename Answer>
+  void sweep(const Particles &particles, Evaluation<dim> &evaluation,
+             std::map<int, double> &pressure, bool is_exact, Answer &&answer);
   static Name name_of(const Bond<dim> &bond, const Particles &particles);
   /// Pressures of all parts, those of the rows included, of the particles of these faces.
   std::map<int, double> whole_pressures(const Particles &particles,
                                         const Evaluation<dim> &evaluation) const;
 
+  /// Each by the way in which the faces around it open.
+  void take_directions(const Particles &particles);
   Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles) const;
 
   const BondedBody<dim> &body_;
@@ -98,6 +127,7 @@ private:
   double mode_ratio_;
   std::map<Name, Face> faces_;
   std::optional<double> opened_at_; // s
+  bool has_jumped_ = false;
   core::ExactSum work_;
 };
 } // namespace ligament::dem

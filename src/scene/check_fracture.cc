@@ -83,6 +83,15 @@ private:
                "it calibrates the one strength of faces that open, and this criterion breaks faces "
                "in shear and under pressure, too",
                "give \"strength\", or choose maximum_tension, principal_stress or energy");
+    else if (f_.given(key("toughness")) && !f_.given(key("strength")) &&
+             f_.sound({"/specimen", key("toughness")}) && scene_.specimen.cracks.empty() &&
+             scene_.specimen.notches.empty() && !scene_.specimen.body)
+      f_.warning(
+          key("toughness"),
+          fmt::format("\"toughness\" in {}, but nothing is cracked yet", section_),
+          "it becomes a strength of faces that grows as the spacing falls, which is right at "
+          "the tip of a crack alone: the load at which one begins depends on the spacing",
+          "give \"strength\" beside it: faces then soften from it on and take G_c");
   }
 
   void foreign_strengths()

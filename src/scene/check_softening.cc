@@ -109,12 +109,6 @@ void check_softening(const Scene &scene, const MaterialParameters &m, const std:
   if (!softens)
     return;
   check_company(scene, m, section, f);
-  if (scene.time.has_phases() && f.sound({"/time/loading"}))
-    f.error("/time/loading",
-            fmt::format("\"loading\" in /time is \"{}\", but faces soften",
-                        word_of(scene.time.loading)),
-            "equilibria of a body with faces that soften are not found yet",
-            "choose \"dynamic\", slowly and with \"damping\", or leave out \"energy\"");
   const bool has_spacing = f.sound({"/discrete_zone"}) && f.given("/discrete_zone/spacing");
   if (has_spacing && f.sound({"/material", section}) && m.fracture.strength)
     if (const auto energy = fracture_energy(scene, m))

@@ -27,7 +27,8 @@ enum class PhaseEnd
   no_resistance,
   stopped,
   calm,
-  restless
+  restless,
+  face_torn
 };
 
 std::string text_of(PhaseEnd end)
@@ -49,6 +50,8 @@ std::string text_of(PhaseEnd end)
     return "the body is calm";
   case PhaseEnd::restless:
     return "nothing broke for 50 transits";
+  case PhaseEnd::face_torn:
+    return "a face has softened to the end";
   }
   return {};
 }
@@ -196,6 +199,8 @@ bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock 
   double since = time_of(clock, dynamic_since);
   if (n_broken(body) > 0)
     since = std::max(since, body.force()->broken_bonds().back().time);
+  if (body.force())
+    since = std::max(since, body.force()->last_softening());
   const double transits = (clock.now.time - since) / transit;
   if (transits < calm * std::exp2(std::min(n_failures(), 6)))
     return false;
@@ -233,9 +238,10 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
   Work &work = *work_;
   while (true) {
     const auto stop = work.advance_once(body, clock, damping, look);
-    const bool goes_on = work.loading == Loading::sequential && !stop && !clock.is_at_end() &&
-                         work.phases.back().reason != PhaseEnd::out_of_balance &&
-                         work.phases.back().reason != PhaseEnd::no_resistance;
+    const PhaseEnd reason = work.phases.back().reason;
+    const bool goes_on = (work.loading == Loading::sequential || reason == PhaseEnd::face_torn) &&
+                         !stop && !clock.is_at_end() && reason != PhaseEnd::out_of_balance &&
+                         reason != PhaseEnd::no_resistance;
     if (!goes_on)
       return stop;
     if (const auto end = look())
@@ -254,6 +260,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   Phase phase{true, clock.now.step, clock.now.step};
   const int solves = solver.n_solves(), iterations = solver.n_iterations();
   const long broken_before = n_broken(body);
+  const double released = body.force() ? body.force()->losses().fracture : 0;
   std::optional<Stop> stop;
   const auto finish = [&](PhaseEnd reason) {
     phase.end = clock.now.step;
@@ -333,7 +340,10 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       return stop;
     }
     if (n_broken(body) > broken_before) {
-      finish(PhaseEnd::bond_breaks);
+      constexpr double nothing = 1e-6;
+      const auto losses = body.force()->losses();
+      finish(losses.fracture - released > nothing * losses.cohesive ? PhaseEnd::bond_breaks
+                                                                    : PhaseEnd::face_torn);
       return stop;
     }
     if (clock.is_at_end()) {

@@ -344,6 +344,8 @@ std::vector<std::array<int, 3>> StaticSystem<dim>::touching() const
     return faces;
   using Term = particles::QuadraticTerm<dim>;
   body_.force()->add_other_tangent(body_.zone->state, [&](const Term &term) {
+    if (term.kind == Term::Kind::softening)
+      faces.push_back({term.members[0], term.members[1], 2});
     if (term.kind == Term::Kind::contact)
       faces.push_back({term.members[0], term.members[1],
                        term.rows.template block<dim, dim>(0, block).isIdentity()});

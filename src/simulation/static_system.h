@@ -78,7 +78,8 @@ public:
 
   void drop_inert(Eigen::VectorXd &y) const;
 
-  /// Faces that touched in the state of the last forces(): both particles, and 1 where they stick.
+  /// Faces that touched in the state of the last forces(): both particles, and 1 where they stick;
+  /// with 2 those that soften and would open further.
   std::vector<std::array<int, 3>> touching() const;
 
   /// Translations of the present body and small rotations about the middle of the specimen, one

@@ -8,6 +8,7 @@
 #include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/law.h"
 #include "src/verification/cases/law_viscous.h"
+#include "src/verification/cases/softening.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -55,6 +56,7 @@ std::vector<Case> all_cases()
   add(lab_ring_cases());
   add(law_cases());
   add(law_viscous_cases());
+  add(softening_cases());
   add(random_scene_cases());
   return cases;
 }
