@@ -5,7 +5,7 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
-#include "dem/inelastic/own_stress.h"
+#include "dem/inelastic/response.h"
 #include "dem/lane_vectors.h"
 #include "dem/lattice_rows.h"
 #include "dem/laws/bending.h"

@@ -73,11 +73,11 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] *= stiffness[i];
-  strains_.forget_face(b, b.i, p, before[0], pressure[b.i]);
-  strains_.forget_face(b, b.j, p, before[1], pressure[b.j]);
+  const double kept = strains_.forget_face(b, b.i, p, before[0], pressure[b.i]) +
+                      strains_.forget_face(b, b.j, p, before[1], pressure[b.j]);
   if (at_interface)
     interfaces_.add_pressures(p, evaluation_);
-  return local_energy(b, p) - bond_energy(b, p);
+  return local_energy(b, p) - bond_energy(b, p) + kept;
 }
 
 template <int dim>

@@ -134,7 +134,7 @@ public:
   particles::ForceLosses losses() const override
   {
     return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
-            cohesive_work(), strains_.stored_energy()};
+            cohesive_work(), strains_.stored_energy(), viscous_dissipation()};
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
@@ -146,7 +146,7 @@ public:
   long n_bonds() const override { return body_.bonds().n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
-  bool can_flow() const override { return strains_.has_law(); }
+  bool can_flow() const override { return strains_.has_plasticity(); }
   Utilisation<dim> flow_utilisation(const Particles &particles,
                                     const std::vector<Watch> &watch) const override;
   double flow_share(const Strain<dim> &stress, double out_of_plane) const override
@@ -160,6 +160,8 @@ public:
   const InelasticStrains<dim> &strains() const { return strains_; }
   /// Energy in J that flow took: with it the leap-frog's balance is closed.
   double plastic_dissipation() const { return strains_.dissipation(); }
+  /// Energy in J that viscosity took: what branches keep is potential energy.
+  double viscous_dissipation() const { return strains_.viscous_dissipation(); }
 
   /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength) { search_.set_strength(strength, body_); }

@@ -4,6 +4,7 @@
 #include "core/check.h"
 #include "core/types.h"
 #include "dem/inelastic/plasticity.h"
+#include "dem/inelastic/viscosity.h"
 #include "particles/particle_force.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ struct DemMaterial
   PlaneMode plane = PlaneMode::strain; // read in 2D only
   double friction = 0;                 // Coulomb's coefficient of touching faces
   Plasticity plasticity = {};
+  Viscosity viscosity = {};
 
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
 

@@ -8,7 +8,7 @@
 #endif
 
 #include "dem/bond_slices.h"
-#include "dem/inelastic/own_stress.h"
+#include "dem/inelastic/response.h"
 #include "dem/lane_vectors.h"
 #include "dem/stress_bound.h"
 

@@ -48,6 +48,7 @@ struct ForceLosses
   double breaking_step_error = 0;
   double cohesive = 0; // opened faces that soften
   double hardening = 0; // the part of `plastic` that hardening stores; the rest is heat
+  double viscous = 0;
 };
 
 template <int dim>

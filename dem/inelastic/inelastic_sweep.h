@@ -38,6 +38,18 @@ struct InelasticStreams
   static constexpr int history = 2 * stress;     // the law's number, accumulated
   static constexpr int taken = history + 1;      // J, energy that flow took
   static constexpr int n_streams = taken + 1;
+  // Behind them where a material is viscous.
+  static constexpr int viscous = n_streams;                  // the viscous part of e
+  static constexpr int driving = viscous + n_tensor<dim>;    // deviator that drives the branches
+  static constexpr int rated = driving + n_tensor<dim>;      // strain that the dashpot resists
+  static constexpr int dissipated = rated + n_tensor<dim>;   // J, by viscosity
+  static constexpr int branches = dissipated + 1;            // elastic strains of the branches
+
+  /// Of bodies whose materials have up to so many branches; -1: none is viscous.
+  static constexpr int count(int most_branches)
+  {
+    return most_branches < 0 ? n_streams : branches + most_branches * n_tensor<dim>;
+  }
 
   double *first = nullptr;
   long stride = 0;
@@ -58,6 +70,26 @@ enum InelasticAge : std::uint8_t
   coming   // a neighbour has begun
 };
 
+/// What a branch does in the step that ends with a sweep, theory.md eq. (D26).
+struct BranchStep
+{
+  double share = 0;
+  double kept = 1; // of its strain before
+  double lead = 1; // of the increment of the driving strain
+};
+
+/// Viscosity of one material in the same step: e_v = answer d + what the step before left.
+struct ViscousStep
+{
+  int n_branches = 0;
+  const BranchStep *branches = nullptr;
+  double of_branches = 0; // of the answer
+  bool has_dashpot = false;
+  double rate = 0; // of the dashpot: eta / (G Dt)
+
+  double answer() const { return of_branches - rate; }
+};
+
 /// Law of one material as kernels read it.
 struct FlowLaw
 {
@@ -74,6 +106,7 @@ struct FlowLaw
   double friction = 0, dilatancy = 0;  // -
   int n_points = 0;                    // of the yield curve's table; 0: the formula
   const double *strain = nullptr, *stress = nullptr;
+  const ViscousStep *viscous = nullptr; // null: not viscous
 };
 
 /// A cell that lacks faces of the lattice, or all of whose faces are no lattice's: what beside

@@ -1,5 +1,4 @@
-// A particle's own stress and the return to its law, theory.md eqs. (D20), (D21): closed form, in
-// the sweep that finds the pressures; compiled once for every instruction set.
+// A particle's own stress, theory.md eqs. (D20), (D21); compiled once for every instruction set.
 #if defined(LIGAMENT_DEM_OWN_STRESS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIGAMENT_DEM_OWN_STRESS_H
 #undef LIGAMENT_DEM_OWN_STRESS_H
@@ -7,92 +6,11 @@
 #define LIGAMENT_DEM_OWN_STRESS_H
 #endif
 
-#include "dem/inelastic/drucker_prager.h"
-#include "dem/inelastic/von_mises.h"
-
-#include <hwy/cache_control.h>
-
-#include <algorithm>
+#include "dem/inelastic/tensor_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// Particles that lie side by side, from i on.
-template <int dim, typename D>
-struct InARow
-{
-  using V = hn::Vec<D>;
-  static constexpr int n = int(hn::MaxLanes(D()));
-  long i;
-
-  long particle(int lane) const { return i + lane; }
-  HWY_INLINE bool any_open(const int *open) const
-  {
-    const hn::CappedTag<std::int32_t, n> d;
-    return !hn::AllTrue(d, hn::Lt(hn::LoadU(d, open + i), hn::Zero(d)));
-  }
-  /// Asks for what streams hold some vectors after these: they are too many for the processor to
-  /// follow by itself.
-  HWY_INLINE void prefetch(const double *stream) const { hwy::Prefetch(stream + i + 64); }
-  /// visit(block) of all that they lie in.
-  template <typename Visit>
-  HWY_INLINE void for_each_block(Visit &&visit) const
-  {
-    const long first = i / inelastic_block, last = (i + n - 1) / inelastic_block;
-    visit(first);
-    if (HWY_UNLIKELY(last != first))
-      visit(last);
-  }
-  HWY_INLINE V load(D d, const double *stream) const { return hn::LoadU(d, stream + i); }
-  HWY_INLINE void store(D d, V value, hn::Mask<D> where, double *stream) const
-  {
-    if constexpr (n > 1)
-      hn::BlendedStore(value, where, d, stream + i);
-    else if (lane_bits(d, where) & 1) // a masked store would look at lanes behind the first one, too
-      stream[i] = hn::GetLane(value);
-  }
-};
-
-/// Particles anywhere in one block.
-template <int dim, typename D>
-struct Scattered
-{
-  using V = hn::Vec<D>;
-  static constexpr int n = int(hn::MaxLanes(D()));
-  int of[n];
-
-  long particle(int lane) const { return of[lane]; }
-  template <typename Visit>
-  HWY_INLINE void for_each_block(Visit &&visit) const
-  {
-    visit(of[0] / inelastic_block);
-  }
-  HWY_INLINE bool any_open(const int *open) const
-  {
-    int any = -1;
-    for (int l = 0; l < n; ++l)
-      any = std::max(any, open[of[l]]);
-    return any >= 0;
-  }
-  HWY_INLINE void prefetch(const double *) const {}
-  HWY_INLINE V load(D d, const double *stream) const
-  {
-    HWY_ALIGN double value[n];
-    for (int l = 0; l < n; ++l)
-      value[l] = stream[of[l]];
-    return hn::Load(d, value);
-  }
-  HWY_INLINE void store(D d, V value, hn::Mask<D> where, double *stream) const
-  {
-    HWY_ALIGN double values[n];
-    hn::Store(value, d, values);
-    const std::uint32_t lanes = lane_bits(d, where);
-    for (int l = 0; l < n; ++l)
-      if (lanes >> l & 1)
-        stream[of[l]] = values[l];
-  }
-};
-
 /// The strains of particles from the motion of all their faces, and what they answer at inelastic
 /// strains e.
 template <int dim, typename D>
@@ -188,6 +106,28 @@ public:
   }
 
   V volume() const { return volume_; }
+  bool is_open() const { return is_open_; }
+  /// Of open vectors: where M is not the identity.
+  HWY_INLINE hn::Mask<D> is_incomplete() const
+  {
+    V most = hn::Zero(d_);
+    for (int row = 0; row < dim; ++row)
+      for (int a = 0; a < dim; ++a)
+        for (int b = a; b < dim; ++b)
+          most = hn::Max(most, hn::Abs(hn::Sub(moment(row, a, b), hn::Set(d_, double(a == b)))));
+    constexpr double round_off = 1e-9;
+    return hn::Gt(most, hn::Set(d_, round_off));
+  }
+  bool is_plane_stress() const { return dim == 2 && !is_plane_strain_; }
+  /// What e alone does.
+  HWY_INLINE OwnStress without_motion() const
+  {
+    OwnStress still = *this;
+    for (auto &row : still.x_)
+      for (V &x : row)
+        x = hn::Zero(d_);
+    return still;
+  }
 
 private:
   using Cell = OpenCell<dim>;
@@ -237,159 +177,6 @@ private:
   V lambda_per_volume_, volume_, per_volume_;
   V moment_[dim][n_in_plane<dim>];
   bool is_plane_strain_, is_open_ = false;
-};
-
-/// What particles answer to their strains: their e follow in memory where flow is allowed.
-template <int dim, typename D, typename At>
-class Response
-{
-  using V = hn::Vec<D>;
-  using Streams = InelasticStreams<dim>;
-
-public:
-  using Tensor = SymmetricTensor<dim, V>;
-
-  Tensor strain; // e
-  V pressure;    // Pa
-  bool is_strained;
-
-  /// Particles flow where `fresh`: those that have done so in this sweep stay as they are.
-  HWY_INLINE Response(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
-                      const OwnStress<dim, D> &own)
-      : strain(zero_tensor<dim>(hn::Zero(d))), d_(d), s_(s), at_(at)
-  {
-    std::uint8_t youngest = lasting, oldest = untouched;
-    at.for_each_block([&](long b) HWY_ATTR {
-      youngest = std::min(youngest, s.age[b]);
-      oldest = std::max(oldest, s.age[b]);
-    });
-    is_strained = oldest > untouched;
-    knows_before_ = youngest == lasting;
-    if (HWY_UNLIKELY(youngest != oldest) && s.may_flow)
-      begin();
-    if (is_strained)
-      for (int c = 0; c < n_tensor<dim>; ++c)
-        strain.c[c] = at.load(d, s.streams.stream(Streams::strain + c));
-    if (s.may_flow)
-      flow(fresh, own);
-    pressure = own.pressure(strain);
-    if (HWY_UNLIKELY(s.energy != nullptr))
-      at.store(d, own.own_energy(strain, twice_shear()), fresh, s.energy);
-  }
-
-private:
-  /// The state of all blocks is kept from now on.
-  HWY_INLINE void begin() const
-  {
-    at_.for_each_block([&](long b) HWY_ATTR {
-      if (s_.age[b] == untouched)
-        s_.age[b] = begun;
-    });
-  }
-
-  /// Law by law of the lanes.
-  HWY_INLINE void flow(hn::Mask<D> fresh, const OwnStress<dim, D> &own)
-  {
-    if (!s_.law_of) {
-      flow_by(s_.laws[0], fresh, own);
-      return;
-    }
-    const int of_first = s_.law_of[at_.particle(0)];
-    bool differ = false;
-    for (int l = 1; l < At::n; ++l)
-      differ = differ || s_.law_of[at_.particle(l)] != of_first;
-    if (HWY_LIKELY(!differ)) {
-      flow_by(s_.laws[of_first], fresh, own);
-      return;
-    }
-    std::uint32_t left = lane_bits(d_, fresh);
-    while (left != 0) {
-      int first = 0;
-      while (!(left >> first & 1))
-        ++first;
-      const int law = s_.law_of[at_.particle(first)];
-      HWY_ALIGN double has[At::n];
-      for (int l = 0; l < At::n; ++l) {
-        const bool same = (left >> l & 1) && s_.law_of[at_.particle(l)] == law;
-        has[l] = same;
-        if (same)
-          left &= ~(1u << l);
-      }
-      flow_by(s_.laws[law], hn::Gt(hn::Load(d_, has), hn::Zero(d_)), own);
-    }
-  }
-
-  HWY_INLINE void flow_by(const FlowLaw &law, hn::Mask<D> where, const OwnStress<dim, D> &own)
-  {
-    switch (law.kind) {
-    case FlowLaw::Kind::elastic:
-      break;
-    case FlowLaw::Kind::von_mises:
-      flow_by(VonMisesReturn<dim, D>(d_, law), 2 * law.shear, where, own);
-      break;
-    case FlowLaw::Kind::drucker_prager:
-      flow_by(DruckerPragerReturn<dim, D>(d_, law), 2 * law.shear, where, own);
-      break;
-    }
-  }
-
-  template <typename Law>
-  HWY_INLINE void flow_by(const Law &law, double twice_shear, hn::Mask<D> where,
-                          const OwnStress<dim, D> &own)
-  {
-    Tensor stress = own.stress(strain, own.pressure(strain), twice_shear);
-    if (!is_strained) {
-      if (HWY_LIKELY(hn::AllFalse(d_, hn::And(where, law.is_near(stress)))))
-        return;
-      is_strained = true;
-      begin();
-    }
-    for (int k = 0; k < Streams::n_streams; ++k)
-      at_.prefetch(s_.streams.stream(k));
-    double *const history = s_.streams.stream(Streams::history);
-    V h = at_.load(d_, history);
-    Tensor increment;
-    const auto flows = law.flow(stress, where, h, increment);
-    if (!hn::AllFalse(d_, flows)) {
-      for (int c = 0; c < n_tensor<dim>; ++c) {
-        strain.c[c] = hn::Add(strain.c[c], increment.c[c]);
-        at_.store(d_, strain.c[c], flows, s_.streams.stream(Streams::strain + c));
-      }
-      at_.store(d_, h, flows, history);
-      stress = own.stress(strain, own.pressure(strain), twice_shear);
-      book(stress, increment, flows, own);
-    }
-    for (int c = 0; c < n_tensor<dim>; ++c)
-      at_.store(d_, stress.c[c], where, s_.streams.stream(Streams::stress + c));
-  }
-
-  /// Eq. (D23).
-  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> flows,
-                       const OwnStress<dim, D> &own) const
-  {
-    Tensor sum = stress;
-    for (int c = 0; c < n_tensor<dim>; ++c)
-      sum.c[c] = hn::Add(
-          sum.c[c], knows_before_ ? at_.load(d_, s_.streams.stream(Streams::stress + c)) : sum.c[c]);
-    double *const taken = s_.streams.stream(Streams::taken);
-    const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
-    at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), flows,
-              taken);
-  }
-
-  /// 2G of the lanes.
-  HWY_INLINE V twice_shear() const
-  {
-    HWY_ALIGN double value[At::n];
-    for (int l = 0; l < At::n; ++l)
-      value[l] = 2 * s_.laws[s_.law_of ? s_.law_of[at_.particle(l)] : 0].shear;
-    return hn::Load(d_, value);
-  }
-
-  D d_;
-  const InelasticSweep<dim> &s_;
-  At at_;
-  bool knows_before_;
 };
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

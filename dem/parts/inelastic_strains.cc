@@ -1,13 +1,11 @@
 #include "dem/parts/inelastic_strains.h"
 
-#include "core/exact_sum.h"
 #include "dem/bond_law.h"
 
 #include <algorithm>
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
-#include <string>
 
 namespace ligament::dem
 {
@@ -37,8 +35,13 @@ FlowLaw flow_law_of(const DemMaterial &material)
   return law;
 }
 
-/// An elastic law, for particles of any material that must not flow.
-constexpr int never_flows = 255;
+bool has_own_strains(const DemMaterial &material)
+{
+  return flows(material.plasticity) || is_viscous(material.viscosity);
+}
+
+/// Three of each material: its own, an elastic one, and one that keeps what has slid.
+constexpr int most_laws = 255;
 } // namespace
 
 template <int dim>
@@ -50,14 +53,25 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
 {
   const auto &materials = body.materials().all();
   if (std::none_of(materials.begin(), materials.end(),
-                   [](const DemMaterial &m) { return flows(m.plasticity); }))
+                   [](const DemMaterial &m) { return has_own_strains(m); }))
     return;
-  core::require(materials.size() < never_flows, "a body that flows has too many materials");
+  core::require(3 * materials.size() < most_laws, "a body that flows has too many materials");
   for (const DemMaterial &m : materials) {
     check(m.plasticity);
     parameters_.push_back(m.plasticity);
+    has_plasticity_ = has_plasticity_ || flows(m.plasticity);
     laws_.push_back(flow_law_of(m));
+    if (dem::is_viscous(m.viscosity))
+      most_branches_ = std::max(most_branches_, int(m.viscosity.branches.size()));
   }
+  // Of the materials, and of their particles that stay as they are.
+  for (int copy = 0; copy < 2; ++copy)
+    for (const DemMaterial &m : materials)
+      viscous_.emplace_back(m.viscosity, m.shear_modulus());
+  laws_.reserve(3 * laws_.size());
+  for (std::size_t k = 0; k < laws_.size(); ++k)
+    if (dem::is_viscous(materials[k].viscosity))
+      laws_[k].viscous = &viscous_[k].step();
   for (std::size_t k = 0; k < laws_.size(); ++k)
     if (const auto *mises = std::get_if<VonMisesFlow>(&parameters_[k])) {
       laws_[k].strain = mises->yield.strain.data();
@@ -69,7 +83,7 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
       law_of_.push_back(std::uint8_t(body.materials().number(i)));
   // Streams don't lie a multiple of 4096 bytes apart, lest they share sets of the cache.
   const long stride = (long(n) + most_lanes + 63) / 64 * 64 + 24;
-  numbers_ = core::LargeArray(Streams::n_streams * stride, false);
+  numbers_ = core::LargeArray(Streams::count(most_branches_) * stride, false);
   streams_ = {numbers_.data(), stride};
   age_.assign((n + inelastic_block - 1) / inelastic_block, untouched);
   if (body.bonds().n_directions() > 0) {
@@ -219,6 +233,7 @@ void InelasticStrains<dim>::keep_elastic(const std::vector<int> &particles)
     for (int k = 0; k < n; ++k) {
       laws_.push_back(laws_[k]);
       laws_.back().kind = FlowLaw::Kind::elastic;
+      laws_.back().viscous = nullptr;
     }
   for (const int i : particles)
     if (law_of_[i] < n)
@@ -232,6 +247,7 @@ InelasticSweep<dim> InelasticStrains<dim>::begin(bool may_flow, double time) con
     std::fill(cell.number, cell.number + OpenCell<dim>::volume, 0.);
   may_flow = may_flow && flowed_at_ != time;
   if (may_flow) {
+    set_viscous_step(time);
     flowed_at_ = time;
     // Neighbours begin, too, so that a front finds them with what their stress was before.
     for (std::size_t b = 0; b < age_.size(); ++b)
@@ -391,17 +407,19 @@ void InelasticStrains<dim>::remove(const BondId &, const Bond<dim> &b, const Par
     return;
   for (const int i : {b.i, b.j}) {
     set_cell(i, p.volume[i]);
-    if (!is_held(i, p.volume[i]))
+    if (!is_held(i, p.volume[i])) {
+      forget_viscosity(i);
       keep_elastic({i});
+    }
   }
 }
 
 template <int dim>
-void InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
-                                        double before, double after)
+double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
+                                          double before, double after)
 {
   if (!is_strained(i))
-    return;
+    return 0;
   const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
   const bool first = b.i == i;
@@ -417,87 +435,15 @@ void InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particl
       rest(r, c) = of[r * n_in_plane<dim> + in_plane_place<dim>(r, c)];
   const Matrix change = twice_shear * (e * lost - x / volume) + after * rest -
                         before * (rest + lost);
+  Tensor jump = Tensor::Zero();
   for (int r = 0; r < dim; ++r)
     for (int c = r; c < dim; ++c)
-      streams_.stream(Streams::stress + tensor_place<dim>(r, c))[i] +=
-          0.5 * (change(r, c) + change(c, r));
+      jump[tensor_place<dim>(r, c)] = 0.5 * (change(r, c) + change(c, r));
   if (body_->is_plane_strain())
-    streams_.stream(Streams::stress + 2)[i] += after - before;
-}
-
-template <int dim>
-double InelasticStrains<dim>::dissipation() const
-{
-  if (!has_begun())
-    return 0;
-  const double *const taken = streams_.stream(Streams::taken);
-  core::ExactSum sum;
-  for (int i = 0; i < body_->n_particles(); ++i)
-    if (is_strained(i) && taken[i] != 0)
-      sum.add(taken[i]);
-  return sum.value();
-}
-
-template <int dim>
-double InelasticStrains<dim>::stored_energy() const
-{
-  core::ExactSum sum;
-  if (!has_begun())
-    return 0;
-  for (int i = 0; i < body_->n_particles(); ++i)
-    if (const double h = history(i); h != 0) {
-      const int law = law_number(i) % int(parameters_.size());
-      const double volume = open_[i] >= 0 ? cells_[open_[i]].number[OpenCell<dim>::volume]
-                            : body_->volumes().empty() ? whole_volume_
-                                                       : body_->volumes()[i];
-      sum.add(volume * dem::stored_energy(parameters_[law], h));
-    }
-  return sum.value();
-}
-
-template <int dim>
-void InelasticStrains<dim>::save(core::State &state, const core::Names &names) const
-{
-  if (!has_law())
-    return;
-  std::vector<std::int64_t> keys, ages;
-  std::vector<std::vector<double>> values(Streams::n_streams);
-  for (const int i : names.ascending())
-    if (is_strained(i)) {
-      keys.push_back(names.name(i));
-      ages.push_back(age_[i / inelastic_block]);
-      for (int k = 0; k < Streams::n_streams; ++k)
-        values[k].push_back(streams_.stream(k)[i]);
-    }
-  core::Table table(std::move(keys));
-  table.add("age", ages);
-  for (int k = 0; k < Streams::n_streams; ++k)
-    table.add("number_" + std::to_string(k), values[k]);
-  state["inelastic"] = std::move(table);
-  core::save_value(state, "flow", "flowed_at", flowed_at_.value_or(std::nan("")));
-}
-
-template <int dim>
-void InelasticStrains<dim>::load(const core::State &state, const core::Names &names,
-                                 const Particles &)
-{
-  if (!has_law())
-    return;
-  const core::Table &table = core::table(state, "inelastic");
-  const auto ages = table.integers("age");
-  for (std::size_t r = 0; r < table.n_rows(); ++r)
-    if (const int i = names.index(table.keys()[r]); i >= 0) {
-      std::uint8_t &age = age_[i / inelastic_block];
-      age = std::max(age, std::uint8_t(ages[r]));
-    }
-  for (int k = 0; k < Streams::n_streams; ++k) {
-    const auto values = table.reals("number_" + std::to_string(k));
-    for (std::size_t r = 0; r < table.n_rows(); ++r)
-      if (const int i = names.index(table.keys()[r]); i >= 0)
-        streams_.stream(k)[i] = values[r];
-  }
-  const double time = core::load_real(state, "flow", "flowed_at");
-  flowed_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
+    jump[2] = after - before;
+  for (int c = 0; c < n_tensor<dim>; ++c)
+    streams_.stream(Streams::stress + c)[i] += jump[c];
+  return laws_[law_number(i)].viscous ? lose_face(i, volume, jump, lost, after) : 0;
 }
 
 template class InelasticStrains<2>;

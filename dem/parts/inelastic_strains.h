@@ -9,6 +9,26 @@
 
 namespace ligament::dem
 {
+/// Viscosity of a material, and what it does in a step.
+class ViscousNumbers
+{
+public:
+  ViscousNumbers(const Viscosity &material, double shear_modulus);
+  ViscousNumbers(ViscousNumbers &&) = default; // what points into it stays
+
+  /// In s; 0: everything follows at once.
+  void set_step(double dt);
+  const ViscousStep &step() const { return step_; }
+  /// eta / G in s.
+  double damping_time() const { return time_; }
+
+private:
+  Viscosity material_;
+  double time_;
+  std::vector<BranchStep> branches_;
+  ViscousStep step_;
+};
+
 /// Of bodies with a material that flows; of others nothing here costs anything.
 template <int dim>
 class InelasticStrains : public ForcePart<dim>
@@ -22,6 +42,10 @@ public:
                    std::vector<WallFace<dim>> walls, const std::vector<int> &loaded);
 
   bool has_law() const { return !laws_.empty(); }
+  bool has_plasticity() const { return has_plasticity_; }
+  bool is_viscous() const { return most_branches_ >= 0; }
+  /// Of the dashpots, eta / G in s.
+  double longest_damping() const;
   /// Whether any particle has had half of the stress under which it flows.
   bool has_begun() const;
 
@@ -42,6 +66,8 @@ public:
   /// The law's number of a particle: accumulated plastic strain.
   double history(int i) const;
   void set_strain(int i, const Tensor &strain);
+  /// The part of e that is viscous.
+  Tensor viscous_strain(int i) const;
 
   /// Of a bond, its elastic part without what the strains take, eq. (D22).
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles, const Turn<dim> &turn_i,
@@ -59,12 +85,13 @@ public:
   void add_energies(const Particles &, Evaluation<dim> &, std::vector<double> &) const override {}
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
   /// After it, with the pressures of particle i before and after: its stress is that without the
-  /// face.
-  void forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
-                   double after);
+  /// face. Returns by how much what its viscous part keeps, theory.md eq. (D28), grew, in J.
+  double forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
+                     double after);
 
   /// Energy in J that flow took, and the part of it that hardening stores.
   double dissipation() const;
+  double viscous_dissipation() const; // J
   double stored_energy() const;
 
   void save(core::State &state, const core::Names &names) const override;
@@ -74,6 +101,20 @@ public:
 private:
   using Streams = InelasticStreams<dim>;
 
+  int n_streams() const { return Streams::count(most_branches_); }
+  double sum_of(int stream) const;
+  /// For the step that ends at this time.
+  void set_viscous_step(double time) const;
+  Tensor viscous_tensor(int i, int stream) const;
+  static double dot(const Tensor &a, const Tensor &b);
+  /// What the dashpot has of it.
+  Tensor damped_strain(int i) const;
+  /// sym(e M) of a particle.
+  Tensor moved(int i, const Tensor &e) const;
+  /// The viscous part of a particle whose stress jumped as it lost a face and what that had of M.
+  double lose_face(int i, double volume, const Tensor &jump, const Matrix &lost, double pressure);
+  /// Of a particle that stays elastic from now on.
+  void forget_viscosity(int i);
   int law_number(int i) const { return law_of_.empty() ? 0 : law_of_[i]; }
   /// Of the particle, V M of its bonds and walls; null: a whole cell.
   std::optional<OpenCell<dim>> find_cell(int i, double volume) const;
@@ -89,6 +130,9 @@ private:
   std::vector<WallFace<dim>> walls_;
   std::vector<FlowLaw> laws_;
   std::vector<Plasticity> parameters_;   // of the laws, whose tables they hold
+  mutable std::vector<ViscousNumbers> viscous_; // of the materials, twice
+  int most_branches_ = -1; // of a viscous material; -1: there is none
+  bool has_plasticity_ = false;
   std::vector<std::uint8_t> law_of_;     // of the particles; empty: all 0
   mutable core::LargeArray numbers_;
   Streams streams_;

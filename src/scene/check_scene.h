@@ -61,6 +61,8 @@ void check_inclusions(const Scene &scene, const Box &specimen, const Layout *lay
 
 /// Laws of flow, and what they cannot be used with.
 void check_plasticity(const Scene &scene, Findings &f);
+/// Viscosity, and what it cannot be used with.
+void check_viscosity(const Scene &scene, Findings &f);
 
 /// When the bonds of a material break; `section` is the key of its "fracture".
 void check_fracture(const MaterialParameters &material, const std::string &section,

@@ -78,6 +78,9 @@ void check_company(const Scene &scene, const MaterialParameters &m, const std::s
     if (other->plasticity)
       f.error(energy, fmt::format("faces soften, but {} has \"plasticity\"", key),
               "what flows is not told from what opens yet", "leave out one of them");
+    if (other->viscosity)
+      f.error(energy, fmt::format("faces soften, but {} has \"viscosity\"", key),
+              "what flows is not told from what opens yet", "leave out one of them");
   }
   if (!scene.specimen.periodic.empty())
     f.error(energy, "faces soften, but sides are joined by \"periodic\"",

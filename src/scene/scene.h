@@ -158,6 +158,18 @@ struct PlasticityParameters
   double dilatancy_angle = 0;                     // rad
 };
 
+/// A spring and a dashpot in series.
+struct BranchParameters
+{
+  double share = 0, relaxation_time = 0; // of the shear modulus, s
+};
+
+struct ViscosityParameters
+{
+  std::vector<BranchParameters> branches;
+  std::optional<double> shear_viscosity; // Pa s
+};
+
 struct MaterialParameters
 {
   double youngs_modulus; // Pa
@@ -166,6 +178,7 @@ struct MaterialParameters
   double friction = 0;
   FractureParameters fracture;
   std::optional<PlasticityParameters> plasticity;
+  std::optional<ViscosityParameters> viscosity;
 };
 
 /// Particles of another material: those with their centre in one of the regions. The k-th one, from
@@ -440,12 +453,17 @@ struct Scene
   TimeParameters time;
   OutputParameters output;
 
-  /// Whether any material may flow.
-  bool flows() const
+  /// Whether any material may flow, or is viscous.
+  bool flows() const { return any_has(&MaterialParameters::plasticity); }
+  bool is_viscous() const { return any_has(&MaterialParameters::viscosity); }
+
+private:
+  template <typename Law>
+  bool any_has(std::optional<Law> MaterialParameters::*law) const
   {
-    return material.plasticity.has_value() ||
+    return (material.*law).has_value() ||
            std::any_of(inclusions.begin(), inclusions.end(),
-                       [](const Inclusion &i) { return i.material.plasticity.has_value(); });
+                       [&](const Inclusion &i) { return (i.material.*law).has_value(); });
   }
 };
 } // namespace ligament::program

@@ -116,6 +116,18 @@ void declare_plasticity(Section &s, PlasticityParameters &p)
   s.add("dilatancy_angle", p.dilatancy_angle, "of drucker_prager: by which flow swells; at most the friction angle").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
 }
 
+void declare_branch(Section &s, BranchParameters &b)
+{
+  s.add("share", b.share, "of the shear modulus that \"youngs_modulus\" and \"poissons_ratio\" give, which is the instantaneous one").above(0).at_most(1).required();
+  s.add("relaxation_time", b.relaxation_time, "within which its stress falls to 1/e; longer than a step").in("s").usually(1e-12, 1e9, "us ms ns").above(0).required();
+}
+
+void declare_viscosity(Section &s, ViscosityParameters &v)
+{
+  s.list("branches", v.branches, "generalised Maxwell material: springs and dashpots in series, beside a spring with the share of the shear modulus that they leave; a share of 1 in all is a fluid. E and nu of the material are those of fast loads; the volume stays elastic", declare_branch);
+  s.add("shear_viscosity", v.shear_viscosity, "Kelvin and Voigt's dashpot beside all that: stress 2 eta times the rate of the deviator of strain; it makes the stable step shorter").in("Pa*s").usually(1e-3, 1e12, "mPa*s kPa*s MPa*s GPa*s").above(0);
+}
+
 void declare_material(Section &s, MaterialParameters &m)
 {
   s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").usually(1e5, 2e12, "GPa MPa kPa").above(0).required();
@@ -124,6 +136,7 @@ void declare_material(Section &s, MaterialParameters &m)
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
   s.section("plasticity", m.plasticity, "none", "what particles flow by; cells and the overlap stay elastic", declare_plasticity);
+  s.section("viscosity", m.viscosity, "none", "how the shear stress of particles relaxes and is damped, also together with plasticity; cells and the overlap stay elastic", declare_viscosity);
 }
 
 void declare_ball(Section &s, Hole &h)

@@ -13,6 +13,9 @@ namespace
 {
 constexpr int rows_per_flush = 50;
 
+/// Where a material is viscous.
+const Column viscous = {"viscous", "J"};
+
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
 std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
@@ -22,6 +25,8 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
   if (scene.flows())
     for (const auto &channel : EnergyLedger().flow_channels())
       columns.push_back({channel.first, "J"});
+  if (scene.is_viscous())
+    columns.push_back(viscous);
   for (const auto &servo : servos)
     columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
@@ -40,7 +45,8 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
-      has_flow_(scene.flows()), gauges_(scene, body), servos_(servo_targets(scene, body, gauges_)),
+      has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()), gauges_(scene, body),
+      servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
 }
@@ -61,6 +67,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
   if (has_flow_)
     for (const auto &[name, value] : row.ledger.flow_channels())
       writer_.set(name, value);
+  if (has_viscosity_)
+    writer_.set(viscous.name, row.ledger.force.viscous);
   if (has_phases_)
     writer_.set("static", row.is_static);
   writer_.set("broken_bonds", double(row.n_broken));

@@ -44,6 +44,17 @@ dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
   return dem::VonMisesFlow{curve};
 }
 
+dem::Viscosity viscosity_of(const std::optional<ViscosityParameters> &p)
+{
+  dem::Viscosity v;
+  if (!p)
+    return v;
+  for (const BranchParameters &b : p->branches)
+    v.branches.push_back({b.share, b.relaxation_time});
+  v.dashpot = p->shear_viscosity.value_or(0);
+  return v;
+}
+
 dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)
 {
   dem::DemMaterial m;
@@ -53,6 +64,7 @@ dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode pla
   m.plane = plane;
   m.friction = parameters.friction;
   m.plasticity = plasticity_of(parameters.plasticity);
+  m.viscosity = viscosity_of(parameters.viscosity);
   return m;
 }
 

@@ -8,6 +8,7 @@
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
 #include "src/verification/cases/law.h"
+#include "src/verification/cases/law_viscous.h"
 #include "src/verification/cases/softening.h"
 #include "src/verification/cases/static.h"
 
@@ -58,6 +59,7 @@ std::vector<Case> all_cases()
   add(flow_strip_cases());
   add(flow_cone_cases());
   add(flow_balance_cases());
+  add(law_viscous_cases());
   add(softening_cases());
   add(random_scene_cases());
   return cases;

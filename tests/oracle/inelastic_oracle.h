@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dem/inelastic/plasticity.h"
+#include "dem/inelastic/viscosity.h"
 #include "packings/packing.h"
 
 #include <Eigen/Eigenvalues>
@@ -24,25 +25,39 @@ public:
   std::vector<Eigen::Matrix3d> stress; // after the last flow(), Pa
 
   InelasticOracle(const packings::Packing<dim> &packing, double e, double nu,
-                  dem::Plasticity law, PlaneMode plane = PlaneMode::strain)
+                  dem::Plasticity law, PlaneMode plane = PlaneMode::strain,
+                  dem::Viscosity viscosity = {})
       : strain(packing.size(), Eigen::Matrix3d::Zero()), history(packing.size(), 0.),
         stress(strain), packing_(packing), e_(e), nu_(nu), g_(e / (2 * (1 + nu))),
-        k_(e / (3 * (1 - 2 * nu))), law_(std::move(law)), plane_(plane)
+        k_(e / (3 * (1 - 2 * nu))), law_(std::move(law)), plane_(plane),
+        viscosity_(std::move(viscosity))
   {
+    Creep none;
+    none.slid.resize(viscosity_.branches.size(), Eigen::Matrix3d::Zero());
+    creep_.assign(packing.size(), none);
   }
 
-  /// Every particle yields once.
-  void flow(const particles::Particles<dim> &p)
+  /// Every particle yields once, `dt` after it did so last.
+  void flow(const particles::Particles<dim> &p, double dt = 0)
   {
     const State s(*this, p);
     for (int i = 0; i < packing_.size(); ++i) {
       stress[i] = own_stress(s, i);
       if (!is_held(i))
         continue;
+      Eigen::Matrix3d viscous = creep_[i].all;
+      if (dem::is_viscous(viscosity_))
+        creep(s, i, dt, viscous);
+      stress[i] = own_stress(s, i);
+      const double shear = g_ * (1 - answer(dt));
       if (const auto *mises = std::get_if<dem::VonMisesFlow>(&law_))
-        flow(*mises, i);
+        flow(*mises, i, shear);
       if (const auto *prager = std::get_if<dem::DruckerPragerFlow>(&law_))
-        flow(*prager, i);
+        flow(*prager, i, shear);
+      if (dem::is_viscous(viscosity_)) {
+        creep(s, i, dt, viscous);
+        creep_[i] = after(creep_[i], driving(s, i, viscous, dt), seen(s, i, viscous), dt);
+      }
       stress[i] = own_stress(s, i);
     }
   }
@@ -105,6 +120,116 @@ private:
     }
   };
 
+  /// The viscous part of a particle's strain: strains of the dashpots of its branches, what
+  /// drives it, all of it.
+  struct Creep
+  {
+    std::vector<Eigen::Matrix3d> slid;
+    Eigen::Matrix3d driving = Eigen::Matrix3d::Zero(), rated = driving, all = driving;
+    Eigen::Matrix3d damped = driving; // by the dashpot beside the branches
+  };
+
+  /// Each dashpot follows (d - slid)/T, d straight in time.
+  Creep after(Creep c, const Eigen::Matrix3d &now, const Eigen::Matrix3d &rated, double dt) const
+  {
+    c.all.setZero();
+    for (std::size_t k = 0; k < c.slid.size(); ++k) {
+      const auto &[share, time] = viscosity_.branches[k];
+      if (dt > 0) {
+        const Eigen::Matrix3d slope = (now - c.driving) / dt;
+        const Eigen::Matrix3d late = c.driving - time * slope - c.slid[k];
+        c.slid[k] = now - time * slope - std::exp(-dt / time) * late;
+      }
+      c.all += share * c.slid[k];
+    }
+    c.damped.setZero();
+    if (dt > 0)
+      c.damped = -viscosity_.dashpot / g_ / dt * (rated - c.rated);
+    c.all += c.damped;
+    c.driving = now;
+    c.rated = rated;
+    return c;
+  }
+
+  /// What a unit of d adds to the viscous strain.
+  double answer(double dt) const
+  {
+    Creep none;
+    none.slid.resize(viscosity_.branches.size(), Eigen::Matrix3d::Zero());
+    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+    return after(none, one, one, dt).all(0, 0);
+  }
+
+  bool is_whole(const State &s, int i) const
+  {
+    return (s.m[i] / packing_.volume[i] - Matrix::Identity()).norm() < 1e-9;
+  }
+
+  static Eigen::Matrix3d deviator(const Eigen::Matrix3d &t)
+  {
+    return t - t.trace() / 3 * Eigen::Matrix3d::Identity();
+  }
+
+  /// What drives the branches: in open cells as if the dashpot beside them were not there.
+  Eigen::Matrix3d driving(const State &s, int i, const Eigen::Matrix3d &viscous, double dt)
+  {
+    if (is_whole(s, i))
+      return viscous + deviator(own_stress(s, i)) / (2 * g_);
+    Eigen::Matrix3d damped = Eigen::Matrix3d::Zero();
+    if (dt > 0)
+      damped = -viscosity_.dashpot / g_ / dt * (seen(s, i, viscous) - creep_[i].rated);
+    const Eigen::Matrix3d all = strain[i];
+    strain[i] -= damped;
+    const Eigen::Matrix3d t = own_stress(s, i);
+    strain[i] = all;
+    return viscous - damped + deviator(t) / (2 * g_);
+  }
+
+  /// What the dashpot resists: d in whole cells, in others the part of E - e M, of what is not
+  /// viscous in e, that is across M.
+  Eigen::Matrix3d seen(const State &s, int i, const Eigen::Matrix3d &viscous) const
+  {
+    if (is_whole(s, i))
+      return viscous + deviator(own_stress(s, i)) / (2 * g_);
+    const double v = packing_.volume[i];
+    const Matrix m = s.m[i] / v;
+    const Eigen::Matrix3d other = strain[i] - viscous;
+    const Matrix e = other.template topLeftCorner<dim, dim>(),
+                 found = (s.x[i] + s.x[i].transpose()) / (2 * v) - 0.5 * (e * m + m * e);
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero(), y = moment;
+    moment.template topLeftCorner<dim, dim>() = m;
+    y.template topLeftCorner<dim, dim>() = found;
+    if (is_plane_strain()) {
+      moment(2, 2) = 1;
+      y(2, 2) = -other(2, 2);
+    }
+    return y - y.cwiseProduct(moment).sum() / moment.squaredNorm() * moment;
+  }
+
+  /// Solves viscous = after(driving(viscous)), which is linear; its part of the strain follows.
+  void creep(const State &s, int i, double dt, Eigen::Matrix3d &viscous)
+  {
+    const Eigen::Matrix3d other = strain[i] - viscous;
+    const auto excess = [&](const Eigen::Matrix3d &v) -> Eigen::Matrix3d {
+      strain[i] = other + v;
+      return v - after(creep_[i], driving(s, i, v, dt), seen(s, i, v), dt).all;
+    };
+    const Eigen::Matrix3d zero = Eigen::Matrix3d::Zero(), start = excess(zero);
+    Eigen::Matrix<double, 9, 9> slope;
+    for (int c = 0; c < 9; ++c) {
+      Eigen::Matrix3d unit = zero;
+      unit(c) = 0.5;
+      unit = (unit + unit.transpose()).eval();
+      const Eigen::Matrix3d change = excess(unit) - start;
+      slope.col(c) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data());
+    }
+    const Eigen::Matrix<double, 9, 1> x = slope.completeOrthogonalDecomposition().solve(
+        -Eigen::Map<const Eigen::Matrix<double, 9, 1>>(start.data()));
+    const Eigen::Matrix3d found = Eigen::Map<const Eigen::Matrix3d>(x.data());
+    viscous = 0.5 * (found + found.transpose());
+    strain[i] = other + viscous;
+  }
+
   /// Faces that are few and eccentric don't hold a particle.
   bool is_held(int i) const
   {
@@ -145,23 +270,23 @@ private:
     return t;
   }
 
-  void flow(const dem::VonMisesFlow &law, int i)
+  void flow(const dem::VonMisesFlow &law, int i, double shear_modulus)
   {
     const Eigen::Matrix3d s =
         stress[i] - stress[i].trace() / 3 * Eigen::Matrix3d::Identity();
     const double equivalent = std::sqrt(1.5) * s.norm();
     if (equivalent <= law.yield.at(history[i]))
       return;
-    double low = 0, high = equivalent / (3 * g_); // bisection: no derivative of the curve
+    double low = 0, high = equivalent / (3 * shear_modulus); // bisection: no derivative of the curve
     for (int k = 0; k < 200; ++k) {
       const double middle = (low + high) / 2;
-      (equivalent - 3 * g_ * middle > law.yield.at(history[i] + middle) ? low : high) = middle;
+      (equivalent - 3 * shear_modulus * middle > law.yield.at(history[i] + middle) ? low : high) = middle;
     }
     strain[i] += 1.5 * low / equivalent * s;
     history[i] += low;
   }
 
-  void flow(const dem::DruckerPragerFlow &law, int i)
+  void flow(const dem::DruckerPragerFlow &law, int i, double g)
   {
     const double mean = stress[i].trace() / 3;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), s = stress[i] - mean * one;
@@ -171,14 +296,14 @@ private:
     if (excess <= 0)
       return;
     const double shear =
-        excess / (g_ + k_ * law.dilatancy * law.friction + law.hardening);
-    if (g_ * shear <= tau) {
+        excess / (g + k_ * law.dilatancy * law.friction + law.hardening);
+    if (g * shear <= tau) {
       strain[i] += shear * (s / (2 * tau) + law.dilatancy / 3 * one);
       history[i] += shear;
       return;
     }
-    const double all = tau / g_;
-    strain[i] += s / (2 * g_) +
+    const double all = tau / g;
+    strain[i] += s / (2 * g) +
                  (mean - (yield + law.hardening * all) / law.friction) / (3 * k_) * one;
     history[i] += all;
   }
@@ -213,5 +338,7 @@ private:
   double e_, nu_, g_, k_;
   dem::Plasticity law_;
   PlaneMode plane_;
+  dem::Viscosity viscosity_;
+  std::vector<Creep> creep_;
 };
 } // namespace ligament::oracle

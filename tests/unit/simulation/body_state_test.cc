@@ -282,6 +282,29 @@ TEST(BodyState, PlasticFlowGoesOnToTheLastBit)
   }
 }
 
+// Branches that relax and a dashpot, alone and before plastic flow; faces break beside them.
+TEST(BodyState, ViscosityGoesOnToTheLastBit)
+{
+  const std::string viscous = R"(/material/viscosity={"branches": [
+    {"share": 0.4, "relaxation_time": 30}, {"share": 0.2, "relaxation_time": 300}],
+    "shear_viscosity": 0.1})",
+                    flows = R"(/material/plasticity={"law": "von_mises", "yield_stress": 5e-4})";
+  for (const bool is_coupled : {true, false}) {
+    SCOPED_TRACE(is_coupled);
+    std::vector<std::string> settings = {friction, viscous};
+    if (is_coupled)
+      settings.push_back(R"(/far_field={"cell_size": 4.1})");
+    else
+      settings.insert(settings.end(), {"/far_field=none", flows});
+    const Scene scene = small_scene(torn + settings);
+    expect_same_course<2>(scene, 120, 300, 5, false);
+    Course<2> course(scene, false, make_many_body_force<2>);
+    while (course.time() < 120)
+      course.step(false);
+    EXPECT_GT(course.body().force()->losses().viscous, 0);
+  }
+}
+
 // In three dimensions, with a turned lattice.
 TEST(BodyState, ABreakingBarGoesOnToTheLastBit)
 {

@@ -1,0 +1,40 @@
+// Bodies on which laws of flow are tested: clipped lattices and random packings, with faces
+// missing.
+#pragma once
+
+#include "packings/random_packing.h"
+#include "tests/unit/dem/cases.h"
+
+namespace ligament::dem::testing
+{
+/// Without so many of a hundred faces.
+template <int dim>
+Packing<dim> torn(Packing<dim> packing, int percent)
+{
+  std::mt19937 random(5);
+  auto &faces = packing.faces;
+  faces.erase(std::remove_if(faces.begin(), faces.end(),
+                             [&](const auto &) { return int(random() % 100) < percent; }),
+              faces.end());
+  return packing;
+}
+
+/// Clipped cells all around.
+template <int dim>
+Packing<dim> lattice_body(int percent = 5)
+{
+  auto parameters = box<Case<dim, dim == 2 ? Kind::hexagonal : Kind::fcc, true>>(dim == 2 ? 21 : 7);
+  return torn(packings::make_lattice_packing<dim>(parameters), percent);
+}
+
+template <int dim>
+Packing<dim> random_body(int percent = 5)
+{
+  packings::RandomParameters<dim> p;
+  p.spacing = 0.01;
+  p.size_ratio = 1.5;
+  p.relaxation_sweeps = 5;
+  p.upper.setConstant((dim == 2 ? 14.3 : 6.3) * p.spacing);
+  return torn(packings::make_random_packing<dim>(p).packing, percent);
+}
+} // namespace ligament::dem::testing
