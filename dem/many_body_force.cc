@@ -242,7 +242,7 @@ void ManyBodyForce<dim>::stresses_out_of_plane(const Particles &p,
                                                std::vector<double> &stress) const
 {
   stress.clear();
-  if (!can_flow() || !body_.is_plane_strain())
+  if (!strains_.has_law() || !body_.is_plane_strain())
     return;
   Evaluation<dim> e(body_);
   find_pressures(p, e);
@@ -354,7 +354,7 @@ std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
   if (!can_break())
     skipped.push_back({"bond checks", "no fracture criterion"});
   // A criterion that reads them asks for those of what is near its limit only.
-  if (!can_flow() && !search_.reads_stresses())
+  if (!strains_.has_law() && !search_.reads_stresses())
     skipped.push_back({"stress tensors in the loop",
                        can_break() ? "the criterion reads tractions; tensors are computed for "
                                      "output only"
