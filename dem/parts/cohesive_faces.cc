@@ -52,6 +52,7 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
           b,
           {0, 0, shape_, mode_ratio_, friction},
           p.global_id[b.i] == name_of(b, p)[0],
+          {Vector<dim>::Zero()},
           {Vector<dim>::Zero()}};
 }
 
