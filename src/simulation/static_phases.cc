@@ -342,8 +342,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     if (n_broken(body) > broken_before) {
       constexpr double nothing = 1e-6;
       const auto losses = body.force()->losses();
-      finish(losses.fracture - released > nothing * losses.cohesive ? PhaseEnd::bond_breaks
-                                                                    : PhaseEnd::face_torn);
+      const bool was_soft =
+          body.force()->softens() && losses.fracture - released <= nothing * losses.cohesive;
+      finish(was_soft ? PhaseEnd::face_torn : PhaseEnd::bond_breaks);
       return stop;
     }
     if (clock.is_at_end()) {
