@@ -36,6 +36,8 @@ struct BondMotion
   Vector<dim> a_i, a_j; // m, present levers
   Vector<dim> du;       // m, Du of theory.md eq. (D8b)
   Vector<dim> elastic;  // m, Du without what strains of the particles take
+  /// What these are of either lever: R e A, m.
+  Vector<dim> stretch_i = Vector<dim>::Zero(), stretch_j = Vector<dim>::Zero();
 
   BondMotion(const Bond<dim> &bond, const Turn<dim> &turn_i, const Turn<dim> &turn_j,
              const Vector<dim> &u_i, const Vector<dim> &u_j)
@@ -48,6 +50,14 @@ struct BondMotion
     if (bond.image)
       du += bond.image->jump;
     elastic = du;
+  }
+
+  /// Both levers take part of the motion.
+  void stretch(const Vector<dim> &by_i, const Vector<dim> &by_j)
+  {
+    stretch_i = by_i;
+    stretch_j = by_j;
+    elastic = du - stretch_i + stretch_j;
   }
 };
 

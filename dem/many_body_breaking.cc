@@ -48,6 +48,19 @@ void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const P
     part->remove(id, b, p);
 }
 
+template <int dim>
+double ManyBodyForce<dim>::follow_jump(
+    const std::vector<typename InelasticStrains<dim>::Tensor> &before, const Particles &p)
+{
+  const auto after = interfaces_.own_stresses(p, evaluation_);
+  double kept = 0;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const int i = interfaces_.members()[k];
+    kept += strains_.jump(i, after[k] - before[k], evaluation_.pressure[i]);
+  }
+  return kept;
+}
+
 // The volumes lose the share of this face; the other faces keep theirs.
 template <int dim>
 double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, const Particles &p)
@@ -55,12 +68,16 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   std::vector<double> &pressure = evaluation_.pressure;
   const std::vector<double> &stiffness = body_.lambda_per_volume();
   const bool at_interface = is_at_interface(b);
-  if (at_interface)
+  std::vector<typename InelasticStrains<dim>::Tensor> stresses;
+  if (at_interface) {
+    stresses = interfaces_.own_stresses(p, evaluation_);
     interfaces_.take_pressures(p, evaluation_);
+  }
   const auto m = stressed(p, evaluation_).motion(b);
   const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
-    return (b.joins_materials ? 0 : law_of(b).add_dilatation(du, lever, 0)) -
-           strains_.flowed_volume(b, i);
+    return b.joins_materials
+               ? 0
+               : law_of(b).add_dilatation(du, lever, 0) - strains_.flowed_volume(b, i);
   };
   const Vector<dim> du = m.du - cohesive_.opening(b, p);
   const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, du, m.a_i)),
@@ -73,10 +90,14 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   for (const auto &[i, share] : shares)
     if (stiffness[i] != 0)
       pressure[i] *= stiffness[i];
-  const double kept = strains_.forget_face(b, b.i, p, before[0], pressure[b.i]) +
-                      strains_.forget_face(b, b.j, p, before[1], pressure[b.j]);
-  if (at_interface)
+  double kept = 0;
+  for (const auto &[i, old] : {std::pair(b.i, before[0]), std::pair(b.j, before[1])})
+    if (!interfaces_.is_member(i))
+      kept += strains_.forget_face(b, i, p, old, pressure[i]);
+  if (at_interface) {
     interfaces_.add_pressures(p, evaluation_);
+    kept += follow_jump(stresses, p);
+  }
   return local_energy(b, p) - bond_energy(b, p) + kept;
 }
 

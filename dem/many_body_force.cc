@@ -11,7 +11,7 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
     : surface_(packing, materials, loads), body_(packing, materials, surface_.walls()),
       rows_(body_), slices_(body_),
       strains_(packing, body_, surface_.walls(), surface_.particles()),
-      cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_.bonds()),
+      cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_, strains_),
       contacts_(packing, materials, body_.images()), jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
       evaluation_(body_), trial_(body_), energy_evaluation_(body_)
@@ -28,8 +28,8 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                 "faces of a body with joined sides don't soften");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
-  core::require(!strains_.has_law() || interfaces_.empty(),
-                "a body that flows is of one elastic material");
+  core::require(interfaces_.empty() || strains_.longest_damping() == 0,
+                "dashpots beside the springs need a body of one elastic material");
 }
 
 template <int dim>
@@ -87,6 +87,7 @@ void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim
     e.inelastic = strains_.begin(e.may_flow, time_);
     e.inelastic->energy = e.own_energy;
     surface_.add_strains(p, e);
+    interfaces_.add_strains(p, e);
     slices_.add_strains(p, e);
     return;
   }
@@ -102,6 +103,7 @@ void ManyBodyForce<dim>::find_pressures(const Particles &p, Evaluation<dim> &e) 
 {
   find_other_pressures(p, e);
   rows_.add_pressures(p, e);
+  interfaces_.follow_flow(p, e);
   if (body_.has_dilatation())
     body_.edge().complete_pressures(p, e.pressure);
 }
@@ -117,6 +119,7 @@ template <int dim>
 void ManyBodyForce<dim>::find_forces_under(Particles &p, Evaluation<dim> &e) const
 {
   rows_.set_forces(p, e);
+  interfaces_.follow_flow(p, e);
   for (const auto *part : parts_)
     part->add_forces(p, e);
   jumps_.find_reactions(stressed(p, e), contacts_.contacts(), e);
@@ -219,6 +222,7 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   e.own_energy = own_energy_.data();
   find_other_pressures(p, e);
   rows_.set_energies(p, e, energy_);
+  interfaces_.follow_flow(p, e);
   for (const auto *part : parts_)
     part->add_energies(p, e, energy_);
   return particles::block_sum(p.part.owned,

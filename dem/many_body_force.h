@@ -224,6 +224,10 @@ private:
   void drop_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
   /// The same, and pressures follow. Returns the energy after in J, as local_energy counts it.
   double remove_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
+  /// Of particles at interfaces, whose own stresses were these. Returns what InelasticStrains::jump
+  /// does.
+  double follow_jump(const std::vector<typename InelasticStrains<dim>::Tensor> &before,
+                     const Particles &particles);
   void replay_broken(const core::State &state, const core::Names &names,
                      const Particles &particles);
 

@@ -53,8 +53,7 @@ Wrench<dim> StressedBody<dim>::wrench_on(int i) const
     const bool first = b.i == i;
     const double sign = first ? 1 : -1;
     const double p_i = evaluation.pressure[b.i], p_j = evaluation.pressure[b.j];
-    const BondMotion<dim> m(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j),
-                            get(p.displacement, b.i), get(p.displacement, b.j));
+    const BondMotion<dim> m = motion(b);
     const Spin<dim> bend = sign * bending_torque(b, p);
     if (b.joins_materials) {
       const SeriesBond<dim> series(b, m);

@@ -54,6 +54,18 @@ struct Wrench
   Spin<dim> torque = Spin<dim>::Zero();    // N m
 };
 
+/// What particles at faces between materials see while they answer, and what they were before.
+template <int dim>
+struct FlowingInterfaces
+{
+  using Tensor = Eigen::Matrix<double, n_tensor<dim>, 1>;
+
+  std::vector<Eigen::Matrix<double, dim, dim>> of_surface; // of X: walls and loads, m^dim
+  std::vector<Tensor> strain, viscous;                     // e, and what of it is viscous
+  std::vector<std::array<Vector<dim>, 2>> whole;           // m, of the faces: Du on both sides
+  std::vector<double> pressure;                            // Pa, at these strains
+};
+
 template <int dim>
 struct Evaluation
 {
@@ -74,6 +86,7 @@ struct Evaluation
   std::vector<Vector<dim>> reactions;   // N, of each load on the body
   NotedBonds noted;
   std::optional<InelasticSweep<dim>> inelastic; // where a material flows
+  FlowingInterfaces<dim> interfaces;            // the same
 
   // Carried from one to the next.
   WayToLook way;

@@ -42,10 +42,7 @@ double InelasticStrains<dim>::stored_energy() const
   for (int i = 0; i < body_->n_particles(); ++i)
     if (const double h = history(i); h != 0) {
       const int law = law_number(i) % int(parameters_.size());
-      const double volume = open_[i] >= 0 ? cells_[open_[i]].number[OpenCell<dim>::volume]
-                            : body_->volumes().empty() ? whole_volume_
-                                                       : body_->volumes()[i];
-      sum.add(volume * dem::stored_energy(parameters_[law], h));
+      sum.add(volume(i) * dem::stored_energy(parameters_[law], h));
     }
   return sum.value();
 }

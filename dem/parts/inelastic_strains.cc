@@ -134,7 +134,9 @@ void InelasticStrains<dim>::find_neighbours()
       for (int i = s.begin; i < s.end; ++i)
         if (bonds.mask()[i] >> k & 1)
           join(i, i + s.forward[k]);
-  bonds.for_each_irregular([&](BondId, const Bond<dim> &b) { join(b.i, b.j); });
+  const auto join_bond = [&](BondId, const Bond<dim> &b) { join(b.i, b.j); };
+  bonds.for_each_irregular(join_bond);
+  bonds.for_each_interface(join_bond);
 }
 
 template <int dim>
@@ -146,6 +148,11 @@ bool InelasticStrains<dim>::is_held(int i, double volume) const
     const double q = i == b.i ? q_i : q_j, other = i == b.i ? q_j : q_i;
     const Vector<dim> n = i == b.i ? b.normal : Vector<dim>(-b.normal),
                       side = b.lever_i - q_i * b.normal;
+    if (b.joins_materials) {
+      constexpr double share = 0.1; // its particles alone share the motion
+      held += share * b.area * q * n * n.transpose();
+      return;
+    }
     const Matrix mixed = n * side.transpose();
     held += b.area / b.distance *
             (q * other * n * n.transpose() + 0.5 * (other - q) * (mixed + mixed.transpose()) -
@@ -162,8 +169,11 @@ bool InelasticStrains<dim>::is_held(int i, double volume) const
 template <int dim>
 auto InelasticStrains<dim>::moment(const Bond<dim> &b, int i) -> Matrix
 {
-  const Matrix m = b.area * (i == b.i ? Matrix(b.lever_i * b.normal.transpose())
-                                      : Matrix(-b.lever_j * b.normal.transpose()));
+  const Vector<dim> lever = i == b.i ? b.lever_i : b.lever_j,
+                    normal = i == b.i ? b.normal : Vector<dim>(-b.normal);
+  if (b.joins_materials)
+    return b.area / lever.dot(normal) * lever * lever.transpose();
+  const Matrix m = b.area * lever * normal.transpose();
   return 0.5 * (m + m.transpose());
 }
 
@@ -176,19 +186,22 @@ std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volu
       bonds.mask()[i] == (std::uint32_t(1) << 2 * bonds.n_directions()) - 1)
     return std::nullopt;
   Matrix of_bonds = Matrix::Zero();
-  bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { of_bonds += moment(b, i); });
+  bool is_closed = bonds.n_directions() == 0; // by bonds that the slices see
+  bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    of_bonds += moment(b, i);
+    is_closed = is_closed && !b.joins_materials;
+  });
   std::array<Matrix, dim> rows;
   rows.fill(of_bonds / volume);
-  bool has_wall = false;
   for (const auto &wall : walls_)
     if (wall.i == i)
       for (int c = 0; c < dim; ++c)
         if (wall.prescribed[c] != 0) {
-          has_wall = true;
+          is_closed = false;
           rows[c] += wall.area * wall.q / volume * wall.normal * wall.normal.transpose();
         }
   constexpr double round_off = 1e-9;
-  if (bonds.n_directions() == 0 && !has_wall && (rows[0] - Matrix::Identity()).norm() < round_off)
+  if (is_closed && (rows[0] - Matrix::Identity()).norm() < round_off)
     return std::nullopt;
   Cell cell;
   cell.number[Cell::volume] = volume;
@@ -285,6 +298,16 @@ void InelasticStrains<dim>::add_strain(const InelasticSweep<dim> &sweep, int i,
 }
 
 template <int dim>
+auto InelasticStrains<dim>::cell_strain(const InelasticSweep<dim> &sweep, int i) -> Matrix
+{
+  const double *const from = sweep.cells[sweep.open[i]].number + OpenCell<dim>::strain;
+  Matrix strain;
+  for (int k = 0; k < dim * dim; ++k)
+    strain(k / dim, k % dim) = from[k];
+  return strain;
+}
+
+template <int dim>
 auto InelasticStrains<dim>::tensor(int i) const -> Tensor
 {
   Tensor t = Tensor::Zero();
@@ -335,11 +358,20 @@ BondMotion<dim> InelasticStrains<dim>::motion(const Bond<dim> &b, const Particle
                                               const Turn<dim> &turn_j) const
 {
   BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
-  if (is_strained(b.i))
-    m.elastic -= turned<dim>(turn_i, strain(b.i) * b.lever_i);
-  if (is_strained(b.j))
-    m.elastic += turned<dim>(turn_j, strain(b.j) * b.lever_j);
+  if (is_strained(b.i) || is_strained(b.j))
+    m.stretch(turned<dim>(turn_i, strain(b.i) * b.lever_i),
+              turned<dim>(turn_j, strain(b.j) * b.lever_j));
   return m;
+}
+
+template <int dim>
+double InelasticStrains<dim>::flowed_volume(int i) const
+{
+  if (!is_strained(i))
+    return 0;
+  const Tensor e = tensor(i), flowed = moved(i, e);
+  const double out_of_plane = body_->is_plane_strain() ? e[2] : 0;
+  return volume(i) * (flowed.template head<dim>().sum() + out_of_plane);
 }
 
 template <int dim>
@@ -355,16 +387,12 @@ double InelasticStrains<dim>::bond_energy(const Bond<dim> &b, const Particles &p
   double sum = 0;
   if (!is_strained(b.i) && !is_strained(b.j))
     return sum;
-  const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
-  const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
-  const double shear = law_of(b).shear;
+  const BondMotion<dim> m = motion(b, p, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
   for (const int i : {b.i, b.j}) {
     const Matrix e = strain(i);
-    const Vector<dim> stretch = i == b.i ? turned<dim>(turn_i, e * b.lever_i)
-                                         : Vector<dim>(-turned<dim>(turn_j, e * b.lever_j));
-    sum += b.shear_i * (e * e).cwiseProduct(moment(b, i)).sum() - shear * m.du.dot(stretch);
+    sum += b.shear_i * (e * e).cwiseProduct(moment(b, i)).sum();
   }
-  return sum;
+  return sum - law_of(b).shear * m.du.dot(m.stretch_i - m.stretch_j);
 }
 
 template <int dim>
@@ -386,17 +414,15 @@ void InelasticStrains<dim>::add_force_on(int i, const Particles &p, const Evalua
   if (!has_law())
     return;
   e.body.bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
-    if (!is_strained(b.i) && !is_strained(b.j))
+    if (b.joins_materials || (!is_strained(b.i) && !is_strained(b.j)))
       return;
     const BondMotion<dim> m = motion(b, p, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
     const bool first = b.i == i;
     const double shear = law_of(b).shear, sign = first ? 1 : -1;
     const Vector<dim> change = sign * shear * (m.elastic - m.du);
-    const Vector<dim> stretch =
-        turned<dim>(Turn<dim>::of(p, i), strain(i) * (first ? b.lever_i : b.lever_j));
     wrench.force += change;
     wrench.torque += cross(first ? m.a_i : m.a_j, change) +
-                     cross(stretch, Vector<dim>(sign * shear * m.du));
+                     cross(first ? m.stretch_i : m.stretch_j, Vector<dim>(sign * shear * m.du));
   });
 }
 
@@ -412,38 +438,6 @@ void InelasticStrains<dim>::remove(const BondId &, const Bond<dim> &b, const Par
       keep_elastic({i});
     }
   }
-}
-
-template <int dim>
-double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
-                                          double before, double after)
-{
-  if (!is_strained(i))
-    return 0;
-  const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
-  const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
-  const bool first = b.i == i;
-  const Turn<dim> back = (first ? turn_i : turn_j).inverse();
-  const Vector<dim> du = first ? m.du : Vector<dim>(-m.du), own = du + back.change(du);
-  const double volume = p.volume[i], twice_shear = 2 * laws_[law_number(i)].shear;
-  const Matrix e = strain(i), lost = moment(b, i) / volume;
-  const Matrix x = b.area / b.distance * own * (first ? b.lever_i : b.lever_j).transpose();
-  Matrix rest = Matrix::Zero(); // M without the face
-  const double *const of = cells_[open_[i]].number + OpenCell<dim>::moment;
-  for (int r = 0; r < dim; ++r)
-    for (int c = 0; c < dim; ++c)
-      rest(r, c) = of[r * n_in_plane<dim> + in_plane_place<dim>(r, c)];
-  const Matrix change = twice_shear * (e * lost - x / volume) + after * rest -
-                        before * (rest + lost);
-  Tensor jump = Tensor::Zero();
-  for (int r = 0; r < dim; ++r)
-    for (int c = r; c < dim; ++c)
-      jump[tensor_place<dim>(r, c)] = 0.5 * (change(r, c) + change(c, r));
-  if (body_->is_plane_strain())
-    jump[2] = after - before;
-  for (int c = 0; c < n_tensor<dim>; ++c)
-    streams_.stream(Streams::stress + c)[i] += jump[c];
-  return laws_[law_number(i)].viscous ? lose_face(i, volume, jump, lost, after) : 0;
 }
 
 template class InelasticStrains<2>;

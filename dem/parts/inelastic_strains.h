@@ -58,6 +58,8 @@ public:
 
   /// What the side of the particle adds to the strain of its cell, in m^dim and its own axes.
   static void add_strain(const InelasticSweep<dim> &sweep, int i, const Matrix &strain);
+  /// All that was added to that of an open cell, m^dim.
+  static Matrix cell_strain(const InelasticSweep<dim> &sweep, int i);
 
   /// e of a particle, in its own axes: all of it, and of the axes of the body.
   Tensor tensor(int i) const;
@@ -66,13 +68,16 @@ public:
   /// The law's number of a particle: accumulated plastic strain.
   double history(int i) const;
   void set_strain(int i, const Tensor &strain);
+  /// Own stress in Pa as the last step left it; zero where none is kept.
+  Tensor stress(int i) const;
   /// The part of e that is viscous.
   Tensor viscous_strain(int i) const;
 
   /// Of a bond, its elastic part without what the strains take, eq. (D22).
   BondMotion<dim> motion(const Bond<dim> &bond, const Particles &particles, const Turn<dim> &turn_i,
                          const Turn<dim> &turn_j) const;
-  /// Share of a bond in V M : e of its particle i, in m^3.
+  /// V M : e of a particle, in m^3, and the share of a bond in it.
+  double flowed_volume(int i) const;
   double flowed_volume(const Bond<dim> &bond, int i) const;
   /// What strains change in the energy of a bond beside the pressures', in J.
   double bond_energy(const Bond<dim> &bond, const Particles &particles) const;
@@ -88,6 +93,19 @@ public:
   /// face. Returns by how much what its viscous part keeps, theory.md eq. (D28), grew, in J.
   double forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
                      double after);
+
+  /// The share of a bond within one material in X of its particle i, theory.md eq. (D22), m^dim.
+  static Matrix face_strain(const Bond<dim> &bond, int i, const Particles &particles);
+  /// Own stress in Pa with this X (m^dim) under a pressure, eq. (D21).
+  Tensor stress_of(int i, const Matrix &x, double pressure) const;
+  /// How it changes with both.
+  Tensor stress_change(int i, const Matrix &x, double pressure) const;
+  /// A particle that has answered bears so much more than it knew (Pa): what was booked of its flow
+  /// in this step, from these strains on, follows.
+  void follow_stress(int i, const Tensor &change, const Tensor &strain_before,
+                     const Tensor &viscous_before) const;
+  /// Of a particle whose stress jumped so as a face near it broke. Returns what forget_face does.
+  double jump(int i, const Tensor &change, double pressure);
 
   /// Energy in J that flow took, and the part of it that hardening stores.
   double dissipation() const;
@@ -109,8 +127,13 @@ private:
   static double dot(const Tensor &a, const Tensor &b);
   /// What the dashpot has of it.
   Tensor damped_strain(int i) const;
-  /// sym(e M) of a particle.
+  /// Whether its law reads the stress that the step before left.
+  bool keeps_stress(int i) const;
+  /// sym(e M) of a particle, and M.
   Tensor moved(int i, const Tensor &e) const;
+  Tensor pressed(int i) const;
+  static Tensor symmetric(const Matrix &m);
+  double volume(int i) const; // m^3
   /// The viscous part of a particle whose stress jumped as it lost a face and what that had of M.
   double lose_face(int i, double volume, const Tensor &jump, const Matrix &lost, double pressure);
   /// Of a particle that stays elastic from now on.

@@ -68,13 +68,6 @@ auto InelasticStrains<dim>::viscous_strain(int i) const -> Tensor
 }
 
 template <int dim>
-auto InelasticStrains<dim>::dot(const Tensor &a, const Tensor &b) -> double
-{
-  const Tensor product = a.cwiseProduct(b);
-  return product.template head<3>().sum() + 2 * product.template tail<n_tensor<dim> - 3>().sum();
-}
-
-template <int dim>
 auto InelasticStrains<dim>::damped_strain(int i) const -> Tensor
 {
   const ViscousStep &step = *laws_[law_number(i)].viscous;
@@ -84,23 +77,6 @@ auto InelasticStrains<dim>::damped_strain(int i) const -> Tensor
     damped -= step.branches[k].share *
               (driving - viscous_tensor(i, Streams::branches + k * n_tensor<dim>));
   return damped;
-}
-
-template <int dim>
-auto InelasticStrains<dim>::moved(int i, const Tensor &e) const -> Tensor
-{
-  Tensor moved = Tensor::Zero();
-  if (open_[i] < 0)
-    return e;
-  const double *const moment = cells_[open_[i]].number + OpenCell<dim>::moment;
-  for (int a = 0; a < dim; ++a)
-    for (int b = 0; b < dim; ++b)
-      for (int c = 0; c < dim; ++c)
-        moved[tensor_place<dim>(a, b)] += (a == b ? 1 : 0.5) * e[tensor_place<dim>(a, c)] *
-                                          moment[a * n_in_plane<dim> + in_plane_place<dim>(c, b)];
-  if (dim == 2)
-    moved[2] = e[2];
-  return moved;
 }
 
 // The springs of the branches stretch with the whole, their dashpots don't follow at once; what the
@@ -119,11 +95,7 @@ double InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump
       in_plane(a, b) = damped[tensor_place<dim>(a, b)];
   const double grown =
       volume * (dot(damped, jump) - law.shear * (in_plane * in_plane).cwiseProduct(lost).sum());
-  Tensor one = Tensor::Zero();
-  one.template head<dim>().setOnes();
-  Tensor moment = moved(i, one);
-  if (dim == 2)
-    moment[2] = body_->is_plane_strain();
+  const Tensor moment = pressed(i);
   Tensor seen = (viscous_tensor(i, Streams::stress) - pressure * moment) / (2 * law.shear) +
                 moved(i, viscous);
   if (dim == 2 && !body_->is_plane_strain())

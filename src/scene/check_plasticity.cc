@@ -98,14 +98,5 @@ void check_plasticity(const Scene &scene, Findings &f)
                      [](const LoadParameters &l) { return l.pressure.has_value(); }),
          "a pressure that follows the surface", "it does not enter the strains of what flows yet",
          "give a \"traction\"");
-  const auto &base = scene.material;
-  refuse(std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
-                     [&](const Inclusion &i) {
-                       return i.material.youngs_modulus != base.youngs_modulus ||
-                              i.material.poissons_ratio != base.poissons_ratio;
-                     }),
-         "inclusions of other elastic constants",
-         "the pressures of particles at such faces are solved for together, without flow",
-         "give all materials the same Young's modulus and Poisson's ratio");
 }
 } // namespace ligament::program

@@ -119,13 +119,16 @@ void check_viscosity(const Scene &scene, Findings &f)
          "a pressure that follows the surface",
          "it does not enter the strains of what is viscous yet", "give a \"traction\"");
   const auto &base = scene.material;
-  refuse(std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
-                     [&](const Inclusion &i) {
-                       return i.material.youngs_modulus != base.youngs_modulus ||
-                              i.material.poissons_ratio != base.poissons_ratio;
-                     }),
-         "inclusions of other elastic constants",
-         "the pressures of particles at such faces are solved for together, without viscosity",
-         "give all materials the same Young's modulus and Poisson's ratio");
+  const bool differ = std::any_of(
+      scene.inclusions.begin(), scene.inclusions.end(), [&](const Inclusion &i) {
+        return i.material.youngs_modulus != base.youngs_modulus ||
+               i.material.poissons_ratio != base.poissons_ratio;
+      });
+  for (const auto &[key, material] : materials)
+    if (differ && material->viscosity && material->viscosity->shear_viscosity.value_or(0) > 0)
+      f.error(key + "/viscosity/shear_viscosity",
+              "\"shear_viscosity\" cannot be used with inclusions of other elastic constants",
+              "it would answer a rate that it divides between the sides of a face, and be unstable",
+              "give \"branches\", or all materials the same Young's modulus and Poisson's ratio");
 }
 } // namespace ligament::program

@@ -37,4 +37,16 @@ Packing<dim> random_body(int percent = 5)
   p.upper.setConstant((dim == 2 ? 14.3 : 6.3) * p.spacing);
   return torn(packings::make_random_packing<dim>(p).packing, percent);
 }
+template <int dim>
+void set_random_strains(ManyBodyForce<dim> &force, int n, double amplitude)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-amplitude, amplitude);
+  for (int i = 0; i < n; ++i) {
+    typename InelasticStrains<dim>::Tensor e;
+    for (int c = 0; c < e.size(); ++c)
+      e[c] = uniform(random);
+    force.strains().set_strain(i, e);
+  }
+}
 } // namespace ligament::dem::testing

@@ -1,7 +1,7 @@
 // Strains of the particles' own: kernels against the oracle on every kind of body, forces are the
 // gradient at frozen strains, affine ones cost nothing, one call flows once, the balance closes.
-#include "particles/particle_solver.h"
 #include "tests/oracle/inelastic_oracle.h"
+#include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 
 #include <fmt/format.h>
@@ -93,19 +93,6 @@ Plasticity far_away()
   YieldCurve curve;
   curve.initial = 1e9;
   return VonMisesFlow{curve};
-}
-
-template <int dim>
-void set_random_strains(ManyBodyForce<dim> &force, int n, double amplitude)
-{
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> uniform(-amplitude, amplitude);
-  for (int i = 0; i < n; ++i) {
-    typename InelasticStrains<dim>::Tensor e;
-    for (int c = 0; c < e.size(); ++c)
-      e[c] = uniform(random);
-    force.strains().set_strain(i, e);
-  }
 }
 
 TYPED_TEST(Inelastic, ForcesAreTheGradientAtFrozenStrains)
@@ -231,44 +218,6 @@ TYPED_TEST(Inelastic, LooksChangeNoBit)
     }
 }
 
-/// Free flight of a body that starts stretching and spinning so fast that it yields: its energy at
-/// the start, and what is missing of it at the end; what flow took.
-template <int dim>
-std::array<double, 3> stretch(const Packing<dim> &packing, const Plasticity &law, double scale,
-                              int n_steps, PlaneMode plane = PlaneMode::strain)
-{
-  DemMaterial material{1., 0.3, 1, plane, 0};
-  material.plasticity = law;
-  Particles<dim> p;
-  packings::fill_particles(packing, 1., p);
-  auto f = std::make_unique<ManyBodyForce<dim>>(packing, material,
-                                                std::vector<core::BoundaryLoad<dim>>());
-  auto &force = *f;
-  particles::ParticleSolver<dim> solver(std::move(p), std::move(f));
-  const double dt = 0.8 * force.stable_step(solver.state);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  for (int i = 0; i < solver.state.size(); ++i) {
-    const double x = solver.state.reference[0][i] / packing.spacing;
-    solver.state.velocity[0][i] = scale * (3 * x + 0.05 * uniform(random));
-    solver.state.velocity[1][i] = 0.05 * scale * uniform(random);
-    for (auto &spin : solver.state.spin)
-      spin[i] = 0.05 * scale * uniform(random) / packing.spacing;
-  }
-  double time = 0;
-  solver.compute_forces(time);
-  const double start = solver.kinetic_energy(dt);
-  for (int s = 0; s < n_steps; ++s) {
-    solver.kick(dt);
-    solver.drift(dt);
-    solver.compute_forces(time += dt);
-  }
-  return {start,
-          solver.kinetic_energy(dt) + solver.potential_energy() + force.plastic_dissipation() -
-              start,
-          force.plastic_dissipation()};
-}
-
 Plasticity scaled(Plasticity law, double scale)
 {
   if (auto *mises = std::get_if<VonMisesFlow>(&law)) {
@@ -289,11 +238,12 @@ TYPED_TEST(Inelastic, DissipationClosesTheBalance)
   for (const auto &packing : {lattice, random})
     for (const Plasticity &law : laws())
       for (const double scale : {1e-6, 1e-4}) {
-        const auto [start, lost, taken] =
-            stretch<dim>(packing, scaled(law, 1500 * scale), scale, 150);
-        EXPECT_GT(taken, 0.002 * start);
-        EXPECT_LT(taken, start);
-        EXPECT_NEAR(lost / start, 0, 30 * scale) << law.index() << " " << scale;
+        DemMaterial material{1., 0.3, 1, PlaneMode::strain, 0};
+        material.plasticity = scaled(law, 1500 * scale);
+        const auto [start, missing, losses] = fly<dim>(packing, material, scale, 150);
+        EXPECT_GT(losses.plastic, 0.002 * start);
+        EXPECT_LT(losses.plastic, start);
+        EXPECT_NEAR(missing / start, 0, 30 * scale) << law.index() << " " << scale;
       }
 }
 } // namespace ligament::dem::testing
