@@ -15,6 +15,8 @@ namespace
 constexpr double nu = 0.3, yield = 2e-3, hardening = 0.1, strain = 0.01;
 constexpr double ramp = 2e4, rest = 1000; // in travel times of one spacing
 constexpr double drag = 0.02;             // mass damping
+// Of the layer that does not flow.
+constexpr double stiff = 10, stiff_nu = 0.15;
 
 /// Stress along the bar in plane strain: many small steps, each with one radial return, across
 /// which the sides are set free by a fixed point.
@@ -65,7 +67,20 @@ struct Bar
   int dimension = 2;
   PlaneMode plane = PlaneMode::strain;
   double across = 6; // spacings
+  bool has_core = false; // a layer a third of it thick, along the bar, that is stiff and elastic
+
+  bool is_held() const { return dimension == 2 && plane == PlaneMode::strain; }
 };
+
+/// Of the continuum. Layers along the bar have one strain along it; across it nothing holds them.
+double stress_of(const Bar &bar)
+{
+  const double flowing = bar.is_held() ? plane_strain_stress() : uniaxial_stress();
+  if (!bar.has_core)
+    return flowing;
+  const double elastic = stiff * strain / (bar.is_held() ? 1 - stiff_nu * stiff_nu : 1);
+  return (2 * flowing + elastic) / 3;
+}
 
 Scene scene_of(const Bar &bar)
 {
@@ -82,6 +97,16 @@ Scene scene_of(const Bar &bar)
   flow.yield_stress = yield;
   flow.hardening = hardening;
   scene.material.plasticity = flow;
+  if (bar.has_core) {
+    Inclusion core;
+    core.material = scene.material;
+    core.material.plasticity.reset();
+    core.material.youngs_modulus *= stiff;
+    core.material.poissons_ratio = stiff_nu;
+    const double length = scene.specimen.size[0], half = bar.across / 6;
+    core.boxes.push_back({{-length, -half, -1}, {length, half, 1}}); // beyond both ends
+    scene.inclusions.push_back(core);
+  }
   for (const int side : {0, 1}) {
     LoadParameters load;
     load.boundary = side;
@@ -103,9 +128,7 @@ double error_of(const Bar &bar)
   while (run.time() < ramp + rest)
     run.step();
   const double section = bar.across * (dim == 2 ? 1 : scene.specimen.size[1]);
-  const double stress = run.body().force()->reaction(1)[0] / section;
-  const bool held = dim == 2 && bar.plane == PlaneMode::strain;
-  return std::abs(stress / (held ? plane_strain_stress() : uniaxial_stress()) - 1);
+  return std::abs(run.body().force()->reaction(1)[0] / section / stress_of(bar) - 1);
 }
 
 /// Rows that end flush with the sides: what is asked of six across.
@@ -135,6 +158,36 @@ void add_rough(const std::string &packing, Bar bar, double layer, const std::vec
   results.push_back({name + "_last_over_first", errors.back() / errors.front(), 1, {}});
 }
 
+std::vector<Result> layered_bars()
+{
+  const std::string name = "law_flow_layers/";
+  constexpr double must = 1e-3;
+  std::vector<Result> results;
+  for (const PlaneMode plane : {PlaneMode::strain, PlaneMode::stress})
+    results.push_back({name + (plane == PlaneMode::strain ? "square_plane_strain" : "square_plane_stress"),
+                       error_of<2>({PackingKind::square, 2, plane, 6, true}), must, {}});
+  return results;
+}
+
+/// Layers of whole particles: where they end is known to half a spacing on either side.
+std::vector<Result> rough_layers()
+{
+  std::vector<Result> results;
+  const auto add = [&](const std::string &packing, PackingKind kind, double row) {
+    std::vector<double> errors;
+    for (const int number : {12, 24, 48}) {
+      errors.push_back(error_of<2>({kind, 2, PlaneMode::strain, number * row, true}));
+      results.push_back({fmt::format("law_flow_layers_rough/{}_{}", packing, number),
+                         errors.back(), 3. / number, {}});
+    }
+    results.push_back({fmt::format("law_flow_layers_rough/{}_last_over_first", packing),
+                       errors.back() / errors.front(), 0.5, {}});
+  };
+  add("hexagonal", PackingKind::hexagonal, std::sqrt(3.) / 2);
+  add("random", PackingKind::random, 1);
+  return results;
+}
+
 std::vector<Result> rough_bars()
 {
   const double row = std::sqrt(3.) / 2, layer = std::sqrt(0.5);
@@ -154,6 +207,9 @@ std::vector<Case> flow_strip_cases()
   return {
       {"law_flow_strip", "a bar that yields, six cells across with flush sides", false, flush_bars},
       {"law_flow_strip_rough", "the same whose sides cut cells, by the number across", true,
-       rough_bars}};
+       rough_bars},
+      {"law_flow_layers", "a bar that yields around a stiff layer, sides and layers flush", false,
+       layered_bars},
+      {"law_flow_layers_rough", "the same whose sides and layers cut cells", true, rough_layers}};
 }
 } // namespace ligament::program
