@@ -37,23 +37,22 @@ public:
     const V middle = mean(d_, stress);
     const Tensor s = deviator(d_, stress);
     const V tau = shear(s);
-    const V yield =
-        hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield));
-    const V excess = hn::Sub(hn::MulAdd(friction, middle, tau), yield);
+    const V yield = yield_at(history);
+    const V borne = hn::MulAdd(friction, middle, tau), excess = hn::Sub(borne, yield);
     const auto flows = hn::And(where, hn::Gt(excess, hn::Zero(d_)));
     if (hn::AllFalse(d_, flows))
       return flows;
-    const double stiffness =
-        law_.shear + law_.bulk * law_.dilatancy * law_.friction + law_.hardening;
-    const V cone = hn::Mul(excess, hn::Set(d_, 1 / stiffness));
+    const double stiffness = law_.shear + law_.bulk * law_.dilatancy * law_.friction;
+    V cone = hn::Mul(excess, hn::Set(d_, 1 / (stiffness + law_.hardening)));
+    if (HWY_UNLIKELY(law_.hardening < 0)) // the cohesion does not fall below 0
+      cone = hn::Min(cone, hn::Mul(borne, hn::Set(d_, 1 / stiffness)));
     // Past the apex the shear stress would turn round: there it vanishes, and the mean stress is
     // the largest that the material bears.
     const auto apex = hn::Gt(hn::Mul(shear_modulus, cone), tau);
     const V shear_strain = hn::IfThenElse(apex, hn::Div(tau, shear_modulus), cone);
     V volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
     if (law_.friction > 0) {
-      const V largest = hn::Div(hn::MulAdd(hn::Set(d_, law_.hardening), shear_strain, yield),
-                                friction);
+      const V largest = hn::Div(yield_at(hn::Add(history, shear_strain)), friction);
       volume = hn::IfThenElse(
           apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)), volume);
     }
@@ -69,6 +68,12 @@ public:
   }
 
 private:
+  HWY_INLINE V yield_at(V history) const
+  {
+    return hn::Max(hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield)),
+                   hn::Zero(d_));
+  }
+
   HWY_INLINE V shear(const Tensor &s) const
   {
     return hn::Sqrt(hn::Mul(hn::Set(d_, 0.5), double_dot(s)));

@@ -75,9 +75,11 @@ struct VonMisesFlow
 struct DruckerPragerFlow
 {
   double cohesion = 0;  // Y, Pa
-  double hardening = 0; // of Y over the accumulated plastic shear strain, Pa
+  double hardening = 0; // of Y over the accumulated plastic shear strain, Pa; below 0: Y falls to 0
   double friction = 0;  // b, -
   double dilatancy = 0; // Lambda, -
+
+  double yield_at(double history) const { return std::max(cohesion + hardening * history, 0.); }
 };
 
 /// std::monostate: elastic.
@@ -112,7 +114,7 @@ inline double stored_energy(const Plasticity &law, double history)
   if (const auto *mises = std::get_if<VonMisesFlow>(&law))
     return mises->yield.stored(history);
   if (const auto *prager = std::get_if<DruckerPragerFlow>(&law))
-    return 0.5 * prager->hardening * history * history;
+    return 0.5 * std::max(prager->hardening, 0.) * history * history;
   return 0;
 }
 
@@ -122,8 +124,7 @@ inline void check(const Plasticity &law)
   if (const auto *mises = std::get_if<VonMisesFlow>(&law))
     mises->yield.check();
   if (const auto *prager = std::get_if<DruckerPragerFlow>(&law)) {
-    core::require(prager->cohesion > 0 && prager->hardening >= 0,
-                  "the cohesion must be positive and must not fall");
+    core::require(prager->cohesion > 0, "the cohesion must be positive");
     core::require(prager->dilatancy >= 0 && prager->dilatancy <= prager->friction,
                   "the dilatancy must lie between 0 and the friction");
   }

@@ -31,6 +31,9 @@ FlowLaw flow_law_of(const DemMaterial &material)
     law.hardening = prager->hardening;
     law.friction = prager->friction;
     law.dilatancy = prager->dilatancy;
+    core::require(law.hardening > -0.8 * (law.shear + law.bulk * law.dilatancy * law.friction),
+                  "the cohesion falls faster than the particle unloads: its energy of softening is "
+                  "too small for the spacing");
   }
   return law;
 }

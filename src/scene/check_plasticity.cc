@@ -8,6 +8,36 @@ namespace ligament::program
 {
 namespace
 {
+/// The cohesion falls on a straight line over a slip of 2 G_f/Y in a band one spacing wide.
+void check_softening_energy(const Scene &scene, const MaterialParameters &m,
+                            const std::string &section, Findings &f)
+{
+  const PlasticityParameters &p = *m.plasticity;
+  const std::string key = section + "/softening_energy";
+  if (!p.softening_energy)
+    return;
+  if (f.given(section + "/hardening"))
+    f.error(section + "/hardening",
+            fmt::format("both \"hardening\" and \"softening_energy\" in {}", section),
+            "the cohesion grows or falls", "remove one of them");
+  if (!p.cohesion || !p.friction_angle || !f.given("/discrete_zone/spacing") ||
+      !f.sound({"/discrete_zone", section, "/material"}))
+    return;
+  constexpr double least = 2, few = 5; // spacings, as of faces that soften
+  const double yield = p.shear_strength(),
+               length = m.youngs_modulus * *p.softening_energy / (yield * yield),
+               spacings = length / scene.zone.spacing;
+  if (spacings >= few)
+    return;
+  const std::string message =
+      fmt::format("the cohesion falls over E G/Y^2 = {:.3g} m, {:.1f} spacings", length, spacings);
+  const std::string remedy = fmt::format("take a \"spacing\" of {:.2g} m or less", length / few);
+  if (spacings < least)
+    f.error(key, message, "below 2 a particle loses more than its neighbourhood gives back", remedy);
+  else
+    f.warning(key, message, "below 5 peak and path depend on the packing", remedy);
+}
+
 void check_law(const PlasticityParameters &p, const std::string &section, Findings &f)
 {
   const bool mises = p.law == PlasticityLaw::von_mises;
@@ -31,7 +61,7 @@ void check_law(const PlasticityParameters &p, const std::string &section, Findin
               "flow would give energy instead of taking it", "make it smaller");
     return;
   }
-  of_other({"cohesion", "friction_angle", "dilatancy_angle"});
+  of_other({"cohesion", "friction_angle", "dilatancy_angle", "softening_energy"});
   const bool has_curve = !p.curve.empty();
   if (has_curve == p.yield_stress.has_value())
     f.error(section + (has_curve ? "/yield_stress" : "/law"),
@@ -75,6 +105,7 @@ void check_plasticity(const Scene &scene, Findings &f)
   for (const auto &[key, material] : materials)
     if (material->plasticity && f.sound({key + "/plasticity"})) {
       check_law(*material->plasticity, key + "/plasticity", f);
+      check_softening_energy(scene, *material, key + "/plasticity", f);
       if (first.empty())
         first = key + "/plasticity";
     }

@@ -156,6 +156,14 @@ struct PlasticityParameters
   // Of drucker_prager.
   std::optional<double> cohesion, friction_angle; // Pa, rad
   double dilatancy_angle = 0;                     // rad
+  std::optional<double> softening_energy;         // J/m^2
+
+  /// Of drucker_prager, without pressure: sqrt(1/2 s:s) in Pa at which flow begins.
+  double shear_strength() const
+  {
+    return 2 * std::sqrt(3.) * *cohesion * std::cos(*friction_angle) /
+           (3 - std::sin(*friction_angle));
+  }
 };
 
 /// A spring and a dashpot in series.

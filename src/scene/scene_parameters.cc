@@ -114,6 +114,7 @@ void declare_plasticity(Section &s, PlasticityParameters &p)
   s.add("cohesion", p.cohesion, "of drucker_prager: shear strength of a plane without pressure").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
   s.add("friction_angle", p.friction_angle, "of drucker_prager: of Coulomb's cone through the edges of triaxial compression").in("rad").usually(0.01, 1.05, "deg").at_least(0).at_most(1.0472);
   s.add("dilatancy_angle", p.dilatancy_angle, "of drucker_prager: by which flow swells; at most the friction angle").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.add("softening_energy", p.softening_energy, "of drucker_prager, in place of hardening: the cohesion falls on a straight line to 0; energy that it takes per area of a band of slip one spacing wide, friction not counted").in("J/m^2").usually(1e-2, 1e7, "N/m kJ/m^2").above(0);
 }
 
 void declare_branch(Section &s, BranchParameters &b)

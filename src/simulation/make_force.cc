@@ -22,15 +22,19 @@ double cone_slope(double angle)
   return 2 * std::sqrt(3.) * std::sin(angle) / (3 - std::sin(angle));
 }
 
-dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p)
+/// `width` in m of the bands in which flow that softens gathers.
+dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p, double width)
 {
   if (!p)
     return {};
   if (p->law == PlasticityLaw::drucker_prager) {
     const double angle = *p->friction_angle;
-    return dem::DruckerPragerFlow{2 * std::sqrt(3.) * *p->cohesion * std::cos(angle) /
-                                  (3 - std::sin(angle)),
-                              p->hardening, cone_slope(angle), cone_slope(p->dilatancy_angle)};
+    const double yield = p->shear_strength();
+    const double hardening = p->softening_energy
+                                 ? -yield * yield * width / (2 * *p->softening_energy)
+                                 : p->hardening;
+    return dem::DruckerPragerFlow{yield, hardening, cone_slope(angle),
+                                  cone_slope(p->dilatancy_angle)};
   }
   dem::YieldCurve curve;
   curve.initial = p->yield_stress.value_or(0);
@@ -55,15 +59,15 @@ dem::Viscosity viscosity_of(const std::optional<ViscosityParameters> &p)
   return v;
 }
 
-dem::DemMaterial material_of(const MaterialParameters &parameters, PlaneMode plane)
+dem::DemMaterial material_of(const MaterialParameters &parameters, const Scene &scene)
 {
   dem::DemMaterial m;
   m.youngs_modulus = parameters.youngs_modulus;
   m.poissons_ratio = parameters.poissons_ratio;
   m.density = parameters.density;
-  m.plane = plane;
+  m.plane = scene.plane;
   m.friction = parameters.friction;
-  m.plasticity = plasticity_of(parameters.plasticity);
+  m.plasticity = plasticity_of(parameters.plasticity, scene.zone.spacing);
   m.viscosity = viscosity_of(parameters.viscosity);
   return m;
 }
@@ -110,7 +114,7 @@ template <int dim>
 double toughness_factor(const Scene &scene, const MaterialParameters &parameters)
 {
   const auto criterion = criterion_of(parameters);
-  const dem::DemMaterial material = material_of(parameters, scene.plane);
+  const dem::DemMaterial material = material_of(parameters, scene);
   const std::string key = toughness_key(scene, parameters.fracture.criterion, material);
   return ToughnessCache().factor(key, [&] {
     if (scene.zone.packing == PackingKind::random) {
@@ -211,7 +215,7 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
 template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene)
 {
-  return material_of(scene.material, scene.plane).elastic_constants<dim>();
+  return material_of(scene.material, scene).elastic_constants<dim>();
 }
 
 template <int dim>
@@ -220,9 +224,9 @@ make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
                      const std::vector<core::BoundaryLoad<dim>> &loads,
                      std::map<std::string, Figure> &figures, core::Log &log)
 {
-  std::vector<dem::DemMaterial> materials = {material_of(scene.material, scene.plane)};
+  std::vector<dem::DemMaterial> materials = {material_of(scene.material, scene)};
   for (const Inclusion &inclusion : scene.inclusions)
-    materials.push_back(material_of(inclusion.material, scene.plane));
+    materials.push_back(material_of(inclusion.material, scene));
   const dem::Materials of_particles(std::move(materials), packing.material);
   return std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles, loads,
                                                    fracture_of<dim>(scene, figures, log));

@@ -291,12 +291,14 @@ private:
     const double mean = stress[i].trace() / 3;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), s = stress[i] - mean * one;
     const double tau = s.norm() / std::sqrt(2.),
-                 yield = law.cohesion + law.hardening * history[i],
+                 yield = std::max(law.cohesion + law.hardening * history[i], 0.),
                  excess = law.friction * mean + tau - yield;
     if (excess <= 0)
       return;
-    const double shear =
-        excess / (g + k_ * law.dilatancy * law.friction + law.hardening);
+    const double stiffness = g + k_ * law.dilatancy * law.friction;
+    double shear = excess / (stiffness + law.hardening);
+    if (law.cohesion + law.hardening * (history[i] + shear) < 0)
+      shear = (excess + yield) / stiffness; // what is left is friction
     if (g * shear <= tau) {
       strain[i] += shear * (s / (2 * tau) + law.dilatancy / 3 * one);
       history[i] += shear;
@@ -304,7 +306,8 @@ private:
     }
     const double all = tau / g;
     strain[i] += s / (2 * g) +
-                 (mean - (yield + law.hardening * all) / law.friction) / (3 * k_) * one;
+                 (mean - std::max(law.cohesion + law.hardening * (history[i] + all), 0.) /
+                             law.friction) / (3 * k_) * one;
     history[i] += all;
   }
 

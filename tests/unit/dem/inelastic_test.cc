@@ -22,7 +22,8 @@ std::vector<Plasticity> laws()
   voce.initial = 0.003, voce.hardening = 0.05, voce.saturation = 0.01, voce.rate = 60;
   table.strain = {0, 0.002, 0.01}, table.stress = {0.003, 0.006, 0.009};
   return {VonMisesFlow{linear}, VonMisesFlow{voce}, VonMisesFlow{table}, DruckerPragerFlow{0.004, 0.1, 0.5, 0.3},
-          DruckerPragerFlow{0.003, 0, 0.8, 0}};
+          DruckerPragerFlow{0.003, 0, 0.8, 0}, DruckerPragerFlow{0.004, -0.1, 0.5, 0.3},
+          DruckerPragerFlow{0.004, -0.2, 0.3, 0}};
 }
 
 /// Random states one after the other, each turned further.
