@@ -7,6 +7,7 @@
 #include "dem/fracture/mohr_coulomb.h"
 #include "dem/fracture/opening_tension.h"
 #include "dem/fracture/principal_stress.h"
+#include "dem/fracture/rebonding.h"
 #include "dem/fracture/strain_energy.h"
 #include "dem/fracture/von_mises.h"
 #include "dem/laws/cohesive.h"
@@ -48,6 +49,8 @@ struct FractureLaw
   std::vector<double> energies = {};
   Softening softening = {};
   double mode_ratio = 1; // beta: shear strength over tensile strength of a face that opens
+  /// Of each material; empty: what is broken stays so.
+  std::vector<Rebonding> rebonding = {};
 
   bool softens() const
   {

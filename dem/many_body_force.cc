@@ -12,7 +12,9 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
       rows_(body_), slices_(body_),
       strains_(packing, body_, surface_.walls(), surface_.particles()),
       cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_, strains_),
-      contacts_(packing, materials, body_.images()), jumps_(body_, loads),
+      contacts_(packing, materials, body_.images()),
+      rebonded_(body_, strains_, contacts_, fracture.rebonding, packing.thickness),
+      jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
       evaluation_(body_), trial_(body_), energy_evaluation_(body_)
 {
@@ -87,6 +89,7 @@ void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim
     e.inelastic = strains_.begin(e.may_flow, time_);
     e.inelastic->energy = e.own_energy;
     surface_.add_strains(p, e);
+    rebonded_.add_strains(p, e);
     interfaces_.add_strains(p, e);
     slices_.add_strains(p, e);
     return;
@@ -194,6 +197,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     last_time_ = time_;
     time_ = time;
     broken_.end_step(p, dt());
+    rebonded_.begin(p);
   }
   set_loads(time);
   surface_.wake(rest_);
@@ -204,14 +208,20 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   book_work(p);
-  if (broken_.have_broken_at(time) || began_at_ == time)
-    return;
+  if (!broken_.have_broken_at(time) && began_at_ != time)
+    look_for_breaks(p);
+  rebonded_.look(p, evaluation_.pressure, time);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::look_for_breaks(Particles &p)
+{
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
   std::vector<BondId> breaking = cohesive_.torn();
   const auto at_once = begin_softening(p, search_.exceeding_bonds(state));
   breaking.insert(breaking.end(), at_once.begin(), at_once.end());
-  break_bonds(p, breaking);
+  break_bonds(p, breaking, rebonded_.torn(p, evaluation_.pressure));
 }
 
 template <int dim>
