@@ -52,6 +52,25 @@ struct FractureLaw
   /// Of each material; empty: what is broken stays so.
   std::vector<Rebonding> rebonding = {};
 
+  /// Of cracks in each material, m/s, 0: any; empty: in all. Where it is limited faces that would
+  /// break at once fall, theory.md section 1.15. A crack between two obeys both.
+  std::vector<double> crack_velocities = {};
+
+  bool falls() const
+  {
+    return std::any_of(crack_velocities.begin(), crack_velocities.end(),
+                       [](double v) { return v > 0; });
+  }
+  double crack_velocity_of(int a, int b) const
+  {
+    if (crack_velocities.empty())
+      return 0;
+    const auto [slow, fast] = std::minmax(crack_velocities[a], crack_velocities[b]);
+    return slow > 0 ? slow : fast;
+  }
+  /// Faces may stay bonds after they have reached their strength.
+  bool faces_open() const { return softens() || falls(); }
+
   bool softens() const
   {
     return energy > 0 ||

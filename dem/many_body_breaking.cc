@@ -140,18 +140,24 @@ template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
                                                         const std::vector<BondId> &bonds)
 {
-  if (bonds.empty() || !fracture().softens())
+  if (bonds.empty() || !fracture().faces_open())
     return bonds;
   const StressedBody<dim> state = stressed(p, evaluation_);
   std::vector<BondId> at_once;
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
     const double energy = search_.energy_of(b, materials());
+    const Vector<dim> force = state.force(b, state.motion(b));
     if (energy == 0) {
-      at_once.push_back(id);
-      continue;
-    }
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
+      const double velocity = search_.crack_velocity_of(b, materials());
+      if (velocity == 0 ||
+          !cohesive_.begin_fall(id, b, p, force, time_,
+                                crossing_time<dim>(b.area, thickness_, velocity))) {
+        at_once.push_back(id);
+        continue;
+      }
+    } else
+      cohesive_.begin(id, b, p, force, b.weight * energy * b.area);
     body_.add_other_particle(b.i);
     body_.add_other_particle(b.j);
     began_at_ = time_;
@@ -163,7 +169,9 @@ template <int dim>
 Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
 {
   const StressedBody<dim> state = stressed(p, evaluation_);
-  const Vector<dim> force = state.force(b, state.motion(b));
+  auto motion = state.motion(b);
+  motion.elastic -= cohesive_.opening(b, p);
+  const Vector<dim> force = state.force(b, motion);
   const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
   return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
 }

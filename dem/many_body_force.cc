@@ -16,7 +16,7 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
       rebonded_(body_, strains_, contacts_, fracture.rebonding, packing.thickness),
       jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
-      evaluation_(body_), trial_(body_), energy_evaluation_(body_)
+      evaluation_(body_), trial_(body_), energy_evaluation_(body_), thickness_(packing.thickness)
 {
   core::require(interfaces_.empty() || !fracture.softens(),
                 "/material/fracture/energy: faces that soften need a body of one elastic material; "
@@ -28,6 +28,15 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                 "faces of a body that flows don't soften");
   core::require(!fracture.softens() || !body_.images().is_any(),
                 "faces of a body with joined sides don't soften");
+  for (const bool is_on : {fracture.falls(), rebonded_.is_on()}) {
+    core::require(!is_on || interfaces_.empty(),
+                  "faces fall or are bonded again in a body of one elastic material only");
+    core::require(!is_on || !body_.images().is_any(),
+                  "faces of a body with joined sides neither fall nor are bonded again");
+    core::require(!is_on || !strains_.is_viscous(),
+                  "faces of a viscous body neither fall nor are bonded again");
+  }
+  core::require(!fracture.falls() || !strains_.has_law(), "faces of a body that flows don't fall");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
   core::require(interfaces_.empty() || strains_.longest_damping() == 0,

@@ -263,6 +263,7 @@ private:
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
+  double thickness_;                // m, 2D
   double time_ = 0, last_time_ = 0; // s
   double began_at_ = -1;            // s, softening of faces, last
 };

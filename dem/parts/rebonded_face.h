@@ -28,15 +28,15 @@ struct RebondedFace
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
 
-  int i, j;                      // as in the contact
-  bool turns_with_i;             // the opening, with the particle of the smaller global id
-  Vector<dim> lever_i, lever_j;  // m, in their particles' axes
+  int i, j;                       // as in the contact
+  bool turns_with_i;              // the opening, with the particle of the smaller global id
+  Vector<dim> lever_i, lever_j;   // m, in their particles' axes
   Vector<dim> normal_i, normal_j; // unit, i -> j, in their particles' axes
-  double area, distance;         // m^2, m
-  double shear_modulus;          // Pa
-  double bending, twist;         // N m
-  double strength, friction;     // Pa, of adhesion; Coulomb's coefficient under it
-  Vector<dim> opening;           // w, m
+  double area, distance;          // m^2, m
+  double shear_modulus;           // Pa
+  double bending, twist;          // N m
+  double strength, friction;      // Pa, of adhesion; Coulomb's coefficient under it
+  Vector<dim> opening;            // w, m
   NaturalTurn<dim> turn;
   /// What V times the strain of either particle has besides S/r d (x) A, m^dim, symmetric.
   Matrix strain_i = Matrix::Zero(), strain_j = Matrix::Zero();
@@ -94,8 +94,7 @@ inline Vector<3> half_couple(const RebondedFace<3> &f, const Turn<3> &seen)
 }
 inline Turn<3> seen_turn(const RebondedFace<3> &f, const particles::Particles<3> &p)
 {
-  return product(Turn<3>::of(p, f.i).inverse(),
-                 product(Turn<3>::of(p, f.j), f.turn.of_i_in_j));
+  return product(Turn<3>::of(p, f.i).inverse(), product(Turn<3>::of(p, f.j), f.turn.of_i_in_j));
 }
 inline Spin<3> couple(const RebondedFace<3> &f, const particles::Particles<3> &p)
 {
@@ -151,17 +150,16 @@ struct RebondedState
                 const Eigen::Matrix<double, dim, dim> &strain_j)
       : face(of), law(of.law()), turn_i(Turn<dim>::of(p, of.i)), turn_j(Turn<dim>::of(p, of.j)),
         a_i(in_space<dim>(turn_i, of.lever_i)), a_j(in_space<dim>(turn_j, of.lever_j)),
-        opening(in_space<dim>(of.turns_with_i ? turn_i : turn_j, of.opening)),
-        d(gap(p) - opening), stretch_i(in_space<dim>(turn_i, Vector<dim>(strain_i * of.lever_i))),
+        opening(in_space<dim>(of.turns_with_i ? turn_i : turn_j, of.opening)), d(gap(p) - opening),
+        stretch_i(in_space<dim>(turn_i, Vector<dim>(strain_i * of.lever_i))),
         stretch_j(in_space<dim>(turn_j, Vector<dim>(strain_j * of.lever_j)))
   {
   }
 
   Vector<dim> gap(const particles::Particles<dim> &p) const
   {
-    const Vector<dim> between =
-        get(p.reference, face.j) - get(p.reference, face.i) +
-        (get(p.displacement, face.j) - get(p.displacement, face.i));
+    const Vector<dim> between = get(p.reference, face.j) - get(p.reference, face.i) +
+                                (get(p.displacement, face.j) - get(p.displacement, face.i));
     return between + a_j - a_i;
   }
   Vector<dim> normal() const

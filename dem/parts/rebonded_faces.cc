@@ -20,8 +20,7 @@ std::optional<Rebonding> RebondedFaces<dim>::rule(int i, int j) const
       body_.energy_weight(j) != 1)
     return std::nullopt;
   for (const auto &[k, of] : {std::pair(i, a), std::pair(j, b)})
-    if (strains_.has_law() &&
-        (strains_.history(k) < of.plastic_strain || !strains_.is_open(k)))
+    if (strains_.has_law() && (strains_.history(k) < of.plastic_strain || !strains_.is_open(k)))
       return std::nullopt;
   return between(a, b);
 }
@@ -81,8 +80,8 @@ auto RebondedFaces<dim>::make(const Contact<dim> &c, const PressedContact<dim> &
   // The force without opening, and what it lacks.
   const RebondedState<dim> bare = state(face, p);
   const Vector<dim> lacking = pressed.force - bare.force(pressure[i], pressure[j]);
-  face.opening = in_own_axes<dim>(face.turns_with_i ? turn_i : turn_j,
-                                  Vector<dim>(-lacking / bare.law.shear));
+  face.opening =
+      in_own_axes<dim>(face.turns_with_i ? turn_i : turn_j, Vector<dim>(-lacking / bare.law.shear));
   const RebondedState<dim> now = state(face, p);
   face.flowed = now.normal().dot(now.stretch_i - now.stretch_j);
   set_couple(face, p, Spin<dim>(pressed.torque - now.torques(pressure[i], pressure[j])[0]));

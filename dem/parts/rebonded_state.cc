@@ -61,9 +61,8 @@ void RebondedFaces<dim>::save(core::State &state, const core::Names &names) cons
     j.push_back(names.name(face.j));
     acts.push_back(face.acts);
     Face copy = face;
-    for_each_number<dim>(copy, [&](const std::string &column, double &value) {
-      numbers[column].push_back(value);
-    });
+    for_each_number<dim>(
+        copy, [&](const std::string &column, double &value) { numbers[column].push_back(value); });
   }
   core::Table table(std::move(keys), 3);
   table.add("i", i);
@@ -95,9 +94,8 @@ void RebondedFaces<dim>::load(const core::State &state, const core::Names &names
     face.turns_with_i = i[r] < j[r];
     face.acts = acts[r];
     has_new_ = has_new_ || !face.acts;
-    for_each_number<dim>(face, [&](const std::string &column, double &value) {
-      value = numbers.at(column)[r];
-    });
+    for_each_number<dim>(
+        face, [&](const std::string &column, double &value) { value = numbers.at(column)[r]; });
     faces_.emplace(Name{table.keys()[3 * r], table.keys()[3 * r + 1], table.keys()[3 * r + 2]},
                    face);
   }

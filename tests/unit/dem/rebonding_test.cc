@@ -160,5 +160,270 @@ TYPED_TEST(Rebonded, ForceIsMinusTheGradient)
     }
   }
 }
+
+/// All numbers of a state.
+std::vector<double> all_numbers(const core::State &state)
+{
+  std::vector<double> numbers;
+  for (const auto &[name, table] : state)
+    for (const std::string &column : table.columns())
+      for (const double x : table.reals(column))
+        numbers.push_back(x);
+  return numbers;
+}
+
+TYPED_TEST(Rebonded, GoesOnFromItsStateToTheBit)
+{
+  constexpr int dim = TypeParam::value;
+  for (const bool flows : {false, true})
+    for (const int saved_at : {1, 2, 4}) {
+      Pressed<dim> body(flows);
+      const core::Names names(body.p.global_id.list());
+      for (int step = 1; step <= saved_at; ++step) {
+        body.move(step);
+        body.force->compute(body.p, step);
+      }
+      core::State state;
+      body.p.save(state, names);
+      body.force->save(state, names, body.p);
+      const auto other = body.make();
+      auto q = body.p;
+      other->load(state, names, q);
+      ASSERT_GT(body.force->rebonded().all().size(), 0u);
+      for (int step = saved_at; step < saved_at + 8; ++step) {
+        body.move(step * (step > saved_at + 4 ? -3. : 1.));
+        q.displacement = body.p.displacement, q.rotation = body.p.rotation;
+        body.force->compute(body.p, step);
+        other->compute(q, step);
+        for (int i = 0; i < q.size(); ++i) {
+          for (int c = 0; c < dim; ++c)
+            ASSERT_EQ(body.p.force[c][i], q.force[c][i]) << saved_at << ' ' << step;
+          for (int c = 0; c < n_spins<dim>; ++c)
+            ASSERT_EQ(body.p.torque[c][i], q.torque[c][i]);
+        }
+        ASSERT_EQ(body.force->rebonding_energy(), other->rebonding_energy());
+        ASSERT_EQ(body.force->fracture_energy(), other->fracture_energy());
+        ASSERT_EQ(body.force->potential_energy(body.p), other->potential_energy(q));
+      }
+      EXPECT_GT(body.force->fracture_energy(), 0); // some broke again
+    }
+}
+
+TYPED_TEST(Rebonded, LookingTwiceChangesNothing)
+{
+  constexpr int dim = TypeParam::value;
+  Pressed<dim> body(false);
+  const core::Names names(body.p.global_id.list());
+  for (int step = 1; step < 5; ++step) {
+    body.move(step);
+    body.force->compute(body.p, step);
+    core::State once, twice;
+    body.force->save(once, names, body.p);
+    const auto p = body.p;
+    body.force->compute(body.p, step);
+    body.force->save(twice, names, body.p);
+    EXPECT_EQ(difference(p, body.p, 1.), 0);
+    const auto a = all_numbers(once), b = all_numbers(twice);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
+  }
+}
+
+TYPED_TEST(Rebonded, NumberingChangesNothing)
+{
+  constexpr int dim = TypeParam::value;
+  Pressed<dim> a(false), b(false);
+  const int n = a.packing.size();
+  const auto place = [&](int i) { return (i * 7 + 3) % n; };
+  auto &q = b.packing;
+  q.global_id.resize(n);
+  for (int i = 0; i < n; ++i) {
+    for (int c = 0; c < dim; ++c)
+      q.centre[c][place(i)] = a.packing.centre[c][i];
+    q.volume[place(i)] = a.packing.volume[i];
+    q.global_id[place(i)] = i;
+  }
+  for (auto &f : q.faces) {
+    f.i = place(f.i), f.j = place(f.j);
+    f.direction = -1;
+  }
+  q.directions.clear();
+  q.boundary_faces = a.packing.boundary_faces;
+  for (auto &f : q.boundary_faces)
+    f.i = place(f.i);
+  a.packing.directions.clear();
+  for (auto &f : a.packing.faces)
+    f.direction = -1;
+  a.force = a.make(), b.force = b.make();
+  for (int step = 1; step < 7; ++step) {
+    a.move(step < 5 ? step : -3. * step);
+    for (int i = 0; i < n; ++i) {
+      for (int c = 0; c < dim; ++c)
+        b.p.displacement[c][place(i)] = a.p.displacement[c][i];
+      for (std::size_t c = 0; c < a.p.rotation.size(); ++c)
+        b.p.rotation[c][place(i)] = a.p.rotation[c][i];
+    }
+    b.p.global_id = particles::GlobalIds(q.global_id);
+    a.force->compute(a.p, step);
+    b.force->compute(b.p, step);
+    ASSERT_EQ(a.force->rebonded().all().size(), b.force->rebonded().all().size());
+    auto other = b.force->rebonded().all().begin();
+    for (const auto &[name, face] : a.force->rebonded().all())
+      EXPECT_EQ(name, (other++)->first);
+    double scale = 0;
+    for (int i = 0; i < n; ++i)
+      scale = std::max(scale, get(a.p.force, i).norm());
+    for (int i = 0; i < n; ++i)
+      EXPECT_LT((get(a.p.force, i) - get(b.p.force, place(i))).norm(), 1e-11 * scale);
+    EXPECT_NEAR(a.force->rebonding_energy(), b.force->rebonding_energy(),
+                1e-11 * std::abs(a.force->rebonding_energy()));
+    EXPECT_NEAR(a.force->fracture_energy(), b.force->fracture_energy(),
+                1e-10 * std::abs(a.force->fracture_energy()));
+  }
+  EXPECT_GT(a.force->fracture_energy(), 0);
+}
+
+/// Two cubes or squares whose faces touch, held by smooth plates at their ends.
+template <int dim>
+packings::Packing<dim> touching()
+{
+  Packing<dim> p;
+  const double d = p.spacing = 0.01;
+  p.thickness = dim == 2 ? 0.3 : 1;
+  for (int c = 0; c < dim; ++c)
+    p.centre[c] = {0, c == 1 ? d : 0};
+  p.volume.assign(2, std::pow(d, dim) * p.thickness);
+  p.global_id = {0, 1};
+  const double area = std::pow(d, dim - 1) * p.thickness;
+  const Vector<dim> up = d / 2 * Vector<dim>::Unit(1);
+  p.faces.push_back({0, 1, Vector<dim>::Unit(1), area, d / 2, d / 2, up, -up, -1, true});
+  for (int i = 0; i < 2; ++i)
+    for (int c = 0; c < dim; ++c)
+      for (int end = 0; end < 2; ++end)
+        if (const Vector<dim> n = (end ? 1 : -1) * Vector<dim>::Unit(c); c != 1 || end == i)
+          p.boundary_faces.push_back({i, n, area, d / 2, d / 2 * n, 2 * c + end});
+  return p;
+}
+
+template <int dim>
+std::vector<core::BoundaryLoad<dim>> plates(double closing, const core::TimeFunction &course)
+{
+  std::vector<core::BoundaryLoad<dim>> loads(2);
+  for (int end = 0; end < 2; ++end) {
+    loads[end].boundary = 2 + end;
+    loads[end].kind = core::BoundaryLoad<dim>::Kind::displacement;
+    loads[end].value[1] = (end ? -0.5 : 0.5) * closing;
+    loads[end].history = course;
+  }
+  return loads;
+}
+
+constexpr double youngs_modulus = 3e10, density = 2500;
+
+/// Pressed together, bonded, drawn apart: it bears the strength of adhesion and not more.
+TYPED_TEST(Rebonded, AdhesionEndsAtItsStrength)
+{
+  constexpr int dim = TypeParam::value;
+  const auto packing = touching<dim>();
+  const double d = packing.spacing, area = packing.faces[0].area;
+  for (const double nu : {0., 0.3}) {
+    const DemMaterial material{youngs_modulus, nu, density, PlaneMode::strain, 0.3};
+    FractureLaw law;
+    law.rebonding = {{4e6, 0, 2e6}};
+    const double period = d / 3000, ramp = 400 * period;
+    const core::TimeTable course({{0, 0}, {ramp, 1}, {3 * ramp, -1}});
+    Run<dim> run(packing, material, plates<dim>(3e-4 * 2 * d, course), law);
+    double pressed = 0, most = 0, when_bonded = 0, residual = 0;
+    while (run.time < 3 * ramp && run.force->fracture_energy() == 0) {
+      const int before = run.force->rebonded().n_bonds();
+      run.step(2 / period);
+      const double stress = run.force->reaction(1)[1] / area;
+      pressed = std::min(pressed, stress), most = std::max(most, stress);
+      if (run.force->rebonded().n_bonds() > before)
+        when_bonded = stress;
+      residual = std::max(residual, std::abs(run.residual()));
+    }
+    EXPECT_GT(run.force->fracture_energy(), 0);
+    EXPECT_NEAR(when_bonded, -4e6, 0.03 * 4e6); // within what a step changes, plates ahead of it
+    EXPECT_LT(pressed, -5e6);
+    EXPECT_NEAR(most, 2e6, 0.03 * 2e6);
+    const double whole = 0.5 * pressed * pressed / youngs_modulus * area * 2 * d;
+    EXPECT_LT(residual, 1e-3 * whole); // the strain
+  }
+}
+
+/// Shaken without damping: bonded and torn over and over.
+template <int dim>
+void expect_balance(int n_cycles)
+{
+  const auto packing = touching<dim>();
+  const double d = packing.spacing, area = packing.faces[0].area;
+  for (const double nu : {0., 0.3}) {
+    const DemMaterial material{youngs_modulus, nu, density, PlaneMode::strain, 0.3};
+    // The law is exactly linear for no strain.
+    constexpr double small = 1e-8;
+    const double stress = youngs_modulus * small, period = d / 3000;
+    FractureLaw law;
+    law.rebonding = {{0.4 * stress, 0, 0.3 * stress}};
+    const core::Cycles course{core::Ramp{0}, 20 * period, 1, 20 * period};
+    Run<dim> run(packing, material, plates<dim>(small * 2 * d, course), law);
+    const double whole = 0.5 * stress * stress / youngs_modulus * area * 2 * d;
+    int n_bonded = 0, n_torn = 0, last = 0;
+    double worst = 0, early = 0, thrown = 0;
+    while (n_torn < n_cycles && run.time < 400. * n_cycles * period) {
+      run.step();
+      const int now = run.force->rebonded().n_bonds();
+      n_bonded += now > last, n_torn += now < last;
+      last = now;
+      worst = std::max(worst, std::abs(run.residual()));
+      thrown = std::max(thrown, run.mechanical());
+      if (n_torn <= n_cycles / 10)
+        early = worst;
+    }
+    EXPECT_EQ(n_torn, n_cycles) << n_bonded;
+    EXPECT_LT(worst, 1e-6 * whole) << dim << ' ' << nu << " early " << early / whole << " thrown "
+                                   << thrown / whole;
+  }
+}
+TYPED_TEST(Rebonded, BalanceOverCycles)
+{
+  expect_balance<TypeParam::value>(200);
+}
+TEST(SlowRebonded, HundredThousandCycles2D)
+{
+  expect_balance<2>(100000);
+}
+TEST(SlowRebonded, HundredThousandCycles3D)
+{
+  expect_balance<3>(100000);
+}
+
+/// Without the strain that it asks for nothing is bonded; with it on one side neither.
+TYPED_TEST(Rebonded, AsksForTheStrainOfBothSides)
+{
+  constexpr int dim = TypeParam::value;
+  const auto packing = touching<dim>();
+  DemMaterial material{1., 0.3, 1., PlaneMode::strain, 0.3};
+  material.plasticity = VonMisesFlow{{1e-3, 0.1, 0., 0., {}, {}}};
+  FractureLaw law;
+  for (const double pressure : {1e-2, 3e-2})
+    for (const double strain : {1e-4, 1e-1}) {
+      law.rebonding = {{pressure, strain, 1}};
+      ManyBodyForce<dim> force(packing, material, plates<dim>(0.03 * packing.spacing, core::Ramp{1}),
+                               law);
+      Particles<dim> p = at_rest(packing, material);
+      for (int step = 1; step < 20; ++step) {
+        p.displacement[1][0] = 5e-4 * std::min(step, 15) * packing.spacing;
+        p.displacement[1][1] = -5e-4 * std::min(step, 15) * packing.spacing;
+        force.compute(p, step);
+      }
+      const double pressed = 2 * material.shear_modulus() * 0.015, least =
+          std::min(force.plastic_strain(0), force.plastic_strain(1));
+      EXPECT_GT(least, 1e-4);
+      EXPECT_LT(least, 1e-1);
+      EXPECT_EQ(force.rebonded().all().size() == 1, strain < least && pressure < pressed);
+    }
+}
 } // namespace
 } // namespace ligament::dem::testing
