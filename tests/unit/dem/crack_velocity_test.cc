@@ -60,21 +60,23 @@ TYPED_TEST(Falling, ForceFallsInTimeAndNothingIsLeft)
       loads[end].history = core::Ramp{10 * d / 3000};
     }
     Run<dim> run(packing, material, loads, law);
-    double begun = -1, residual = 0, off = 0;
+    double begun = -1, first = 0, residual = 0, off = 0;
     while (run.force->broken_bonds().empty() && run.time < 1) {
       run.step(1000. * 3);
       residual = std::max(residual, std::abs(run.residual()));
       for (const auto &[name, face] : run.force->cohesive().all()) {
         if (begun < 0)
-          begun = run.time;
-        const double wanted = strength * area * (1 - (run.time - begun) / whole_time);
+          begun = run.time, first = face.force.norm();
+        const double wanted = first * (1 - (run.time - begun) / whole_time);
         off = std::max(off, std::abs(face.force.norm() - std::max(wanted, 0.)));
       }
     }
     const double whole = strength * strength / youngs_modulus * area * d;
     ASSERT_EQ(run.force->broken_bonds().size(), 1u);
     EXPECT_NEAR(run.time - begun, whole_time, 1.01 * run.dt);
-    EXPECT_LT(off, 2e-3 * strength * area) << nu; // by what the step before its begin overshot
+    EXPECT_NEAR(first, strength * area, 0.02 * strength * area); // one step's load above it
+    // Pressures that it shares follow in the next step.
+    EXPECT_LT(off, (nu == 0 ? 1e-9 : 2 * run.dt / whole_time) * first) << nu;
     EXPECT_LT(std::abs(run.force->fracture_energy()), 1e-6 * whole);
     EXPECT_GT(run.force->cohesive_work(), 0.4 * whole);
     EXPECT_LT(residual, 1e-3 * whole); // the strain
@@ -261,15 +263,16 @@ struct Strip
 TEST(Falling, CracksRunNoFaster)
 {
   const Strip strip;
-  const double strain = 0.9 * strength / youngs_modulus;
+  const double strain = 0.6 * strength / youngs_modulus;
   const auto free = strip.run(strain, 0);
   for (const double velocity : {100., 400.}) {
     const auto ran = strip.run(strain, velocity);
     EXPECT_GT(free.speed, 1.5 * velocity);
     EXPECT_LT(ran.speed, velocity) << "without limit " << free.speed;
-    EXPECT_GT(ran.speed, 0.3 * velocity);
-    printf("free %g limit %g ran %g broken %zu %zu\n", free.speed, velocity, ran.speed,
-           free.broken.size(), ran.broken.size());
+    // Two faces of a row follow each other over a spacing, less what waiting for steps takes.
+    EXPECT_NEAR(ran.speed, std::sqrt(3.) / 2 * velocity, 0.1 * velocity);
+    const double whole = strength * strength / youngs_modulus * strip.packing.thickness;
+    EXPECT_LT(ran.residual, 1e-4 * whole * strip.spacing * strip.spacing);
     ASSERT_GT(ran.fell.size(), 20u);
     for (const auto &[name, one] : ran.fell)
       for (const auto &[next, other] : ran.fell) {

@@ -360,20 +360,20 @@ TYPED_TEST(Rebonded, AdhesionEndsAtItsStrength)
 
 /// Shaken without damping: bonded and torn over and over.
 template <int dim>
-void expect_balance(int n_cycles)
+void expect_balance(int n_cycles, const std::vector<double> &poissons_ratios)
 {
   const auto packing = touching<dim>();
   const double d = packing.spacing, area = packing.faces[0].area;
-  for (const double nu : {0., 0.3}) {
+  for (const double nu : poissons_ratios) {
     const DemMaterial material{youngs_modulus, nu, density, PlaneMode::strain, 0.3};
     // The law is exactly linear for no strain.
     constexpr double small = 1e-8;
     const double stress = youngs_modulus * small, period = d / 3000;
     FractureLaw law;
     law.rebonding = {{0.4 * stress, 0, 0.3 * stress}};
-    const core::Cycles course{core::Ramp{0}, 20 * period, 1, 20 * period};
+    const core::Cycles course{core::Ramp{0}, 0, 1, 33 * period};
     Run<dim> run(packing, material, plates<dim>(small * 2 * d, course), law);
-    run.dt *= 0.5; // it knows of no bond between the two
+    run.dt = 0.2 * period; // the force's step knows of no bond between the two
     const double whole = 0.5 * stress * stress / youngs_modulus * area * 2 * d;
     int n_bonded = 0, n_torn = 0, last = 0;
     double worst = 0, early = 0, thrown = 0;
@@ -394,15 +394,15 @@ void expect_balance(int n_cycles)
 }
 TYPED_TEST(Rebonded, BalanceOverCycles)
 {
-  expect_balance<TypeParam::value>(200);
+  expect_balance<TypeParam::value>(200, {0, 0.3});
 }
 TEST(SlowRebonded, HundredThousandCycles2D)
 {
-  expect_balance<2>(100000);
+  expect_balance<2>(100000, {0.3});
 }
 TEST(SlowRebonded, HundredThousandCycles3D)
 {
-  expect_balance<3>(100000);
+  expect_balance<3>(100000, {0.3});
 }
 
 /// Of the faces of a cut those are bonded whose pressure and whose particles' strains suffice.
@@ -484,6 +484,7 @@ TYPED_TEST(Rebonded, BondsWhatASearchFound)
     ManyBodyForce<dim> force(packing, material, {}, law);
     Particles<dim> p = at_rest(packing, material);
     int step = 0;
+    p.displacement[1][0] = -0.4 * d; // it slides: others are looked for
     const auto place = [&](double x) {
       p.displacement[0][2] = -x * d;
       turn_by<dim>(p, 2, Spin<dim>::Constant(1e-3));
