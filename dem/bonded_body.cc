@@ -1,6 +1,7 @@
 #include "dem/bonded_body.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ligament::dem
 {
@@ -25,14 +26,35 @@ BondedBody<dim>::BondedBody(const packings::Packing<dim> &packing, const Materia
 template <int dim>
 void BondedBody<dim>::update_volumetric_stiffness(int i, double volume)
 {
+  const auto other = other_share_.find(i);
+  lambda_per_volume_[i] =
+      lambda_per_volume_with(i, other == other_share_.end() ? 0 : other->second, volume);
+}
+
+template <int dim>
+double BondedBody<dim>::lambda_per_volume_with(int i, double other_share, double volume) const
+{
   const auto wall_share = wall_share_.find(i);
   double phi = wall_share == wall_share_.end() ? 0 : wall_share->second;
+  phi += other_share;
   bonds_.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
     const double q = i == b.i ? b.lever_i.dot(b.normal) : -b.lever_j.dot(b.normal);
     phi += b.area * q / volume;
   });
-  lambda_per_volume_[i] =
-      energy_weight(i) * materials_.of(i).volumetric_stiffness<dim>(phi) / volume;
+  return energy_weight(i) * materials_.of(i).template volumetric_stiffness<dim>(phi) / volume;
+}
+
+template <int dim>
+void BondedBody<dim>::set_other_shares(const std::map<int, double> &shares, const Particles &p)
+{
+  std::vector<int> changed;
+  for (const auto *of : {&std::as_const(other_share_), &shares})
+    for (const auto &[i, share] : *of)
+      changed.push_back(i);
+  other_share_ = shares;
+  for (const int i : changed)
+    if (lambda_per_volume_[i] != 0)
+      update_volumetric_stiffness(i, p.volume[i]);
 }
 
 template <int dim>

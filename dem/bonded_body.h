@@ -52,6 +52,13 @@ public:
   /// The bond no longer carries, nor does it enter the volumes.
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles);
 
+  /// The sum of S q / V over bonds beside those of the network, of particles that have some; and
+  /// these from now on.
+  const std::map<int, double> &other_shares() const { return other_share_; }
+  void set_other_shares(const std::map<int, double> &shares, const Particles &particles);
+  /// lambda_i / V_i if that sum were this one, in a cell of so many m^3.
+  double lambda_per_volume_with(int i, double other_share, double volume) const;
+
   /// Particles whose pressure has parts beside those of lattice bonds, ascending.
   const std::vector<int> &other_particles() const { return other_particles_; }
   void set_other_particles(std::vector<int> particles);
@@ -68,6 +75,7 @@ private:
   std::vector<packings::BoundaryFace<dim>> boundary_faces_;
   std::vector<double> volumes_;
   std::map<int, double> wall_share_; // sum of S q / V over faces held along their normal
+  std::map<int, double> other_share_; // the same, of bonds beside the network's
   std::vector<double> lambda_per_volume_, energy_weights_;
   EdgeCells<dim> edge_;
   std::vector<int> other_particles_;

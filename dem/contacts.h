@@ -41,6 +41,7 @@ struct Contact
   // Opening and closing: theory.md eq. (E10).
   std::optional<double> last_overlap = {}; // m
   double correction = 0;                   // N, added to the pressure in the step of the change
+  bool is_bonded = false;                  // again: the bond bears, this waits
 
   bool is_joint() const { return cut >= 0; }
 };
@@ -59,6 +60,18 @@ struct ClosedContact
   {
     return sticks ? motion : Vector<dim>(normal * normal.dot(motion));
   }
+};
+
+/// One that presses, as it could be bonded again.
+template <int dim>
+struct PressedContact
+{
+  Vector<dim> lever_i, lever_j, normal; // m, to the point where they touch; unit, i -> j
+  Vector<dim> force;                    // N, on i
+  double area, distance;                // m^2, m: of the bond
+  double pressure, energy;              // Pa, J
+  /// On i; the force's about its centre where the contact says so.
+  Spin<dim> torque;
 };
 
 template <int dim>
@@ -92,6 +105,15 @@ public:
   void take_over(std::size_t k, const Vector<dim> &force, const Particles &particles);
   /// The same as add_forces for one contact, by its place in all().
   void add_force(std::size_t k, Particles &particles, double dt);
+
+  /// Of contact k, if it is closed and has been for a step.
+  std::optional<PressedContact<dim>> pressed(std::size_t k, const Particles &particles) const;
+  /// Place in all() of one of this name.
+  std::size_t place(const std::array<std::int64_t, 3> &name) const;
+  /// It is a bond from now on; and a contact again, flow having drawn its particles apart by
+  /// `grown` (m). It presses with nothing where it is shut, unless it takes over a force.
+  void bond(std::size_t k);
+  void part(std::size_t k, double grown, const Particles &particles);
 
   /// Adds forces and torques of a state that may not stay, after the slips of the last
   /// add_forces(); nothing is remembered. Returns those that are closed.
@@ -174,7 +196,7 @@ template <typename Visit>
 void Contacts<dim>::for_each_across(const Particles &p, Visit &&visit) const
 {
   for (const auto &c : contacts_) {
-    if (!c.face.image)
+    if (!c.face.image || c.is_bonded)
       continue;
     const State s = state(c, p);
     Vector<dim> f = -c.correction * s.normal;
@@ -190,7 +212,7 @@ void Contacts<dim>::for_each_moment(const Particles &p, Visit &&visit) const
 {
   for (const auto &c : contacts_) {
     const State s = state(c, p);
-    if (s.overlap <= 0)
+    if (s.overlap <= 0 || c.is_bonded)
       continue;
     const Vector<dim> f = s.stiffness * (c.slip - s.overlap * s.normal);
     visit(c.face.i, s.lever, f);

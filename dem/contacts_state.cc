@@ -41,7 +41,7 @@ void for_each_number(C &c, Visit &&visit)
   visit("correction", c.correction);
 }
 
-constexpr std::int64_t is_known = 1, is_from_face = 2, has_overlap = 4; // flags
+constexpr std::int64_t is_known = 1, is_from_face = 2, has_overlap = 4, is_bonded = 8; // flags
 } // namespace
 
 template <int dim>
@@ -56,7 +56,8 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
     j.push_back(names.name(c.face.j));
     flags.push_back((c.known ? is_known : std::int64_t(0)) |
                     (c.from_face ? is_from_face : std::int64_t(0)) |
-                    (c.last_overlap ? has_overlap : std::int64_t(0)));
+                    (c.last_overlap ? has_overlap : std::int64_t(0)) |
+                    (c.is_bonded ? is_bonded : std::int64_t(0)));
     overlap.push_back(c.last_overlap.value_or(0));
     image.push_back(PeriodicImages<dim>::number_of(c.face.image));
     for_each_number<dim>(
@@ -110,6 +111,7 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
       c.face.image = images.of(int(image[r]));
     c.from_face = flags[r] & is_from_face;
     c.known = flags[r] & is_known;
+    c.is_bonded = flags[r] & is_bonded;
     c.last_overlap = flags[r] & has_overlap ? std::optional(overlap[r]) : std::nullopt;
     for_each_number<dim>(
         c, [&](const std::string &column, double &value) { value = numbers.at(column)[r]; });

@@ -72,7 +72,7 @@ void CutFlanks<dim>::pass_on_joints(const Particles &p, Contacts<dim> &contacts)
 {
   for (std::size_t k = contacts.all().size(); k-- > 0;) {
     const Contact<dim> &c = contacts.all()[k];
-    if (!c.is_joint())
+    if (!c.is_joint() || c.is_bonded)
       continue;
     if (const int j = partner(c, p); j != c.face.j)
       contacts.pass_on(k, j, p);

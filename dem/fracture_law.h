@@ -7,6 +7,7 @@
 #include "dem/fracture/mohr_coulomb.h"
 #include "dem/fracture/opening_tension.h"
 #include "dem/fracture/principal_stress.h"
+#include "dem/fracture/rebonding.h"
 #include "dem/fracture/strain_energy.h"
 #include "dem/fracture/von_mises.h"
 #include "dem/laws/cohesive.h"
@@ -48,6 +49,27 @@ struct FractureLaw
   std::vector<double> energies = {};
   Softening softening = {};
   double mode_ratio = 1; // beta: shear strength over tensile strength of a face that opens
+  /// Of each material; empty: what is broken stays so.
+  std::vector<Rebonding> rebonding = {};
+
+  /// Of cracks in each material, m/s, 0: any; empty: in all. Where it is limited faces that would
+  /// break at once fall, theory.md section 1.15. A crack between two obeys both.
+  std::vector<double> crack_velocities = {};
+
+  bool falls() const
+  {
+    return std::any_of(crack_velocities.begin(), crack_velocities.end(),
+                       [](double v) { return v > 0; });
+  }
+  double crack_velocity_of(int a, int b) const
+  {
+    if (crack_velocities.empty())
+      return 0;
+    const auto [slow, fast] = std::minmax(crack_velocities[a], crack_velocities[b]);
+    return slow > 0 ? slow : fast;
+  }
+  /// Faces may stay bonds after they have reached their strength.
+  bool faces_open() const { return softens() || falls(); }
 
   bool softens() const
   {

@@ -102,9 +102,15 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
 }
 
 template <int dim>
-std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) const
+std::vector<int>
+ManyBodyForce<dim>::near(const std::vector<BondId> &bonds,
+                         const std::vector<typename RebondedFaces<dim>::Name> &rebonded) const
 {
   std::vector<int> of;
+  for (const auto &name : rebonded) {
+    const auto &face = rebonded_.all().at(name);
+    of.insert(of.end(), {face.i, face.j});
+  }
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
     of.insert(of.end(), {b.i, b.j});
@@ -117,9 +123,11 @@ std::vector<int> ManyBodyForce<dim>::near(const std::vector<BondId> &bonds) cons
   };
   make_unique(of);
   std::vector<int> found = of;
-  for (const int i : of)
+  for (const int i : of) {
     body_.bonds().for_each_bond_of(
         i, [&](BondId, const Bond<dim> &b) { found.push_back(b.i == i ? b.j : b.i); });
+    rebonded_.add_neighbours(i, found);
+  }
   make_unique(found);
   if (rest_ && !rest_->is_exact())
     found.erase(
@@ -132,18 +140,24 @@ template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
                                                         const std::vector<BondId> &bonds)
 {
-  if (bonds.empty() || !fracture().softens())
+  if (bonds.empty() || !fracture().faces_open())
     return bonds;
   const StressedBody<dim> state = stressed(p, evaluation_);
   std::vector<BondId> at_once;
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
     const double energy = search_.energy_of(b, materials());
+    const Vector<dim> force = state.force(b, state.motion(b));
     if (energy == 0) {
-      at_once.push_back(id);
-      continue;
-    }
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
+      const double velocity = search_.crack_velocity_of(b, materials());
+      if (velocity == 0 ||
+          !cohesive_.begin_fall(id, b, p, force, time_,
+                                crossing_time<dim>(b.area, thickness_, velocity))) {
+        at_once.push_back(id);
+        continue;
+      }
+    } else
+      cohesive_.begin(id, b, p, force, b.weight * energy * b.area);
     body_.add_other_particle(b.i);
     body_.add_other_particle(b.j);
     began_at_ = time_;
@@ -155,7 +169,9 @@ template <int dim>
 Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
 {
   const StressedBody<dim> state = stressed(p, evaluation_);
-  const Vector<dim> force = state.force(b, state.motion(b));
+  auto motion = state.motion(b);
+  motion.elastic -= cohesive_.opening(b, p);
+  const Vector<dim> force = state.force(b, motion);
   const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
   return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
 }
@@ -163,12 +179,14 @@ Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particl
 // Only the neighbours of the bonds feel the break: what acts on them is summed bond by bond before
 // it and after it.
 template <int dim>
-void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bonds)
+void ManyBodyForce<dim>::break_bonds(
+    Particles &p, const std::vector<BondId> &bonds,
+    const std::vector<typename RebondedFaces<dim>::Name> &rebonded)
 {
-  if (bonds.empty())
+  if (bonds.empty() && rebonded.empty())
     return;
   const StressedBody<dim> state = stressed(p, evaluation_);
-  const std::vector<int> near = this->near(bonds);
+  const std::vector<int> near = this->near(bonds, rebonded);
   std::vector<Wrench<dim>> before, bonded;
   for (const int i : near) {
     before.push_back({get(p.force, i), get(p.torque, i)});
@@ -189,6 +207,11 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
                     contacts_.act_broken(strains_.stretched(b), pressing, p, dt()),
                 of_opening);
   }
+  for (const auto &name : rebonded) {
+    const double energy_before = rebonded_.local_energy(name, p, evaluation_.pressure);
+    broken_.add_again(time_, energy_before -
+                                 rebonded_.part(name, p, evaluation_.pressure, true, dt()));
+  }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);
     add(p.force, near[k], Vector<dim>(after.force - bonded[k].force));
@@ -207,6 +230,8 @@ template std::vector<BondId> ManyBodyForce<3>::begin_softening(const Particles &
                                                                const std::vector<BondId> &);
 template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);
 template void ManyBodyForce<3>::drop_bond(const BondId &, const Bond<3> &, const Particles &);
-template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &);
-template void ManyBodyForce<3>::break_bonds(Particles &, const std::vector<BondId> &);
+template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &,
+                                            const std::vector<RebondedFaces<2>::Name> &);
+template void ManyBodyForce<3>::break_bonds(Particles &, const std::vector<BondId> &,
+                                            const std::vector<RebondedFaces<3>::Name> &);
 } // namespace ligament::dem

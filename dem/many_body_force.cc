@@ -12,9 +12,11 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
       rows_(body_), slices_(body_),
       strains_(packing, body_, surface_.walls(), surface_.particles()),
       cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_, strains_),
-      contacts_(packing, materials, body_.images()), jumps_(body_, loads),
+      contacts_(packing, materials, body_.images()),
+      rebonded_(body_, strains_, contacts_, fracture.rebonding, packing.thickness),
+      jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
-      evaluation_(body_), trial_(body_), energy_evaluation_(body_)
+      evaluation_(body_), trial_(body_), energy_evaluation_(body_), thickness_(packing.thickness)
 {
   core::require(interfaces_.empty() || !fracture.softens(),
                 "/material/fracture/energy: faces that soften need a body of one elastic material; "
@@ -26,6 +28,15 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
                 "faces of a body that flows don't soften");
   core::require(!fracture.softens() || !body_.images().is_any(),
                 "faces of a body with joined sides don't soften");
+  for (const bool is_on : {fracture.falls(), rebonded_.is_on()}) {
+    core::require(!is_on || interfaces_.empty(),
+                  "faces fall or are bonded again in a body of one elastic material only");
+    core::require(!is_on || !body_.images().is_any(),
+                  "faces of a body with joined sides neither fall nor are bonded again");
+    core::require(!is_on || !strains_.is_viscous(),
+                  "faces of a viscous body neither fall nor are bonded again");
+  }
+  core::require(!fracture.falls() || !strains_.has_law(), "faces of a body that flows don't fall");
   evaluation_.reactions.assign(surface_.n_loads(), Vector<dim>::Zero());
   find_other_particles();
   core::require(interfaces_.empty() || strains_.longest_damping() == 0,
@@ -87,6 +98,7 @@ void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim
     e.inelastic = strains_.begin(e.may_flow, time_);
     e.inelastic->energy = e.own_energy;
     surface_.add_strains(p, e);
+    rebonded_.add_strains(p, e);
     interfaces_.add_strains(p, e);
     slices_.add_strains(p, e);
     return;
@@ -194,6 +206,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
     last_time_ = time_;
     time_ = time;
     broken_.end_step(p, dt());
+    rebonded_.begin(p);
   }
   set_loads(time);
   surface_.wake(rest_);
@@ -204,14 +217,20 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   book_work(p);
-  if (broken_.have_broken_at(time) || began_at_ == time)
-    return;
+  if (!broken_.have_broken_at(time) && began_at_ != time)
+    look_for_breaks(p);
+  rebonded_.look(p, evaluation_.pressure, time);
+}
+
+template <int dim>
+void ManyBodyForce<dim>::look_for_breaks(Particles &p)
+{
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
   std::vector<BondId> breaking = cohesive_.torn();
   const auto at_once = begin_softening(p, search_.exceeding_bonds(state));
   breaking.insert(breaking.end(), at_once.begin(), at_once.end());
-  break_bonds(p, breaking);
+  break_bonds(p, breaking, rebonded_.torn(p, evaluation_.pressure));
 }
 
 template <int dim>

@@ -11,6 +11,7 @@
 #include "dem/parts/contact_forces.h"
 #include "dem/parts/inelastic_strains.h"
 #include "dem/parts/periodic_jumps.h"
+#include "dem/parts/rebonded_faces.h"
 #include "dem/parts/row_bonds.h"
 #include "dem/parts/slice_bonds.h"
 #include "dem/surface_loads.h"
@@ -125,6 +126,9 @@ public:
   /// Energy in J that opened faces which soften.
   double cohesive_work() const { return cohesive_.work(); }
   const CohesiveFaces<dim> &cohesive() const { return cohesive_; }
+  /// Energy in J that faces lost as they were bonded again; and those that are.
+  double rebonding_energy() const { return rebonded_.energy(); }
+  const RebondedFaces<dim> &rebonded() const { return rebonded_; }
   /// Energy in J by which the leap-frog's invariant fell because forces jumped, theory.md (E10):
   /// where bonds broke, and where contacts opened or closed. Belongs to the energy balance; second
   /// order in the step.
@@ -134,7 +138,8 @@ public:
   particles::ForceLosses losses() const override
   {
     return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
-            cohesive_work(), strains_.stored_energy(), viscous_dissipation()};
+            cohesive_work(), strains_.stored_energy(), viscous_dissipation(),
+            rebonding_energy()};
   }
 
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
@@ -143,7 +148,7 @@ public:
   void softening(const Particles &particles, std::vector<double> &share,
                  std::vector<double> &opening) const override;
   bool can_break() const override { return search_.can_break(); }
-  long n_bonds() const override { return body_.bonds().n_bonds(); }
+  long n_bonds() const override { return body_.bonds().n_bonds() + rebonded_.n_bonds(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
   bool can_flow() const override { return strains_.has_plasticity(); }
@@ -203,14 +208,19 @@ private:
   void clear_forces_at_rest(Particles &particles, const Evaluation<dim> &evaluation) const;
   double dt() const { return time_ - last_time_; }
 
+  /// What is too much for bonds and for adhesion breaks.
+  void look_for_breaks(Particles &particles);
   /// Returns those that break at once; the others soften from now on.
   std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
-  void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
+  /// And contacts that are bonded again.
+  void break_bonds(Particles &particles, const std::vector<BondId> &bonds,
+                   const std::vector<typename RebondedFaces<dim>::Name> &rebonded);
   /// Of a bond on its first particle, in N, where it presses; else 0.
   Vector<dim> pressing_force(const Bond<dim> &bond, const Particles &particles) const;
   /// Particles whose forces these bonds enter, by the pressures of others, too; ascending. Without
   /// those that a threshold holds at rest.
-  std::vector<int> near(const std::vector<BondId> &bonds) const;
+  std::vector<int> near(const std::vector<BondId> &bonds,
+                        const std::vector<typename RebondedFaces<dim>::Name> &rebonded) const;
   /// Elastic energy of one bond and of the volumes of its two particles, in J; all interfaces
   /// count where one of the two is at one, since they share their pressures.
   double local_energy(const Bond<dim> &bond, const Particles &particles) const;
@@ -239,10 +249,11 @@ private:
   CohesiveFaces<dim> cohesive_;
   Interfaces<dim> interfaces_;
   ContactForces<dim> contacts_;
+  RebondedFaces<dim> rebonded_;
   PeriodicJumps<dim> jumps_;
   /// In the order in which they act; rows_ adds its pressures after theirs, its forces before.
-  std::vector<ForcePart<dim> *> parts_ = {&slices_,     &surface_,  &strains_, &cohesive_,
-                                          &interfaces_, &contacts_, &jumps_};
+  std::vector<ForcePart<dim> *> parts_ = {&slices_,   &surface_,    &strains_,  &cohesive_,
+                                          &rebonded_, &interfaces_, &contacts_, &jumps_};
   BreakSearch<dim> search_;
   BrokenBonds<dim> broken_;
   Evaluation<dim> evaluation_;               // of the last compute()
@@ -252,6 +263,7 @@ private:
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
+  double thickness_;                // m, 2D
   double time_ = 0, last_time_ = 0; // s
   double began_at_ = -1;            // s, softening of faces, last
 };

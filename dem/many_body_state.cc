@@ -12,7 +12,7 @@ void ManyBodyForce<dim>::save(core::State &state, const core::Names &names, cons
     part->save(state, names);
   core::save_value(state, "force", "time", time_);
   core::save_value(state, "force", "last_time", last_time_);
-  if (fracture().softens())
+  if (fracture().faces_open())
     core::save_value(state, "force", "began_at", began_at_);
 }
 

@@ -126,8 +126,8 @@ void ManyBodyForce<dim>::for_each_face(
   };
   body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) { both_sides(b, true); });
   for (const auto &contact : contacts_.all())
-    if (contact.from_face)
-      both_sides(contact.face, false);
+    if (contact.from_face || contact.is_bonded)
+      both_sides(contact.face, contact.is_bonded);
   for (const auto &face : body_.boundary_faces())
     if (asked.has(face.i))
       visit({face.i, -1, face.normal, face.area,

@@ -9,6 +9,8 @@ template <int dim>
 void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_share)
 {
   core::require(!strains_.has_law(), "bodies that flow have no trial states");
+  core::require(!fracture().falls(), "bodies whose faces fall in time have no trial states");
+  core::require(!rebonded_.is_on(), "bodies whose faces are bonded again have no trial states");
   set_loads(time);
   search_.ask_trial(trial_, noted_share);
   trial_.has_loads = true;

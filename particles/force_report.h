@@ -49,6 +49,7 @@ struct ForceLosses
   double cohesive = 0; // opened faces that soften
   double hardening = 0; // the part of `plastic` that hardening stores; the rest is heat
   double viscous = 0;
+  double rebonding = 0; // lost by faces as they were bonded again
 };
 
 template <int dim>

@@ -112,7 +112,8 @@ BondTension<dim> BreakSearch<dim>::bond_tension(const BondId &id, const Bond<dim
   const Turn<dim> turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   BondTension<dim> t{id, b, present_normal(b, turn_i, turn_j), {}, 0};
   t.traction = state.force(b, state.motion(b, turn_i, turn_j)) / (b.weight * b.area);
-  if (state.body().edge().may_break(b) && !softening_.has(b, p))
+  const bool waits = softening_.is_at_front(b.i) || softening_.is_at_front(b.j);
+  if (state.body().edge().may_break(b) && !softening_.has(b, p) && !waits)
     t.utilisation = criteria_.bound(b, t.normal, t.traction, state.body().materials());
   return t;
 }

@@ -76,6 +76,11 @@ public:
   {
     return law().energy_of(materials.number(bond.i), materials.number(bond.j));
   }
+  /// In m/s; 0: of any.
+  double crack_velocity_of(const Bond<dim> &bond, const Materials &materials) const
+  {
+    return law().crack_velocity_of(materials.number(bond.i), materials.number(bond.j));
+  }
   /// Other bonds, or others' strengths, from now on.
   void reset(const BondedBody<dim> &body);
 

@@ -33,6 +33,13 @@ void BrokenBonds<dim>::add(const Bond<dim> &b, const Particles &p, double time, 
 }
 
 template <int dim>
+void BrokenBonds<dim>::add_again(double time, double energy)
+{
+  broken_at_ = time;
+  energy_.add(energy);
+}
+
+template <int dim>
 void BrokenBonds<dim>::take_mean(Particles &p, const std::vector<int> &near,
                                  const std::vector<Wrench<dim>> &before, double dt)
 {

@@ -33,6 +33,9 @@ public:
   void add(const Bond<dim> &bond, const Particles &particles, double time, double energy,
            double of_opening = 0);
 
+  /// One that was bonded again, which is not among all().
+  void add_again(double time, double energy);
+
   /// Forces and torques of the particles `near` (ascending), which are those after the break,
   /// become the mean with those before it. Over the step before, the force before would have made
   /// the work exact, over the next one that after: theory.md eq. (E10).

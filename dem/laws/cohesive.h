@@ -77,7 +77,7 @@ struct CohesiveLaw
   using Matrix = Eigen::Matrix<double, dim, dim>;
 
   double strength; // N, in terms of the effective traction
-  double reach;    // m, w_c, of what it opens from now on
+  double reach;    // m, w_c, of what it opens from now on; infinite: opening takes nothing
   Softening shape;
   double mode_ratio; // beta
   double friction;
@@ -178,7 +178,7 @@ private:
       t.size = size(t.y);
       return t;
     };
-    double kappa = last.largest, low = kappa, high = end;
+    double kappa = last.largest;
     if (last.damage < 1) {
       const Trial now = at(kappa);
       if (now.size <= 1) // shut, unloading or as before
@@ -189,9 +189,11 @@ private:
       return {free, std::max(opened, kappa), std::max(last.damage, 1.)};
 
     constexpr int most = 100;
-    constexpr double round_off = 1e-15;
+    const bool is_level = std::isinf(reach);
+    const double round_off = 1e-15 * (is_level ? size(free) : reach);
+    double low = kappa, high = is_level ? 2 * size(free) : end;
     Trial now = at(kappa);
-    for (int k = 0; k < most && high - low > round_off * reach; ++k) {
+    for (int k = 0; k < most && high - low > round_off; ++k) {
       (now.size > 1 ? low : high) = kappa;
       const Vector<dim> pulled = metric * now.y;
       const Vector<dim> change =
@@ -199,11 +201,11 @@ private:
       const double rate = -pulled.dot(change) / (now.size * now.size * now.size); // of 1/|y|
       double next = kappa - (1 / now.size - 1) / rate;
       if (!(next > low && next < high)) {
-        if (std::abs(next - kappa) <= round_off * reach)
+        if (std::abs(next - kappa) <= round_off)
           break;
         next = (low + high) / 2;
       }
-      const bool is_there = std::abs(next - kappa) <= round_off * reach;
+      const bool is_there = std::abs(next - kappa) <= round_off;
       kappa = next;
       now = at(kappa);
       if (is_there)

@@ -2,6 +2,8 @@
 
 #include "dem/parts/opening_faces.h"
 
+#include <limits>
+
 namespace ligament::dem
 {
 namespace
@@ -24,6 +26,8 @@ void for_each_number(F &face, Visit &&visit)
   visit("spent", face.spent);
   visit("whole_energy", face.whole_energy);
   visit("work", face.work);
+  visit("fall_begin", face.fall.begin);
+  visit("fall_duration", face.fall.duration);
 }
 } // namespace
 
@@ -72,6 +76,39 @@ void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Parti
   faces_.emplace(name_of(b, p), face);
 }
 
+// Opening takes nothing of its strength, only time does. What presses is not borne by strength.
+template <int dim>
+bool CohesiveFaces<dim>::begin_fall(const BondId &id, const Bond<dim> &b, const Particles &p,
+                                    const Vector<dim> &force, double now, double duration)
+{
+  Face face = make(id, b, p);
+  const SofteningFace<dim> state(face, p);
+  const double normal = force.dot(state.normal);
+  const Vector<dim> pulls = normal > 0 ? force : Vector<dim>(force - normal * state.normal);
+  if (!(pulls.norm() > 0))
+    return false;
+  face.law.strength = pulls.norm();
+  face.law.reach = std::numeric_limits<double>::infinity();
+  face.law.shape = {};
+  face.law.mode_ratio = 1;
+  face.fall = {now, duration};
+  face.force = face.last_force = state.in_own_axes(force);
+  face.last_turn = relative_turn(b, p);
+  faces_.emplace(name_of(b, p), face);
+  find_fronts();
+  return true;
+}
+
+template <int dim>
+void CohesiveFaces<dim>::find_fronts()
+{
+  at_front_.clear();
+  for (const auto &[name, face] : faces_)
+    if (face.fall.is_on() && face.stayed.damage < 1)
+      at_front_.insert(at_front_.end(), {face.bond.i, face.bond.j});
+  std::sort(at_front_.begin(), at_front_.end());
+}
+
 template <int dim>
 void CohesiveFaces<dim>::try_to_open(const Particles &p, Evaluation<dim> &e)
 {
@@ -94,6 +131,9 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
   if (faces_.empty() || opened_at_ == time)
     return;
   opened_at_ = time;
+  for (auto &[name, face] : faces_)
+    if (face.fall.is_on())
+      face.gone = face.fall.gone(time);
   OpeningFaces<dim> opening(body_, p, e, faces_);
   opening.follow_law(has_jumped_);
   has_jumped_ = false;
@@ -104,7 +144,8 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     const double taken = 0.5 * (face.last_force + face.force).dot(opened) +
                          (now.bending_share(face.stayed) - now.bending_share()) *
                              bending_product(face.bond, face.last_turn, turn);
-    face.spent += face.law.strength * face.law.reach *
+    if (!face.fall.is_on())
+      face.spent += face.law.strength * face.law.reach *
                   (face.law.shape.area_from(face.stayed.damage) -
                    face.law.shape.area_from(face.opening.damage));
     work_.add(taken);
@@ -114,6 +155,7 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     face.last_turn = turn;
   }
   opening.take_directions();
+  find_fronts();
 }
 
 template <int dim>
@@ -269,8 +311,10 @@ void CohesiveFaces<dim>::for_each_moment(const Particles &p, const Evaluation<di
 template <int dim>
 void CohesiveFaces<dim>::remove(const BondId &, const Bond<dim> &b, const Particles &p)
 {
-  if (!faces_.empty())
-    faces_.erase(name_of(b, p));
+  if (faces_.empty())
+    return;
+  faces_.erase(name_of(b, p));
+  find_fronts();
 }
 
 template <int dim>
@@ -316,12 +360,17 @@ void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names
     core::require(id.has_value(), "the state opens a bond that this body doesn't have");
     const Bond<dim> b = body_.bonds().bond(*id);
     Face face = make(*id, b, p);
-    for_each_number<dim>(
-        face, [&](const std::string &column, double &value) { value = columns.at(column)[r]; });
+    for_each_number<dim>(face, [&](const std::string &column, double &value) {
+      if (const auto found = columns.find(column); found != columns.end())
+        value = found->second[r];
+    });
+    if (face.fall.is_on())
+      face.law.shape = {}, face.law.mode_ratio = 1;
     face.opening = face.stayed;
     face.force = face.last_force;
     faces_.emplace(name_of(b, p), face);
   }
+  find_fronts();
   const double time = core::load_real(state, "cohesive_clock", "opened_at");
   opened_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
   work_ = core::load_sum(state, "cohesive_work");

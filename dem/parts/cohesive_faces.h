@@ -2,9 +2,11 @@
 #pragma once
 
 #include "core/exact_sum.h"
+#include "dem/fracture/crack_velocity.h"
 #include "dem/laws/cohesive.h"
 #include "dem/parts/force_part.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -26,6 +28,11 @@ struct CohesiveFace
   double spent = 0;                             // J, below the curve of softening so far
   double whole_energy = 0;                      // J, of a crack along the face
   double work = 0;                              // J, done on the opening so far
+  FallInTime fall = {};                         // in place of softening
+  double gone = 0;                              // of what falls, at the time of the opening
+
+  /// From which the opening of this step goes on.
+  double damage_before() const { return fall.is_on() ? gone : stayed.damage; }
 };
 
 template <int dim>
@@ -54,6 +61,16 @@ public:
   /// open it wholly along its normal.
   void begin(const BondId &id, const Bond<dim> &bond, const Particles &particles,
              const Vector<dim> &force, double energy);
+
+  /// In place of it: from now (s) on its strength falls to nothing within `duration`. False where
+  /// it bears neither tension nor shear: then nothing could fall.
+  bool begin_fall(const BondId &id, const Bond<dim> &bond, const Particles &particles,
+                  const Vector<dim> &force, double now, double duration);
+  /// Whether a crack is still crossing one of the particle's faces.
+  bool is_at_front(int particle) const
+  {
+    return std::binary_search(at_front_.begin(), at_front_.end(), particle);
+  }
 
   /// Once at every new time, between the pressures of the parts and those of the rows: openings
   /// follow the motion, face after face; what that takes is booked.
@@ -110,10 +127,13 @@ private:
   static Name name_of(const Bond<dim> &bond, const Particles &particles);
   Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles) const;
 
+  void find_fronts();
+
   const BondedBody<dim> &body_;
   Softening shape_;
   double mode_ratio_;
   std::map<Name, Face> faces_;
+  std::vector<int> at_front_; // ascending
   std::optional<double> opened_at_; // s
   bool has_jumped_ = false;
   core::ExactSum work_;

@@ -66,6 +66,23 @@ double ContactForces<dim>::act_broken(const Bond<dim> &b, const Vector<dim> &pre
 }
 
 template <int dim>
+double ContactForces<dim>::act_parted(const std::array<std::int64_t, 3> &name,
+                                      const Vector<dim> &pressing, double grown, Particles &p,
+                                      double dt)
+{
+  const std::size_t k = contacts_.place(name);
+  contacts_.part(k, grown, p);
+  const Contact<dim> &contact = all()[k];
+  search_.add_surface_particle(contact.face.i);
+  search_.add_surface_particle(contact.face.j);
+  searching_ = true;
+  if (!pressing.isZero(0) && !contact.is_joint())
+    contacts_.take_over(k, pressing, p);
+  contacts_.add_force(k, p, dt);
+  return contacts_.energy(contact, p);
+}
+
+template <int dim>
 void ContactForces<dim>::search(const Particles &p, const BondNetwork<dim> &bonds, double time,
                                 particles::RestBlocks<dim> *rest)
 {

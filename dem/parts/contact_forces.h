@@ -29,6 +29,11 @@ public:
   double act_broken(const Bond<dim> &bond, const Vector<dim> &pressing, Particles &particles,
                     double dt);
 
+  /// See Contacts: a bond holds this one from now on; and it is a contact again, as act_broken.
+  void bond(const std::array<std::int64_t, 3> &name) { contacts_.bond(contacts_.place(name)); }
+  double act_parted(const std::array<std::int64_t, 3> &name, const Vector<dim> &pressing,
+                    double grown, Particles &particles, double dt);
+
   /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
   /// faces have slid.
   void search(const Particles &particles, const BondNetwork<dim> &bonds, double time,

@@ -185,11 +185,15 @@ std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volu
 {
   using Cell = OpenCell<dim>;
   const auto &bonds = body_->bonds();
-  if (bonds.n_directions() > 0 &&
+  const auto other = other_moment_.find(i);
+  const bool has_others = other != other_moment_.end();
+  if (!has_others && bonds.n_directions() > 0 &&
       bonds.mask()[i] == (std::uint32_t(1) << 2 * bonds.n_directions()) - 1)
     return std::nullopt;
   Matrix of_bonds = Matrix::Zero();
-  bool is_closed = bonds.n_directions() == 0; // by bonds that the slices see
+  if (has_others)
+    of_bonds = other->second;
+  bool is_closed = bonds.n_directions() == 0 && !has_others; // by bonds that the slices see
   bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
     of_bonds += moment(b, i);
     is_closed = is_closed && !b.joins_materials;
@@ -271,6 +275,10 @@ InelasticSweep<dim> InelasticStrains<dim>::begin(bool may_flow, double time) con
         for (const int other : neighbours_[b])
           if (age_[other] == untouched)
             age_[other] = coming;
+    for (const auto &[a, b] : joined_)
+      for (const auto &[one, other] : {std::pair(a, b), std::pair(b, a)})
+        if (age_[one] == begun && age_[other] == untouched)
+          age_[other] = coming;
     for (auto &age : age_)
       if (age == coming)
         age = stored;

@@ -5,6 +5,7 @@
 #include "core/large_array.h"
 #include "dem/parts/force_part.h"
 
+#include <map>
 #include <optional>
 
 namespace ligament::dem
@@ -27,6 +28,15 @@ private:
   double time_;
   std::vector<BranchStep> branches_;
   ViscousStep step_;
+};
+
+/// A bond beside those of the network as the cells of its particles see it: S a (x) n of either
+/// side, symmetric, in m^dim.
+template <int dim>
+struct OtherFace
+{
+  int i, j;
+  Eigen::Matrix<double, dim, dim> moment_i, moment_j;
 };
 
 /// Of bodies with a material that flows; of others nothing here costs anything.
@@ -93,6 +103,14 @@ public:
   /// face. Returns by how much what its viscous part keeps, theory.md eq. (D28), grew, in J.
   double forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
                      double after);
+
+  /// All bonds beside those of the network from now on.
+  void set_other_faces(const std::vector<OtherFace<dim>> &faces, const Particles &particles);
+  /// After it: particle i has lost one of this moment and of this share in X (m^dim), its pressure
+  /// was another before.
+  void forget(int i, const Matrix &moment, const Matrix &x, double before, double after);
+  /// Whether its cell lacks faces of the packing, or has other ones.
+  bool is_open(int i) const { return !has_law() || open_[i] >= 0; }
 
   /// The share of a bond within one material in X of its particle i, theory.md eq. (D22), m^dim.
   static Matrix face_strain(const Bond<dim> &bond, int i, const Particles &particles);
@@ -161,6 +179,8 @@ private:
   Streams streams_;
   mutable std::vector<std::uint8_t> age_; // of the blocks
   std::vector<std::vector<int>> neighbours_; // of the blocks
+  std::map<int, Matrix> other_moment_;       // of particles with bonds beside the network's
+  std::vector<std::array<int, 2>> joined_;   // blocks, by such bonds
   std::vector<int> open_;                 // of the particles
   mutable std::vector<OpenCell<dim>> cells_;
   double whole_volume_ = 0;

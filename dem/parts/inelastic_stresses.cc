@@ -148,6 +148,42 @@ double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Parti
   return laws_[law_number(i)].viscous ? lose_face(i, volume(i), change, lost, after) : 0;
 }
 
+template <int dim>
+void InelasticStrains<dim>::set_other_faces(const std::vector<OtherFace<dim>> &faces,
+                                            const Particles &p)
+{
+  if (!has_law())
+    return;
+  std::vector<int> changed;
+  const auto note = [&] {
+    for (const auto &[i, moment] : other_moment_)
+      changed.push_back(i);
+  };
+  note();
+  other_moment_.clear();
+  joined_.clear();
+  for (const auto &face : faces) {
+    for (const auto &[i, m] : {std::pair(face.i, face.moment_i), std::pair(face.j, face.moment_j)})
+      other_moment_.try_emplace(i, Matrix::Zero()).first->second += m;
+    joined_.push_back({face.i / inelastic_block, face.j / inelastic_block});
+  }
+  note();
+  for (const int i : changed)
+    set_cell(i, p.volume[i]);
+}
+
+template <int dim>
+void InelasticStrains<dim>::forget(int i, const Matrix &moment, const Matrix &x, double before,
+                                   double after)
+{
+  if (!keeps_stress(i))
+    return;
+  const Matrix flowed = strain(i) * moment;
+  jump(i, Tensor(stress_change(i, Matrix(flowed - x), after - before) -
+                 symmetric(before / volume(i) * moment)),
+       after);
+}
+
 template class InelasticStrains<2>;
 template class InelasticStrains<3>;
 } // namespace ligament::dem

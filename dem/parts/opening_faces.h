@@ -59,7 +59,9 @@ struct SofteningFace
   double bending_share() const { return bending_share(face.opening); }
   double bending_share(const Opening<dim> &o) const
   {
-    const double force = face.law.strength * face.law.left(o);
+    const double left = face.law.left(o), force = face.law.strength * left;
+    if (face.fall.is_on()) // what presses has no strength to lose, but time goes on
+      return left > 0 ? left * force / (force + law.shear * o.largest) : 0;
     return force / (force + law.shear * o.largest);
   }
 
@@ -112,7 +114,7 @@ void take_direction(CohesiveFace<dim> &face, const Vector<dim> &way)
 {
   constexpr double least = 0.3; // that of the criterion's cone
   const double cosine = face.bond.normal.dot(way) / way.norm();
-  if (!(cosine > 0)) // shut, or not open yet
+  if (!(cosine > 0) || face.fall.is_on()) // shut, or not open yet
     return;
   const Softening &shape = face.law.shape;
   const double energy = face.whole_energy * std::max(cosine, least),
@@ -170,8 +172,9 @@ public:
   {
     sweep(is_exact, [](const One &one, const Vector<dim> &shut) {
       const Opening<dim> &stayed = one.face->stayed;
-      return one.face->law.answer({one.now.in_space(stayed.jump), stayed.largest, stayed.damage},
-                                  shut, one.stiffness, one.now.normal);
+      return one.face->law.answer(
+          {one.now.in_space(stayed.jump), stayed.largest, one.face->damage_before()}, shut,
+          one.stiffness, one.now.normal);
     });
     for (One &one : all_)
       one.face->force = one.now.in_own_axes(one.now.force(pressure_[one.i], pressure_[one.j]));
@@ -254,7 +257,8 @@ private:
       pressure_[one.j] += to_j, e_.pressure[j] += to_j;
       now.jump = next.jump;
       one.face->opening = {now.in_own_axes(next.jump), next.largest, next.damage};
-      return opened.norm() / one.face->law.reach;
+      const bool falls = one.face->fall.is_on();
+      return opened.norm() / (falls ? one.face->bond.distance : one.face->law.reach);
     };
     constexpr int most = 100;
     constexpr double round_off = 1e-14;

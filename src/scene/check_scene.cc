@@ -162,6 +162,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_softening(scene, scene.material, "/material/fracture", f);
   check_plasticity(scene, f);
   check_viscosity(scene, f);
+  check_face_life(scene, f);
   check_time(scene, f);
   if (!f.sound({"/dimension"}))
     return;

@@ -72,6 +72,9 @@ void check_fracture(const MaterialParameters &material, const std::string &secti
 void check_softening(const Scene &scene, const MaterialParameters &material,
                      const std::string &section, Findings &findings);
 
+/// Limits of the velocity of cracks and faces that are bonded again, in all materials.
+void check_face_life(const Scene &scene, Findings &findings);
+
 /// What loading by equilibria asks of loads, supports, damping and rest.
 void check_phases(const Scene &scene, Findings &findings);
 

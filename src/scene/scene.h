@@ -116,6 +116,12 @@ struct WeibullParameters
   int seed = 1;
 };
 
+/// When faces that touch become bonds again.
+struct RebondingParameters
+{
+  double pressure = 0, plastic_strain = 0, strength = 0; // Pa, -, Pa
+};
+
 struct FractureParameters
 {
   Criterion criterion = Criterion::none;
@@ -129,6 +135,8 @@ struct FractureParameters
   std::optional<double> cohesion;             // Pa
   std::optional<double> friction_angle;       // rad
   std::optional<WeibullParameters> weibull;
+  std::optional<double> crack_velocity; // m/s
+  std::optional<RebondingParameters> rebonding;
 
   /// Cohesion of mohr_coulomb in Pa, given or from the compressive strength; with a friction angle.
   double plane_cohesion() const
@@ -464,6 +472,14 @@ struct Scene
   /// Whether any material may flow, or is viscous.
   bool flows() const { return any_has(&MaterialParameters::plasticity); }
   bool is_viscous() const { return any_has(&MaterialParameters::viscosity); }
+  /// Whether faces of any may be bonded again.
+  bool rebonds() const
+  {
+    return material.fracture.rebonding ||
+           std::any_of(inclusions.begin(), inclusions.end(), [](const Inclusion &i) {
+             return i.material.fracture.rebonding.has_value();
+           });
+  }
 
 private:
   template <typename Law>

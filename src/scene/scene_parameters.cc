@@ -83,6 +83,13 @@ void declare_weibull(Section &s, WeibullParameters &w)
   s.add("seed", w.seed, "which scatter").at_least(0).at_most(1000000000);
 }
 
+void declare_rebonding(Section &s, RebondingParameters &r)
+{
+  s.add("pressure", r.pressure, "least pressure on a face that touches").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0).required();
+  s.add("plastic_strain", r.plastic_strain, "least accumulated plastic strain of both particles, in materials that flow").at_least(0).at_most(10);
+  s.add("strength", r.strength, "of adhesion: traction at which the new bond breaks at once, under pressure the shear beyond friction").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0).required();
+}
+
 void declare_fracture(Section &s, FractureParameters &f)
 {
   s.add("criterion", f.criterion, "what breaks a bond: the largest principal stress as its face carries it, the normal stress on its face alone, or a measure of the stress tensors of its particles with the traction of its face (largest principal stress, von Mises, Drucker-Prager, Mohr-Coulomb, elastic energy); or nothing", words(Criterion()));
@@ -94,6 +101,8 @@ void declare_fracture(Section &s, FractureParameters &f)
   s.add("compressive_strength", f.compressive_strength, "of drucker_prager, and of mohr_coulomb in place of the cohesion: uniaxial compression at which bonds break").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("cohesion", f.cohesion, "of mohr_coulomb: shear at which a plane without normal stress fails").in("Pa").usually(1e2, 2e11, "MPa kPa GPa").above(0);
   s.add("friction_angle", f.friction_angle, "of mohr_coulomb: by whose tangent a pressure adds to the shear that a plane bears; broken faces rub with \"friction\"").in("rad").usually(0, 1.05, "deg").at_least(0).at_most(1.0472);
+  s.add("crack_velocity", f.crack_velocity, "of faces that break at once: what they bear falls to nothing in the time in which a crack of this velocity crosses them, and none next to them begins meanwhile").in("m/s").usually(1e-3, 1e4, "km/s mm/s").above(0);
+  s.section("rebonding", f.rebonding, "none", "when faces that touch are bonded again (cold welding); not given: never", declare_rebonding);
   s.section("weibull", f.weibull, "none", "scatter of the strengths of faces, which a face has from the names of its particles alone", declare_weibull);
 }
 

@@ -27,7 +27,8 @@ struct EnergyLedger
   {
     return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter +
            force.fracture + force.friction + force.breaking_step_error + damping + absorbed +
-           regime_change + settled + force.plastic + force.viscous + force.cohesive + tools.kinetic +
+           regime_change + settled + force.plastic + force.viscous + force.cohesive +
+           force.rebonding + tools.kinetic +
            tools.contact + tools.spring +
            tools.friction - external_work;
   }

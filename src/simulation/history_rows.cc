@@ -15,6 +15,8 @@ constexpr int rows_per_flush = 50;
 
 /// Where a material is viscous.
 const Column viscous = {"viscous", "J"};
+/// Where faces may be bonded again.
+const Column rebonding = {"rebonding", "J"};
 
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
@@ -27,6 +29,8 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
       columns.push_back({channel.first, "J"});
   if (scene.is_viscous())
     columns.push_back(viscous);
+  if (scene.rebonds())
+    columns.push_back(rebonding);
   for (const auto &servo : servos)
     columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
@@ -45,7 +49,8 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
-      has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()), gauges_(scene, body),
+      has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()),
+      has_rebonding_(scene.rebonds()), gauges_(scene, body),
       servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
@@ -69,6 +74,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
       writer_.set(name, value);
   if (has_viscosity_)
     writer_.set(viscous.name, row.ledger.force.viscous);
+  if (has_rebonding_)
+    writer_.set(rebonding.name, row.ledger.force.rebonding);
   if (has_phases_)
     writer_.set("static", row.is_static);
   writer_.set("broken_bonds", double(row.n_broken));

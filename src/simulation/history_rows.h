@@ -35,7 +35,7 @@ public:
   GaugeSet<dim> &gauges() { return gauges_; }
 
 private:
-  bool has_phases_, has_tools_, has_flow_, has_viscosity_;
+  bool has_phases_, has_tools_, has_flow_, has_viscosity_, has_rebonding_;
   GaugeSet<dim> gauges_;
   std::vector<ServoTarget<dim>> servos_;
   HistoryWriter writer_;

@@ -194,6 +194,15 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
                                 ? dem::FaceStrength()
                                 : face_strength_of<dim>(scene, *materials[m], name, figures, log));
   }
+  for (const MaterialParameters *m : materials) {
+    const bool breaks = m->fracture.criterion != program::Criterion::none;
+    law.crack_velocities.push_back(breaks ? m->fracture.crack_velocity.value_or(0) : 0);
+    const auto &r = m->fracture.rebonding;
+    law.rebonding.push_back(r ? dem::Rebonding{r->pressure, r->plastic_strain, r->strength}
+                              : dem::Rebonding());
+  }
+  if (!scene.rebonds())
+    law.rebonding.clear();
   law.criterion = law.criteria[0];
   law.strength = law.strengths[0];
   if (law.criterion != dem::FractureLaw::Criterion::none && !scene.material.fracture.strength)

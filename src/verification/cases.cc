@@ -4,6 +4,7 @@
 #include "src/verification/bodies/waves_twin.h"
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
+#include "src/verification/cases/face_life.h"
 #include "src/verification/cases/flow.h"
 #include "src/verification/cases/lab.h"
 #include "src/verification/cases/lab_general_cells.h"
@@ -62,6 +63,7 @@ std::vector<Case> all_cases()
   add(flow_balance_cases());
   add(law_viscous_cases());
   add(softening_cases());
+  add(face_life_cases());
   add(random_scene_cases());
   return cases;
 }

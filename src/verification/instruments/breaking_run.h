@@ -42,6 +42,13 @@ public:
   /// J, since the start.
   double unbooked() const { return std::abs(residual() - start_); }
   double work() const { return ledger().external_work; }
+  /// Of load number `number` on particles and nodes along an axis, in N.
+  double load(int number, int axis) const
+  {
+    const auto &body = unit_.body;
+    return (body.force() ? body.force()->reaction(number)[axis] : 0) +
+           (body.far ? body.far->reaction(number)[axis] : 0);
+  }
 
 private:
   EnergyLedger ledger() const { return read_ledger(unit_.body, now_, damping_.energy()); }

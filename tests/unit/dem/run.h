@@ -50,7 +50,8 @@ struct Run
   double residual() const
   {
     return mechanical() + force->fracture_energy() + force->cohesive_work() +
-           force->breaking_step_error() + force->frictional_work() + damped -
+           force->breaking_step_error() + force->frictional_work() + damped +
+           force->rebonding_energy() -
            force->external_work();
   }
 
