@@ -12,7 +12,10 @@ namespace
 template <int dim>
 double centre_distance(const Bond<dim> &b, const particles::Particles<dim> &p)
 {
-  return (b.distance * b.normal + get(p.displacement, b.j) - get(p.displacement, b.i)).norm();
+  Vector<dim> now = b.distance * b.normal + get(p.displacement, b.j) - get(p.displacement, b.i);
+  if (b.image)
+    now += b.image->jump;
+  return now.norm();
 }
 } // namespace
 
@@ -22,9 +25,9 @@ double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) c
   if (b.joins_materials)
     return 0;
   const auto m = stressed(p, evaluation_).motion(b);
-  const Vector<dim> du = m.du - cohesive_.opening(b, p);
+  const Vector<dim> opening = cohesive_.opening(b, p), du = m.du - opening;
   return law_of(b).twice_energy(du) / 2 + bending_energy(b, p) -
-         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p);
+         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p, opening);
 }
 
 template <int dim>
@@ -35,7 +38,7 @@ double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) 
     if (!interfaces_.is_member(i))
       sum += body_.volume_energy(i, evaluation_.pressure[i]);
   if (is_at_interface(b))
-    sum += interfaces_.energy(p, evaluation_);
+    sum += interfaces_.energy(p, evaluation_) + cohesive_.energy_between_materials(p);
   return sum;
 }
 
@@ -49,10 +52,19 @@ void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const P
 }
 
 template <int dim>
-double ManyBodyForce<dim>::follow_jump(
-    const std::vector<typename InelasticStrains<dim>::Tensor> &before, const Particles &p)
+auto ManyBodyForce<dim>::stresses_at_interfaces(const Particles &p) const
+    -> std::vector<typename InelasticStrains<dim>::Tensor>
 {
-  const auto after = interfaces_.own_stresses(p, evaluation_);
+  return interfaces_.own_stresses(p, evaluation_,
+                                  [&](const auto &visit) { cohesive_.for_each_strain(p, visit); });
+}
+
+template <int dim>
+double
+ManyBodyForce<dim>::follow_jump(const std::vector<typename InelasticStrains<dim>::Tensor> &before,
+                                const Particles &p)
+{
+  const auto after = stresses_at_interfaces(p);
   double kept = 0;
   for (std::size_t k = 0; k < after.size(); ++k) {
     const int i = interfaces_.members()[k];
@@ -70,16 +82,17 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   const bool at_interface = is_at_interface(b);
   std::vector<typename InelasticStrains<dim>::Tensor> stresses;
   if (at_interface) {
-    stresses = interfaces_.own_stresses(p, evaluation_);
+    stresses = stresses_at_interfaces(p);
     interfaces_.take_pressures(p, evaluation_);
   }
   const auto m = stressed(p, evaluation_).motion(b);
+  const Vector<dim> opening = cohesive_.opening(b, p), du = m.du - opening;
+  const auto of_opening = cohesive_.opened_volumes(b, p);
   const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
     return b.joins_materials
-               ? 0
+               ? of_opening[i == b.i ? 0 : 1]
                : law_of(b).add_dilatation(du, lever, 0) - strains_.flowed_volume(b, i);
   };
-  const Vector<dim> du = m.du - cohesive_.opening(b, p);
   const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, du, m.a_i)),
                                                         std::pair(b.j, share(b.j, -du, m.a_j))};
   const std::array<double, 2> before = {pressure[b.i], pressure[b.j]};
@@ -93,7 +106,7 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   double kept = 0;
   for (const auto &[i, old] : {std::pair(b.i, before[0]), std::pair(b.j, before[1])})
     if (!interfaces_.is_member(i))
-      kept += strains_.forget_face(b, i, p, old, pressure[i]);
+      kept += strains_.forget_face(b, i, p, opening, old, pressure[i]);
   if (at_interface) {
     interfaces_.add_pressures(p, evaluation_);
     kept += follow_jump(stresses, p);
@@ -138,14 +151,18 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
   std::vector<BondId> at_once;
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
-    const double energy = search_.energy_of(b, materials());
+    const int material = search_.failing_material(id, b, state);
+    const double energy = fracture().energy_of(material);
     if (energy == 0) {
       at_once.push_back(id);
       continue;
     }
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
-    body_.add_other_particle(b.i);
-    body_.add_other_particle(b.j);
+    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), material,
+                    b.weight * energy * b.area);
+    for (const int i : {b.i, b.j}) {
+      body_.add_other_particle(i);
+      strains_.open_cell(i, p.volume[i]);
+    }
     began_at_ = time_;
   }
   return at_once;
@@ -154,8 +171,7 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
 template <int dim>
 Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
 {
-  const StressedBody<dim> state = stressed(p, evaluation_);
-  const Vector<dim> force = state.force(b, state.motion(b));
+  const Vector<dim> force = stressed(p, evaluation_).whole_force(b);
   const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
   return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
 }
@@ -182,11 +198,14 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     const bool softened = face != nullptr;
     const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
-    if (softened) // touches as it is now: after a slide that is not where it was bonded
-      b.distance = std::min(b.distance, centre_distance(b, p));
+    Bond<dim> touching = strains_.stretched(b);
+    if (softened) { // as it is now: after a slide that is not where it was bonded
+      const double now = centre_distance(b, p);
+      for (Bond<dim> *const of : {&b, &touching})
+        of->distance = std::min(of->distance, now);
+    }
     broken_.add(b, p, time_,
-                energy_before - energy -
-                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()),
+                energy_before - energy - contacts_.act_broken(touching, pressing, p, dt()),
                 of_opening);
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
