@@ -1,6 +1,7 @@
 // Breaking of bonds: energy released, contact in place of the bond.
 #include "dem/bond_law.h"
 #include "dem/many_body_force.h"
+#include "dem/parts/opening_faces.h"
 
 #include <algorithm>
 
@@ -71,6 +72,15 @@ ManyBodyForce<dim>::follow_jump(const std::vector<typename InelasticStrains<dim>
     kept += strains_.jump(i, after[k] - before[k], evaluation_.pressure[i]);
   }
   return kept;
+}
+
+// Half of the fall of the curve that the bond alone would bear.
+template <int dim>
+double ManyBodyForce<dim>::least_energy(const Bond<dim> &b, const Vector<dim> &force,
+                                        const Softening &shape) const
+{
+  constexpr double share = 0.5;
+  return force.squaredNorm() * shape.steepest() / (share * OpenedBond::of(b).shear);
 }
 
 // The volumes lose the share of this face; the other faces keep theirs.
@@ -157,8 +167,11 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       at_once.push_back(id);
       continue;
     }
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), material,
-                    b.weight * energy * b.area);
+    const Vector<dim> force = state.force(b, state.motion(b));
+    double whole = b.weight * energy * b.area;
+    if (search_.strengths_scatter())
+      whole = std::max(whole, least_energy(b, force, fracture().softening_of(material)));
+    cohesive_.begin(id, b, p, force, material, whole);
     for (const int i : {b.i, b.j}) {
       body_.add_other_particle(i);
       strains_.open_cell(i, p.volume[i]);

@@ -214,6 +214,9 @@ private:
 
   /// Returns those that break at once; the others soften from now on.
   std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
+  /// In J, of a face so strong that with less it would lose more than its neighbourhood gives back.
+  double least_energy(const Bond<dim> &bond, const Vector<dim> &force,
+                      const Softening &shape) const;
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds);
   /// Of a bond on its first particle, in N, where it presses; else 0.
   Vector<dim> pressing_force(const Bond<dim> &bond, const Particles &particles) const;

@@ -141,7 +141,7 @@ void CohesiveFaces<dim>::open_in_flow(const Particles &p, double time, Evaluatio
     return;
   OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
   opening.find_strains(strains_);
-  opening.follow_flow();
+  opening.follow_law(false);
 }
 
 template <int dim>

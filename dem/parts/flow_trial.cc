@@ -17,18 +17,22 @@ FlowTrial<dim>::FlowTrial(const BondedBody<dim> &body, const InelasticStrains<di
         x += InelasticStrains<dim>::face_strain(b, i, p);
     });
     strain_.push_back(x);
-    inelastic_.push_back(strains.strain(i));
   }
+  inelastic_.resize(particle_.size());
+  pressure_.resize(particle_.size());
+  is_known_.resize(particle_.size(), 0);
 }
 
 template <int dim>
 double FlowTrial<dim>::answer(int place)
 {
-  const int i = particle_[place];
-  const auto [e, pressure] =
-      strains_.try_response(sweep_, i, strain_[place], body_.lambda_per_volume()[i]);
-  inelastic_[place] = e;
-  return pressure;
+  if (!is_known_[place]) {
+    const int i = particle_[place];
+    std::tie(inelastic_[place], pressure_[place]) =
+        strains_.try_response(sweep_, i, strain_[place], body_.lambda_per_volume()[i]);
+    is_known_[place] = 1;
+  }
+  return pressure_[place];
 }
 
 // The deviator of (w (x) A) s/V, times A.

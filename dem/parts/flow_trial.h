@@ -20,7 +20,11 @@ public:
             const std::vector<int> &particles);
 
   /// More of X of a particle, m^dim.
-  void add(int place, const Matrix &strain) { strain_[place] += strain; }
+  void add(int place, const Matrix &strain)
+  {
+    strain_[place] += strain;
+    is_known_[place] = 0;
+  }
   /// Pressure in Pa of a particle; its e follow.
   double answer(int place);
   /// In its own axes.
@@ -35,5 +39,7 @@ private:
   const InelasticSweep<dim> &sweep_;
   const std::vector<int> particle_;
   std::vector<Matrix> strain_, inelastic_; // X in m^dim; e
+  std::vector<double> pressure_;           // Pa
+  std::vector<char> is_known_;             // both, of this X
 };
 } // namespace ligament::dem

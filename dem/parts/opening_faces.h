@@ -254,19 +254,6 @@ public:
       one.face->force = one.now.in_own_axes(one.now.force(pressure_[one.i], pressure_[one.j]));
     return change;
   }
-  /// Each round from what the particles answer to the openings of the one before.
-  void follow_flow()
-  {
-    constexpr int n_rounds = 2;
-    for (int round = 0; round < n_rounds; ++round) {
-      for (std::size_t k = 0; k < particle_.size(); ++k)
-        pressure_[k] = flow_->answer(int(k));
-      for (One &one : all_)
-        one.now.stretch(p_, flow_->inelastic(one.i), flow_->inelastic(one.j));
-      follow_law(false);
-    }
-  }
-
   /// A face that is shut stays so.
   double follow_tangents()
   {
@@ -335,20 +322,23 @@ private:
     const auto open = [&](One &one) {
       SofteningFace<dim> &now = one.now;
       const int i = one.face->bond.i, j = one.face->bond.j;
+      if (flow_) {
+        pressure_[one.i] = flow_->answer(one.i);
+        pressure_[one.j] = flow_->answer(one.j);
+        now.stretch(p_, flow_->inelastic(one.i), flow_->inelastic(one.j));
+      }
       const Vector<dim> shut =
           now.force(pressure_[one.i], pressure_[one.j]) + one.stiffness * now.jump;
       const Opening<dim> next = answer(one, shut);
       const Vector<dim> opened = next.jump - now.jump;
       const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
-      pressure_[one.i] += to_i;
-      pressure_[one.j] += to_j;
       if (flow_) {
         const auto [of_i, of_j] = now.strains_of(opened, p_);
         flow_->add(one.i, of_i);
         flow_->add(one.j, of_j);
       } else {
-        e_.pressure[i] += to_i;
-        e_.pressure[j] += to_j;
+        pressure_[one.i] += to_i, e_.pressure[i] += to_i;
+        pressure_[one.j] += to_j, e_.pressure[j] += to_j;
       }
       now.jump = next.jump;
       one.face->opening = {now.in_own_axes(next.jump), next.largest, next.damage};
