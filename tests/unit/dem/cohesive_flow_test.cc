@@ -286,7 +286,7 @@ TYPED_TEST(CohesiveFlow, BalanceInFreeFlight)
         SCOPED_TRACE(fmt::format("{} contrast {} of {}", flow.name, contrast, packing.size()));
         std::size_t broken = 0, opening = 0;
         const auto [start, missing, losses] = fly<dim>(
-            packing, mixed(packing.size(), contrast, flow), scale, 60, 0.8,
+            packing, mixed(packing.size(), contrast, flow), scale, is_damped(flow) ? 140 : 60, 0.8,
             softening(4 * scale, 3, packing.spacing), [&](const ManyBodyForce<dim> &force) {
               broken = force.broken_bonds().size();
               opening = force.cohesive().all().size();
