@@ -44,11 +44,15 @@ struct FractureLaw
   /// Of each material; empty: `criterion` for all. Bonds between two obey both.
   std::vector<Criterion> criteria = {};
   /// G_c in J per m^2 of projected crack, theory.md section 1.13, of each material where a body has
-  /// several; with 0 a bond breaks at once. A bond between two takes the smaller one.
+  /// several; with 0 a bond breaks at once. A bond between two softens as that one does whose
+  /// criterion it reaches first.
   double energy = 0;
   std::vector<double> energies = {};
   Softening softening = {};
   double mode_ratio = 1; // beta: shear strength over tensile strength of a face that opens
+  /// Of each material; empty: those of all.
+  std::vector<Softening> softenings = {};
+  std::vector<double> mode_ratios = {};
   /// Of each material; empty: what is broken stays so.
   std::vector<Rebonding> rebonding = {};
 
@@ -76,20 +80,28 @@ struct FractureLaw
     return energy > 0 ||
            std::any_of(energies.begin(), energies.end(), [](double g) { return g > 0; });
   }
-  /// Of a bond between materials of these numbers.
-  double energy_of(int a, int b) const
+  /// Of the material of this number.
+  double energy_of(int material) const { return energies.empty() ? energy : energies[material]; }
+  Softening softening_of(int material) const
   {
-    return energies.empty() ? energy : std::min(energies[a], energies[b]);
+    return softenings.empty() ? softening : softenings[material];
   }
-  /// Faces that soften begin and end under tension alone, at strengths that are known beforehand.
+  double mode_ratio_of(int material) const
+  {
+    return mode_ratios.empty() ? mode_ratio : mode_ratios[material];
+  }
+  /// Faces that soften begin under tension, whatever breaks others.
   bool can_soften() const
   {
     const auto opens = [](Criterion c) {
       return c == Criterion::opening_tension || c == Criterion::maximum_tension;
     };
-    const auto scatters = [](const FaceStrength &s) { return s.scatter.modulus > 0; };
-    return opens(criterion) && std::all_of(criteria.begin(), criteria.end(), opens) &&
-           !scatters(strength) && std::none_of(strengths.begin(), strengths.end(), scatters);
+    if (energies.empty() || criteria.empty())
+      return opens(criterion);
+    for (std::size_t m = 0; m < energies.size(); ++m)
+      if (energies[m] > 0 && !opens(criteria[m]))
+        return false;
+    return true;
   }
 };
 } // namespace ligament::dem

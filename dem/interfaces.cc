@@ -27,7 +27,8 @@ double dot(const std::vector<double> &a, const std::vector<double> &b)
 
 /// Solves (diagonal + couplings) x = b by conjugate gradients, as far as round-off allows.
 std::vector<double> solve_system(const std::vector<double> &diagonal,
-                          const std::vector<Coupling> &couplings, const std::vector<double> &b)
+                                 const std::vector<Coupling> &couplings,
+                                 const std::vector<double> &b)
 {
   const std::size_t n = b.size();
   std::vector<double> inverse = diagonal, x(n), r(n), z(n), s(n), product(n);
@@ -270,8 +271,9 @@ void Interfaces<dim>::follow_flow(const Particles &p, Evaluation<dim> &e) const
 }
 
 template <int dim>
-auto Interfaces<dim>::own_stresses(const Particles &p, const Evaluation<dim> &e) const
-    -> std::vector<Tensor>
+auto Interfaces<dim>::own_stresses(
+    const Particles &p, const Evaluation<dim> &e,
+    const std::function<void(const VisitStrain &)> &for_each_strain) const -> std::vector<Tensor>
 {
   if (!strains_.has_law())
     return {};
@@ -285,6 +287,10 @@ auto Interfaces<dim>::own_stresses(const Particles &p, const Evaluation<dim> &e)
     x[member_[b.i]] += of_i;
     x[member_[b.j]] += of_j;
   }
+  for_each_strain([&](int i, const Matrix &strain) {
+    if (is_member(i))
+      x[member_[i]] += strain;
+  });
   std::vector<Tensor> stress;
   for (std::size_t k = 0; k < members_.size(); ++k)
     stress.push_back(strains_.stress_of(members_[k], x[k], e.pressure[members_[k]]));

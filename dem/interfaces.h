@@ -37,8 +37,11 @@ public:
   void follow_flow(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Own stresses of the members, theory.md eq. (D21), by their faces alone: without what loads and
   /// walls add, Pa; none where nothing flows.
+  /// `for_each_strain` visits what openings add to X of particles, m^dim.
+  using VisitStrain = std::function<void(int, const Eigen::Matrix<double, dim, dim> &)>;
   std::vector<typename InelasticStrains<dim>::Tensor>
-  own_stresses(const Particles &particles, const Evaluation<dim> &evaluation) const;
+  own_stresses(const Particles &particles, const Evaluation<dim> &evaluation,
+               const std::function<void(const VisitStrain &)> &for_each_strain) const;
   /// The way back.
   void take_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
@@ -75,7 +78,7 @@ private:
   const InelasticStrains<dim> &strains_;
   std::vector<IndexedBond> bonds_;
   std::vector<IndexedBond> others_; // of members, within a material; where particles flow
-  std::vector<int> members_; // particles
-  std::vector<int> member_;  // by particle: place among the members or -1; empty: there are none
+  std::vector<int> members_;        // particles
+  std::vector<int> member_; // by particle: place among the members or -1; empty: there are none
 };
 } // namespace ligament::dem

@@ -1,6 +1,7 @@
 // Breaking of bonds: energy released, contact in place of the bond.
 #include "dem/bond_law.h"
 #include "dem/many_body_force.h"
+#include "dem/parts/opening_faces.h"
 
 #include <algorithm>
 
@@ -12,7 +13,10 @@ namespace
 template <int dim>
 double centre_distance(const Bond<dim> &b, const particles::Particles<dim> &p)
 {
-  return (b.distance * b.normal + get(p.displacement, b.j) - get(p.displacement, b.i)).norm();
+  Vector<dim> now = b.distance * b.normal + get(p.displacement, b.j) - get(p.displacement, b.i);
+  if (b.image)
+    now += b.image->jump;
+  return now.norm();
 }
 } // namespace
 
@@ -22,9 +26,9 @@ double ManyBodyForce<dim>::bond_energy(const Bond<dim> &b, const Particles &p) c
   if (b.joins_materials)
     return 0;
   const auto m = stressed(p, evaluation_).motion(b);
-  const Vector<dim> du = m.du - cohesive_.opening(b, p);
+  const Vector<dim> opening = cohesive_.opening(b, p), du = m.du - opening;
   return law_of(b).twice_energy(du) / 2 + bending_energy(b, p) -
-         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p);
+         cohesive_.lost_bending_energy(b, p) + strains_.bond_energy(b, p, opening);
 }
 
 template <int dim>
@@ -35,7 +39,7 @@ double ManyBodyForce<dim>::local_energy(const Bond<dim> &b, const Particles &p) 
     if (!interfaces_.is_member(i))
       sum += body_.volume_energy(i, evaluation_.pressure[i]);
   if (is_at_interface(b))
-    sum += interfaces_.energy(p, evaluation_);
+    sum += interfaces_.energy(p, evaluation_) + cohesive_.energy_between_materials(p);
   return sum;
 }
 
@@ -49,16 +53,34 @@ void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const P
 }
 
 template <int dim>
-double ManyBodyForce<dim>::follow_jump(
-    const std::vector<typename InelasticStrains<dim>::Tensor> &before, const Particles &p)
+auto ManyBodyForce<dim>::stresses_at_interfaces(const Particles &p) const
+    -> std::vector<typename InelasticStrains<dim>::Tensor>
 {
-  const auto after = interfaces_.own_stresses(p, evaluation_);
+  return interfaces_.own_stresses(p, evaluation_,
+                                  [&](const auto &visit) { cohesive_.for_each_strain(p, visit); });
+}
+
+template <int dim>
+double
+ManyBodyForce<dim>::follow_jump(const std::vector<typename InelasticStrains<dim>::Tensor> &before,
+                                const Particles &p)
+{
+  const auto after = stresses_at_interfaces(p);
   double kept = 0;
   for (std::size_t k = 0; k < after.size(); ++k) {
     const int i = interfaces_.members()[k];
     kept += strains_.jump(i, after[k] - before[k], evaluation_.pressure[i]);
   }
   return kept;
+}
+
+// Half of the fall of the curve that the bond alone would bear.
+template <int dim>
+double ManyBodyForce<dim>::least_energy(const Bond<dim> &b, const Vector<dim> &force,
+                                        const Softening &shape) const
+{
+  constexpr double share = 0.5;
+  return force.squaredNorm() * shape.steepest() / (share * OpenedBond::of(b).shear);
 }
 
 // The volumes lose the share of this face; the other faces keep theirs.
@@ -70,16 +92,17 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   const bool at_interface = is_at_interface(b);
   std::vector<typename InelasticStrains<dim>::Tensor> stresses;
   if (at_interface) {
-    stresses = interfaces_.own_stresses(p, evaluation_);
+    stresses = stresses_at_interfaces(p);
     interfaces_.take_pressures(p, evaluation_);
   }
   const auto m = stressed(p, evaluation_).motion(b);
+  const Vector<dim> opening = cohesive_.opening(b, p), du = m.du - opening;
+  const auto of_opening = cohesive_.opened_volumes(b, p);
   const auto share = [&](int i, const Vector<dim> &du, const Vector<dim> &lever) {
     return b.joins_materials
-               ? 0
+               ? of_opening[i == b.i ? 0 : 1]
                : law_of(b).add_dilatation(du, lever, 0) - strains_.flowed_volume(b, i);
   };
-  const Vector<dim> du = m.du - cohesive_.opening(b, p);
   const std::array<std::pair<int, double>, 2> shares = {std::pair(b.i, share(b.i, du, m.a_i)),
                                                         std::pair(b.j, share(b.j, -du, m.a_j))};
   const std::array<double, 2> before = {pressure[b.i], pressure[b.j]};
@@ -93,7 +116,7 @@ double ManyBodyForce<dim>::remove_bond(const BondId &id, const Bond<dim> &b, con
   double kept = 0;
   for (const auto &[i, old] : {std::pair(b.i, before[0]), std::pair(b.j, before[1])})
     if (!interfaces_.is_member(i))
-      kept += strains_.forget_face(b, i, p, old, pressure[i]);
+      kept += strains_.forget_face(b, i, p, opening, old, pressure[i]);
   if (at_interface) {
     interfaces_.add_pressures(p, evaluation_);
     kept += follow_jump(stresses, p);
@@ -146,20 +169,27 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
   std::vector<BondId> at_once;
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
-    const double energy = search_.energy_of(b, materials());
+    const int material = search_.failing_material(id, b, state);
+    const double energy = fracture().energy_of(material);
     const Vector<dim> force = state.force(b, state.motion(b));
     if (energy == 0) {
       const double velocity = search_.crack_velocity_of(b, materials());
-      if (velocity == 0 ||
-          !cohesive_.begin_fall(id, b, p, force, time_,
-                                crossing_time<dim>(b.area, thickness_, velocity))) {
+      if (velocity == 0 || !cohesive_.begin_fall(id, b, p, force, material, time_,
+                                                 crossing_time<dim>(b.area, thickness_, velocity)))
+      {
         at_once.push_back(id);
         continue;
       }
-    } else
-      cohesive_.begin(id, b, p, force, b.weight * energy * b.area);
-    body_.add_other_particle(b.i);
-    body_.add_other_particle(b.j);
+    } else {
+      double whole = b.weight * energy * b.area;
+      if (search_.strengths_scatter())
+        whole = std::max(whole, least_energy(b, force, fracture().softening_of(material)));
+      cohesive_.begin(id, b, p, force, material, whole);
+    }
+    for (const int i : {b.i, b.j}) {
+      body_.add_other_particle(i);
+      strains_.open_cell(i, p.volume[i]);
+    }
     began_at_ = time_;
   }
   return at_once;
@@ -168,10 +198,7 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
 template <int dim>
 Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particles &p) const
 {
-  const StressedBody<dim> state = stressed(p, evaluation_);
-  auto motion = state.motion(b);
-  motion.elastic -= cohesive_.opening(b, p);
-  const Vector<dim> force = state.force(b, motion);
+  const Vector<dim> force = stressed(p, evaluation_).whole_force(b);
   const Vector<dim> normal = present_normal(b, Turn<dim>::of(p, b.i), Turn<dim>::of(p, b.j));
   return force.dot(normal) < 0 ? force : Vector<dim>(Vector<dim>::Zero());
 }
@@ -179,9 +206,8 @@ Vector<dim> ManyBodyForce<dim>::pressing_force(const Bond<dim> &b, const Particl
 // Only the neighbours of the bonds feel the break: what acts on them is summed bond by bond before
 // it and after it.
 template <int dim>
-void ManyBodyForce<dim>::break_bonds(
-    Particles &p, const std::vector<BondId> &bonds,
-    const std::vector<typename RebondedFaces<dim>::Name> &rebonded)
+void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bonds,
+                                     const std::vector<typename RebondedFaces<dim>::Name> &rebonded)
 {
   if (bonds.empty() && rebonded.empty())
     return;
@@ -200,17 +226,20 @@ void ManyBodyForce<dim>::break_bonds(
     const bool softened = face != nullptr;
     const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
-    if (softened) // touches as it is now: after a slide that is not where it was bonded
-      b.distance = std::min(b.distance, centre_distance(b, p));
+    Bond<dim> touching = strains_.stretched(b);
+    if (softened) { // as it is now: after a slide that is not where it was bonded
+      const double now = centre_distance(b, p);
+      for (Bond<dim> *const of : {&b, &touching})
+        of->distance = std::min(of->distance, now);
+    }
     broken_.add(b, p, time_,
-                energy_before - energy -
-                    contacts_.act_broken(strains_.stretched(b), pressing, p, dt()),
+                energy_before - energy - contacts_.act_broken(touching, pressing, p, dt()),
                 of_opening);
   }
   for (const auto &name : rebonded) {
     const double energy_before = rebonded_.local_energy(name, p, evaluation_.pressure);
-    broken_.add_again(time_, energy_before -
-                                 rebonded_.part(name, p, evaluation_.pressure, true, dt()));
+    broken_.add_again(time_,
+                      energy_before - rebonded_.part(name, p, evaluation_.pressure, true, dt()));
   }
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Wrench<dim> after = state.wrench_on(near[k]);

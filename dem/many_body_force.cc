@@ -11,23 +11,15 @@ ManyBodyForce<dim>::ManyBodyForce(const packings::Packing<dim> &packing, const M
     : surface_(packing, materials, loads), body_(packing, materials, surface_.walls()),
       rows_(body_), slices_(body_),
       strains_(packing, body_, surface_.walls(), surface_.particles()),
-      cohesive_(body_, fracture.softening, fracture.mode_ratio), interfaces_(body_, strains_),
+      cohesive_(body_, strains_, fracture), interfaces_(body_, strains_),
       contacts_(packing, materials, body_.images()),
       rebonded_(body_, strains_, contacts_, fracture.rebonding, packing.thickness),
       jumps_(body_, loads),
       search_(fracture, body_, interfaces_.members(), packing.global_id, cohesive_),
       evaluation_(body_), trial_(body_), energy_evaluation_(body_), thickness_(packing.thickness)
 {
-  core::require(interfaces_.empty() || !fracture.softens(),
-                "/material/fracture/energy: faces that soften need a body of one elastic material; "
-                "give the inclusions the material's \"youngs_modulus\" and \"poissons_ratio\", or "
-                "leave out \"energy\"");
   core::require(!fracture.softens() || fracture.can_soften(),
-                "faces soften under maximum tension alone, at strengths that do not scatter");
-  core::require(!fracture.softens() || !strains_.has_law(),
-                "faces of a body that flows don't soften");
-  core::require(!fracture.softens() || !body_.images().is_any(),
-                "faces of a body with joined sides don't soften");
+                "faces soften under maximum tension alone");
   for (const bool is_on : {fracture.falls(), rebonded_.is_on()}) {
     core::require(!is_on || interfaces_.empty(),
                   "faces fall or are bonded again in a body of one elastic material only");
@@ -89,18 +81,31 @@ void ManyBodyForce<dim>::set_rest(particles::RestBlocks<dim> *rest)
 }
 
 template <int dim>
+void ManyBodyForce<dim>::begin_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  e.inelastic = strains_.begin(e.may_flow, time_);
+  e.inelastic->energy = e.own_energy;
+  surface_.add_strains(p, e);
+  rebonded_.add_strains(p, e);
+}
+
+// Slices come last: without a lattice they find what the particles answer.
+template <int dim>
+void ManyBodyForce<dim>::add_other_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  cohesive_.add_strains(p, e);
+  interfaces_.add_strains(p, e);
+  slices_.add_strains(p, e);
+}
+
+template <int dim>
 void ManyBodyForce<dim>::find_other_pressures(const Particles &p, Evaluation<dim> &e) const
 {
   jumps_.show(e.has_loads);
   e.pressure.resize(body_.n_particles());
   if (strains_.has_law()) {
-    // Slices come last: without a lattice they find what the particles answer.
-    e.inelastic = strains_.begin(e.may_flow, time_);
-    e.inelastic->energy = e.own_energy;
-    surface_.add_strains(p, e);
-    rebonded_.add_strains(p, e);
-    interfaces_.add_strains(p, e);
-    slices_.add_strains(p, e);
+    begin_strains(p, e);
+    add_other_strains(p, e);
     return;
   }
   if (body_.has_dilatation())
@@ -141,10 +146,56 @@ void ManyBodyForce<dim>::find_forces_under(Particles &p, Evaluation<dim> &e) con
 template <int dim>
 void ManyBodyForce<dim>::find_forces_of_step(Particles &p)
 {
+  Evaluation<dim> &e = evaluation_;
   cohesive_.forget_trial();
-  find_other_pressures(p, evaluation_);
-  cohesive_.open(p, time_, evaluation_);
-  find_forces_under(p, evaluation_);
+  if (strains_.has_law()) {
+    jumps_.show(e.has_loads);
+    e.pressure.resize(body_.n_particles());
+    begin_strains(p, e);
+    open_in_flow(p);
+    add_other_strains(p, e);
+  } else {
+    find_other_pressures(p, e);
+    if (softens_at_interfaces())
+      cohesive_.open_beside(p, time_, e, [&] { find_other_pressures(p, e); });
+    else
+      cohesive_.open(p, time_, e);
+  }
+  find_forces_under(p, e);
+  cohesive_.book(p, e);
+}
+
+// Cells hold the openings as they were, and faces between materials divided by these, while faces
+// open.
+template <int dim>
+void ManyBodyForce<dim>::open_in_flow(const Particles &p)
+{
+  if (cohesive_.all().empty())
+    return;
+  using Strains = InelasticStrains<dim>;
+  Evaluation<dim> &e = evaluation_;
+  std::vector<int> of = cohesive_.particles();
+  const bool at_interfaces = softens_at_interfaces();
+  if (at_interfaces)
+    of.insert(of.end(), interfaces_.members().begin(), interfaces_.members().end());
+  std::vector<typename Strains::Matrix> before;
+  for (const int i : of)
+    before.push_back(Strains::cell_strain(*e.inelastic, i));
+  cohesive_.add_strains(p, e);
+  if (at_interfaces)
+    interfaces_.add_strains(p, e);
+  cohesive_.open_in_flow(p, time_, e);
+  for (std::size_t k = 0; k < of.size(); ++k)
+    Strains::set_cell_strain(*e.inelastic, of[k], before[k]);
+}
+
+template <int dim>
+bool ManyBodyForce<dim>::softens_at_interfaces() const
+{
+  if (interfaces_.empty())
+    return false;
+  const auto of = cohesive_.particles();
+  return std::any_of(of.begin(), of.end(), [&](int i) { return interfaces_.is_member(i); });
 }
 
 template <int dim>

@@ -185,6 +185,9 @@ private:
   {
     return {particles, evaluation, strains_, parts_};
   }
+  /// Where materials flow, first what is neither a bond's nor an opening's.
+  void begin_strains(const Particles &particles, Evaluation<dim> &evaluation) const;
+  void add_other_strains(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// In the order of the parts; one that sees others' comes after them.
   void find_other_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
   /// Pressures of all particles; of open cells at a coupled edge those of whole ones.
@@ -195,6 +198,12 @@ private:
   void find_forces_under(Particles &particles, Evaluation<dim> &evaluation) const;
   /// find_forces() of the step's own evaluation: faces that soften open first.
   void find_forces_of_step(Particles &particles);
+  void open_in_flow(const Particles &particles);
+  /// open() tells how far a face opens until pressures follow.
+  void follow_openings(const Particles &particles, Evaluation<dim> &evaluation,
+                       const std::function<double()> &open) const;
+  /// Whether faces of particles at interfaces soften.
+  bool softens_at_interfaces() const;
   /// Forces of contacts, which remember, on top of all others.
   void add_contacts(Particles &particles);
   void find_other_particles();
@@ -212,6 +221,9 @@ private:
   void look_for_breaks(Particles &particles);
   /// Returns those that break at once; the others soften from now on.
   std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
+  /// In J, of a face so strong that with less it would lose more than its neighbourhood gives back.
+  double least_energy(const Bond<dim> &bond, const Vector<dim> &force,
+                      const Softening &shape) const;
   /// And contacts that are bonded again.
   void break_bonds(Particles &particles, const std::vector<BondId> &bonds,
                    const std::vector<typename RebondedFaces<dim>::Name> &rebonded);
@@ -234,6 +246,10 @@ private:
   void drop_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
   /// The same, and pressures follow. Returns the energy after in J, as local_energy counts it.
   double remove_bond(const BondId &id, const Bond<dim> &bond, const Particles &particles);
+  /// Own stresses of the particles at interfaces as Interfaces::own_stresses has them, openings
+  /// known.
+  std::vector<typename InelasticStrains<dim>::Tensor>
+  stresses_at_interfaces(const Particles &particles) const;
   /// Of particles at interfaces, whose own stresses were these. Returns what InelasticStrains::jump
   /// does.
   double follow_jump(const std::vector<typename InelasticStrains<dim>::Tensor> &before,

@@ -25,8 +25,10 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
   broken_.load(state, names);
   for (auto *part : parts_)
     part->load(state, names, p);
-  for (const int i : cohesive_.particles())
+  for (const int i : cohesive_.particles()) {
     body_.add_other_particle(i);
+    strains_.open_cell(i, p.volume[i]);
+  }
   time_ = core::load_real(state, "force", "time");
   last_time_ = core::load_real(state, "force", "last_time");
   if (core::table(state, "force").has("began_at"))

@@ -15,10 +15,21 @@ void ManyBodyForce<dim>::compute_trial(Particles &p, double time, double noted_s
   search_.ask_trial(trial_, noted_share);
   trial_.has_loads = true;
   find_other_pressures(p, trial_);
-  cohesive_.try_to_open(p, trial_);
+  follow_openings(p, trial_, [&] { return cohesive_.try_to_open(p, trial_); });
   find_forces_under(p, trial_);
   touching_ = contacts_.add_trial_forces(p);
   evaluation_.reactions = trial_.reactions;
+}
+
+// Pressures at interfaces are solved for together, each face knows those of its own particles.
+template <int dim>
+void ManyBodyForce<dim>::follow_openings(const Particles &p, Evaluation<dim> &e,
+                                         const std::function<double()> &open) const
+{
+  constexpr int most = 100;
+  constexpr double round_off = 1e-14; // of the reach of a face
+  for (int round = 0; round < most && open() > round_off && softens_at_interfaces(); ++round)
+    find_other_pressures(p, e);
 }
 
 template <int dim>
@@ -37,7 +48,7 @@ void ManyBodyForce<dim>::compute_bonds(Particles &p, bool has_loads)
     cohesive_.put_back(std::vector<Opening<dim>>(openings.size(), {Vector<dim>::Zero()}));
   find_other_pressures(p, e);
   if (has_loads)
-    cohesive_.open_to_first_order(p, e);
+    follow_openings(p, e, [&] { return cohesive_.open_to_first_order(p, e); });
   find_forces_under(p, e);
   cohesive_.put_back(openings);
   e.has_loads = true;
@@ -83,8 +94,7 @@ void ManyBodyForce<dim>::add_other_tangent(
     set_bond_rows(face.bond, p, term);
     if (left.opens)
       term.kind = particles::QuadraticTerm<dim>::Kind::softening;
-    term.stiffness.head(dim).setConstant(-law_of(face.bond).shear *
-                                         (1 - std::max(left.share, least)));
+    term.stiffness.head(dim).setConstant(-left.shear * (1 - std::max(left.share, least)));
     term.stiffness.tail(n_spins<dim>) *= -(1 - std::max(left.bending_share, least));
     add(term);
   }

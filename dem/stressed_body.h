@@ -29,6 +29,15 @@ struct StressedBody
   /// On i, in N.
   Vector<dim> force(const Bond<dim> &bond, const BondMotion<dim> &motion) const;
 
+  /// The same with what parts change in it.
+  Vector<dim> whole_force(const Bond<dim> &bond) const
+  {
+    Vector<dim> sum = force(bond, motion(bond));
+    for (const auto *part : parts)
+      part->add_force_of(bond, particles, sum);
+    return sum;
+  }
+
   /// What all parts but contacts exert on a particle.
   Wrench<dim> wrench_on(int i) const;
 

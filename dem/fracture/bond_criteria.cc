@@ -203,6 +203,24 @@ double BondCriteria<dim>::utilisation(LoadedFace<dim> face, const Bond<dim> &b,
   return largest;
 }
 
+template <int dim>
+int BondCriteria<dim>::failing_material(LoadedFace<dim> face, const Bond<dim> &b,
+                                        const Materials &materials) const
+{
+  const auto share = [&](int m) {
+    const OfMaterial &of = of_[m];
+    if (!of.criterion)
+      return -1.;
+    face.measure = of.measure;
+    return size_factor(b, of) * of.criterion->tension(face) / strength_of(b, of);
+  };
+  const int i = materials.number(b.i), j = materials.number(b.j);
+  const double of_i = share(i), of_j = share(j);
+  if (of_i != of_j)
+    return of_i > of_j ? i : j;
+  return law_.energy_of(i) <= law_.energy_of(j) ? i : j;
+}
+
 template class BondCriteria<2>;
 template class BondCriteria<3>;
 } // namespace ligament::dem

@@ -46,6 +46,12 @@ public:
   /// Tension over strength; what stays below `least` may be a bound of it that does, too.
   double utilisation(LoadedFace<dim> face, const Bond<dim> &bond, const Materials &materials,
                      double least) const;
+  /// Of the two materials of a bond the one whose criterion says most; of equals that one whose
+  /// faces take less energy.
+  int failing_material(LoadedFace<dim> face, const Bond<dim> &bond,
+                       const Materials &materials) const;
+  /// Whether faces of one material bear unequal strengths.
+  bool scatter() const { return names_.has_value(); }
 
 private:
   struct OfMaterial

@@ -269,6 +269,24 @@ std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &s
 }
 
 template <int dim>
+int BreakSearch<dim>::failing_material(const BondId &id, const Bond<dim> &b,
+                                       const StressedBody<dim> &state) const
+{
+  const Materials &materials = state.body().materials();
+  const int of_i = materials.number(b.i), of_j = materials.number(b.j);
+  if (of_i == of_j)
+    return of_i;
+  const auto t = bond_tension(id, b, state);
+  LoadedFace<dim> face{t.normal, t.traction, Strain<dim>::Zero()};
+  if (criteria_.need_stress()) {
+    const auto [first, second] = std::minmax(b.i, b.j);
+    const auto stress = state.stresses_of({first, second});
+    face.stress = (stress[0] + stress[1]) / 2;
+  }
+  return criteria_.failing_material(face, b, materials);
+}
+
+template <int dim>
 double BreakSearch<dim>::largest_share(const StressedBody<dim> &state) const
 {
   if (!can_break())

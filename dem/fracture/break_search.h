@@ -71,16 +71,16 @@ public:
 
   /// The bond no longer carries.
   void remove(const Bond<dim> &bond) { screen_.remove(bond); }
-  /// What it takes to open a bond wholly, in J per m^2 of projected crack.
-  double energy_of(const Bond<dim> &bond, const Materials &materials) const
-  {
-    return law().energy_of(materials.number(bond.i), materials.number(bond.j));
-  }
   /// In m/s; 0: of any.
   double crack_velocity_of(const Bond<dim> &bond, const Materials &materials) const
   {
     return law().crack_velocity_of(materials.number(bond.i), materials.number(bond.j));
   }
+  /// Whether faces of one material bear unequal strengths.
+  bool strengths_scatter() const { return criteria_.scatter(); }
+  /// Of its two materials the one in which a bond bears the larger share of its strength.
+  int failing_material(const BondId &id, const Bond<dim> &bond,
+                       const StressedBody<dim> &state) const;
   /// Other bonds, or others' strengths, from now on.
   void reset(const BondedBody<dim> &body);
 

@@ -48,14 +48,15 @@ auto CohesiveFaces<dim>::find(const Bond<dim> &b, const Particles &p) const -> c
 }
 
 template <int dim>
-auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Particles &p) const
-    -> Face
+auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Particles &p,
+                              int material) const -> Face
 {
   const double friction = body_.materials().friction(b.i, b.j);
   return {id,
           b,
-          {0, 0, shape_, mode_ratio_, friction},
+          {0, 0, law_.softening_of(material), law_.mode_ratio_of(material), friction},
           p.global_id[b.i] == name_of(b, p)[0],
+          material,
           {Vector<dim>::Zero()},
           {Vector<dim>::Zero()}};
 }
@@ -64,10 +65,10 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
 // the curve.
 template <int dim>
 void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Particles &p,
-                               const Vector<dim> &force, double energy)
+                               const Vector<dim> &force, int material, double energy)
 {
-  Face face = make(id, b, p);
-  const SofteningFace<dim> now(face, p);
+  Face face = make(id, b, p, material);
+  const SofteningFace<dim> now(face, p, strains_);
   face.law.strength = face.law.effective(force, now.normal);
   face.whole_energy = energy;
   face.force = face.last_force = now.in_own_axes(force);
@@ -79,10 +80,11 @@ void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Parti
 // Opening takes nothing of its strength, only time does. What presses is not borne by strength.
 template <int dim>
 bool CohesiveFaces<dim>::begin_fall(const BondId &id, const Bond<dim> &b, const Particles &p,
-                                    const Vector<dim> &force, double now, double duration)
+                                    const Vector<dim> &force, int material, double now,
+                                    double duration)
 {
-  Face face = make(id, b, p);
-  const SofteningFace<dim> state(face, p);
+  Face face = make(id, b, p, material);
+  const SofteningFace<dim> state(face, p, strains_);
   const double normal = force.dot(state.normal);
   const Vector<dim> pulls = normal > 0 ? force : Vector<dim>(force - normal * state.normal);
   if (!(pulls.norm() > 0))
@@ -110,10 +112,13 @@ void CohesiveFaces<dim>::find_fronts()
 }
 
 template <int dim>
-void CohesiveFaces<dim>::try_to_open(const Particles &p, Evaluation<dim> &e)
+double CohesiveFaces<dim>::try_to_open(const Particles &p, Evaluation<dim> &e)
 {
-  if (!faces_.empty())
-    OpeningFaces<dim>(body_, p, e, faces_).follow_law(true);
+  if (faces_.empty())
+    return 0;
+  OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
+  opening.find_pressures();
+  return opening.follow_law(true);
 }
 
 template <int dim>
@@ -126,19 +131,79 @@ void CohesiveFaces<dim>::forget_trial()
 }
 
 template <int dim>
-void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &e)
+bool CohesiveFaces<dim>::begin_opening(double time)
 {
   if (faces_.empty() || opened_at_ == time)
-    return;
+    return false;
   opened_at_ = time;
+  is_booked_ = false;
   for (auto &[name, face] : faces_)
     if (face.fall.is_on())
       face.gone = face.fall.gone(time);
-  OpeningFaces<dim> opening(body_, p, e, faces_);
+  return true;
+}
+
+template <int dim>
+void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &e)
+{
+  if (!begin_opening(time))
+    return;
+  OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
+  opening.find_pressures();
   opening.follow_law(has_jumped_);
   has_jumped_ = false;
-  for (auto &[face_, now, stiffness, i, j] : opening.all()) {
-    Face &face = *face_;
+  book(p);
+  opening.take_directions();
+}
+
+// One round in a step: what is left of it the next one makes up for.
+template <int dim>
+void CohesiveFaces<dim>::open_beside(const Particles &p, double time, Evaluation<dim> &e,
+                                     const std::function<void()> &follow_others)
+{
+  if (!begin_opening(time))
+    return;
+  constexpr int most = 100;
+  constexpr double round_off = 1e-14;
+  double change = 1;
+  for (int round = 0; round < (has_jumped_ ? most : 1) && change > round_off; ++round) {
+    OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
+    opening.find_pressures();
+    change = opening.follow_law(has_jumped_);
+    follow_others();
+  }
+  has_jumped_ = false;
+}
+
+template <int dim>
+void CohesiveFaces<dim>::open_in_flow(const Particles &p, double time, Evaluation<dim> &e)
+{
+  if (!begin_opening(time))
+    return;
+  OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
+  opening.find_strains(strains_);
+  opening.follow_law(false);
+}
+
+template <int dim>
+void CohesiveFaces<dim>::book(const Particles &p, Evaluation<dim> &e)
+{
+  if (is_booked_)
+    return;
+  for (auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p, strains_);
+    face.force = now.in_own_axes(now.force(e.pressure[face.bond.i], e.pressure[face.bond.j]));
+  }
+  book(p);
+  OpeningFaces<dim>(body_, strains_, p, e, faces_).take_directions();
+}
+
+template <int dim>
+void CohesiveFaces<dim>::book(const Particles &p)
+{
+  is_booked_ = true;
+  for (auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p, strains_);
     const Spin<dim> turn = relative_turn(face.bond, p);
     const Vector<dim> opened = face.opening.jump - face.stayed.jump;
     const double taken = 0.5 * (face.last_force + face.force).dot(opened) +
@@ -146,37 +211,39 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
                              bending_product(face.bond, face.last_turn, turn);
     if (!face.fall.is_on())
       face.spent += face.law.strength * face.law.reach *
-                  (face.law.shape.area_from(face.stayed.damage) -
-                   face.law.shape.area_from(face.opening.damage));
+                    (face.law.shape.area_from(face.stayed.damage) -
+                     face.law.shape.area_from(face.opening.damage));
     work_.add(taken);
     face.work += taken;
     face.stayed = face.opening;
     face.last_force = face.force;
     face.last_turn = turn;
   }
-  opening.take_directions();
   find_fronts();
 }
 
 template <int dim>
-void CohesiveFaces<dim>::open_to_first_order(const Particles &p, Evaluation<dim> &e)
+double CohesiveFaces<dim>::open_to_first_order(const Particles &p, Evaluation<dim> &e)
 {
-  if (!faces_.empty())
-    OpeningFaces<dim>(body_, p, e, faces_).follow_tangents();
+  if (faces_.empty())
+    return 0;
+  OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
+  opening.find_pressures();
+  return opening.follow_tangents();
 }
 
 template <int dim>
 auto CohesiveFaces<dim>::softness(const Face &face, const Particles &p) const -> Softness
 {
-  const SofteningFace<dim> now(face, p);
+  const SofteningFace<dim> now(face, p, strains_);
   const double bond = now.law.shear;
   if (now.in_space(face.force).dot(now.normal) <= 0 && face.opening.damage < 1)
-    return {false, 1, now.bending_share()};
+    return {false, 1, now.bending_share(), bond};
   const auto tangent = face.law.tangent({now.jump, face.opening.largest, face.opening.damage},
                                         now.in_space(face.force), now.normal);
   const double left = std::max(tangent.trace() / dim, 0.);
   const bool opens = face.opening.damage < 1 && !face.law.unloads(face.opening, face.bond.normal);
-  return {opens, left / (left + bond), now.bending_share()};
+  return {opens, left / (left + bond), now.bending_share(), bond};
 }
 
 template <int dim>
@@ -200,7 +267,7 @@ template <int dim>
 void CohesiveFaces<dim>::take_up(const Particles &p, const Evaluation<dim> &e)
 {
   for (auto &[name, face] : faces_) {
-    const SofteningFace<dim> now(face, p);
+    const SofteningFace<dim> now(face, p, strains_);
     face.force = now.in_own_axes(now.force(e.pressure[face.bond.i], e.pressure[face.bond.j]));
     face.last_force = face.force;
   }
@@ -225,14 +292,59 @@ template <int dim>
 Vector<dim> CohesiveFaces<dim>::opening(const Bond<dim> &b, const Particles &p) const
 {
   const Face *const face = find(b, p);
-  return face ? SofteningFace<dim>(*face, p).jump : Vector<dim>(Vector<dim>::Zero());
+  return face ? SofteningFace<dim>(*face, p, strains_).jump : Vector<dim>(Vector<dim>::Zero());
 }
 
 template <int dim>
 double CohesiveFaces<dim>::lost_bending_energy(const Bond<dim> &b, const Particles &p) const
 {
   const Face *const face = find(b, p);
-  return face ? (1 - SofteningFace<dim>(*face, p).bending_share()) * bending_energy(b, p) : 0;
+  return face ? (1 - SofteningFace<dim>(*face, p, strains_).bending_share()) * bending_energy(b, p)
+              : 0;
+}
+
+template <int dim>
+std::array<double, 2> CohesiveFaces<dim>::opened_volumes(const Bond<dim> &b,
+                                                         const Particles &p) const
+{
+  const Face *const face = find(b, p);
+  if (!face)
+    return {0, 0};
+  const SofteningFace<dim> now(*face, p, strains_);
+  return {now.volume_i(now.jump), now.volume_j(now.jump)};
+}
+
+template <int dim>
+double CohesiveFaces<dim>::energy_between_materials(const Particles &p) const
+{
+  core::ExactSum sum;
+  for (const auto &[name, face] : faces_)
+    if (face.bond.joins_materials)
+      sum.add(SofteningFace<dim>(face, p, strains_).elastic_energy_change(p));
+  return sum.value();
+}
+
+template <int dim>
+void CohesiveFaces<dim>::for_each_strain(
+    const Particles &p,
+    const std::function<void(int, const Eigen::Matrix<double, dim, dim> &)> &visit) const
+{
+  for (const auto &[name, face] : faces_) {
+    const SofteningFace<dim> now(face, p, strains_);
+    const auto [of_i, of_j] = now.strains_of(now.jump, p);
+    visit(face.bond.i, of_i);
+    visit(face.bond.j, of_j);
+  }
+}
+
+template <int dim>
+void CohesiveFaces<dim>::add_force_of(const Bond<dim> &b, const Particles &p,
+                                      Vector<dim> &force) const
+{
+  if (const Face *const face = find(b, p)) {
+    const SofteningFace<dim> now(*face, p, strains_);
+    force -= now.law.shear * now.jump;
+  }
 }
 
 template <int dim>
@@ -253,18 +365,26 @@ void CohesiveFaces<dim>::add_pressures(const Particles &p, Evaluation<dim> &e) c
     return;
   const auto &lambda = body_.lambda_per_volume();
   for (const auto &[name, face] : faces_) {
-    const SofteningFace<dim> now(face, p);
+    const SofteningFace<dim> now(face, p, strains_);
     e.pressure[face.bond.i] += lambda[face.bond.i] * now.volume_i(now.jump);
     e.pressure[face.bond.j] += lambda[face.bond.j] * now.volume_j(now.jump);
   }
 }
 
 template <int dim>
+void CohesiveFaces<dim>::add_strains(const Particles &p, Evaluation<dim> &e) const
+{
+  for_each_strain(p, [&](int i, const Eigen::Matrix<double, dim, dim> &strain) {
+    InelasticStrains<dim>::add_strain(*e.inelastic, i, strain);
+  });
+}
+
+template <int dim>
 void CohesiveFaces<dim>::add_forces(Particles &p, Evaluation<dim> &e) const
 {
   for (const auto &[name, face] : faces_) {
-    const auto change =
-        SofteningFace<dim>(face, p).change(p, e.pressure[face.bond.i], e.pressure[face.bond.j]);
+    const auto change = SofteningFace<dim>(face, p, strains_)
+                            .change(p, e.pressure[face.bond.i], e.pressure[face.bond.j]);
     for (const int side : {0, 1}) {
       const int i = side == 0 ? face.bond.i : face.bond.j;
       ligament::add(p.force, i, change[side].force);
@@ -280,8 +400,8 @@ void CohesiveFaces<dim>::add_force_on(int i, const Particles &p, const Evaluatio
   for (const auto &[name, face] : faces_) {
     if (face.bond.i != i && face.bond.j != i)
       continue;
-    const auto change =
-        SofteningFace<dim>(face, p).change(p, e.pressure[face.bond.i], e.pressure[face.bond.j]);
+    const auto change = SofteningFace<dim>(face, p, strains_)
+                            .change(p, e.pressure[face.bond.i], e.pressure[face.bond.j]);
     const Wrench<dim> &own = change[face.bond.i == i ? 0 : 1];
     wrench.force += own.force;
     wrench.torque += own.torque;
@@ -293,7 +413,7 @@ void CohesiveFaces<dim>::add_energies(const Particles &p, Evaluation<dim> &,
                                       std::vector<double> &energy) const
 {
   for (const auto &[name, face] : faces_)
-    energy[face.bond.i] += SofteningFace<dim>(face, p).energy_change(p);
+    energy[face.bond.i] += SofteningFace<dim>(face, p, strains_).energy_change(p);
 }
 
 template <int dim>
@@ -301,7 +421,7 @@ void CohesiveFaces<dim>::for_each_moment(const Particles &p, const Evaluation<di
                                          const VisitMoment<dim> &visit) const
 {
   for (const auto &[name, face] : faces_) {
-    const SofteningFace<dim> now(face, p);
+    const SofteningFace<dim> now(face, p, strains_);
     const Vector<dim> lost = now.law.shear * now.jump;
     visit(face.bond.i, now.motion.a_i, Vector<dim>(-lost));
     visit(face.bond.j, now.motion.a_j, lost);
@@ -324,14 +444,17 @@ void CohesiveFaces<dim>::save(core::State &state, const core::Names &) const
     return;
   std::vector<std::int64_t> keys;
   std::map<std::string, std::vector<double>> columns;
+  std::vector<std::int64_t> materials;
   for (const auto &[name, face] : faces_) {
     keys.insert(keys.end(), name.begin(), name.end());
+    materials.push_back(face.material);
     for_each_number<dim>(
         face, [&](const std::string &column, double value) { columns[column].push_back(value); });
   }
   core::Table table(std::move(keys), 2);
   for (const auto &[column, values] : columns)
     table.add(column, values);
+  table.add("material", materials);
   state["cohesive"] = std::move(table);
   core::save_value(state, "cohesive_clock", "opened_at", opened_at_.value_or(std::nan("")));
   core::save_sum(state, "cohesive_work", work_);
@@ -347,7 +470,9 @@ void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names
   const core::Table &table = found->second;
   std::map<std::string, std::vector<double>> columns;
   for (const std::string &column : table.columns())
-    columns[column] = table.reals(column);
+    if (column != "material")
+      columns[column] = table.reals(column);
+  const auto materials = table.integers("material");
   for (std::size_t r = 0; r < table.n_rows(); ++r) {
     const int here = names.index(table.keys()[2 * r]), there = names.index(table.keys()[2 * r + 1]);
     if (here < 0 || there < 0)
@@ -359,11 +484,9 @@ void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names
     });
     core::require(id.has_value(), "the state opens a bond that this body doesn't have");
     const Bond<dim> b = body_.bonds().bond(*id);
-    Face face = make(*id, b, p);
-    for_each_number<dim>(face, [&](const std::string &column, double &value) {
-      if (const auto found = columns.find(column); found != columns.end())
-        value = found->second[r];
-    });
+    Face face = make(*id, b, p, int(materials[r]));
+    for_each_number<dim>(
+        face, [&](const std::string &column, double &value) { value = columns.at(column)[r]; });
     if (face.fall.is_on())
       face.law.shape = {}, face.law.mode_ratio = 1;
     face.opening = face.stayed;

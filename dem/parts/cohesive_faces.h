@@ -3,8 +3,8 @@
 
 #include "core/exact_sum.h"
 #include "dem/fracture/crack_velocity.h"
-#include "dem/laws/cohesive.h"
-#include "dem/parts/force_part.h"
+#include "dem/fracture_law.h"
+#include "dem/parts/inelastic_strains.h"
 
 #include <algorithm>
 #include <map>
@@ -20,6 +20,7 @@ struct CohesiveFace
   Bond<dim> bond;
   CohesiveLaw<dim> law;
   bool turns_with_i;    // the opening, with the particle of the smaller global id
+  int material;         // by whose law it softens
   Opening<dim> opening; // in the axes of that particle, as the forces see it
   Opening<dim> stayed;  // the same as the last step left it
   Vector<dim> force = Vector<dim>::Zero();      // N, in these axes, of the last step or trial
@@ -43,8 +44,9 @@ public:
   /// Global ids of both particles, ascending.
   using Name = std::array<std::int64_t, 2>;
 
-  CohesiveFaces(const BondedBody<dim> &body, const Softening &shape, double mode_ratio)
-      : body_(body), shape_(shape), mode_ratio_(mode_ratio)
+  CohesiveFaces(const BondedBody<dim> &body, const InelasticStrains<dim> &strains,
+                const FractureLaw &law)
+      : body_(body), strains_(strains), law_(law)
   {
   }
 
@@ -57,15 +59,15 @@ public:
   /// Null where it has not begun to open.
   const CohesiveFace<dim> *find(const Bond<dim> &bond, const Particles &particles) const;
 
-  /// A bond begins to soften at this force (N) on its particle i. `energy` in J is what it takes to
-  /// open it wholly along its normal.
+  /// A bond begins to soften at this force (N) on its particle i, by the law of this material.
+  /// `energy` in J is what it takes to open it wholly along its normal.
   void begin(const BondId &id, const Bond<dim> &bond, const Particles &particles,
-             const Vector<dim> &force, double energy);
+             const Vector<dim> &force, int material, double energy);
 
   /// In place of it: from now (s) on its strength falls to nothing within `duration`. False where
   /// it bears neither tension nor shear: then nothing could fall.
   bool begin_fall(const BondId &id, const Bond<dim> &bond, const Particles &particles,
-                  const Vector<dim> &force, double now, double duration);
+                  const Vector<dim> &force, int material, double now, double duration);
   /// Whether a crack is still crossing one of the particle's faces.
   bool is_at_front(int particle) const
   {
@@ -75,23 +77,34 @@ public:
   /// Once at every new time, between the pressures of the parts and those of the rows: openings
   /// follow the motion, face after face; what that takes is booked.
   void open(const Particles &particles, double time, Evaluation<dim> &evaluation);
+  /// The same where what the faces bear is known after all others have answered only: book() comes
+  /// then. `follow_others` makes pressures follow openings; each face opens again until none does.
+  void open_beside(const Particles &particles, double time, Evaluation<dim> &evaluation,
+                   const std::function<void()> &follow_others);
+  /// Where materials flow, by what their particles are going to answer; open cells hold what is no
+  /// bond's within a material, with openings. book() comes later.
+  void open_in_flow(const Particles &particles, double time, Evaluation<dim> &evaluation);
+  /// What openings took that were not booked yet, at the pressures and strains of all.
+  void book(const Particles &particles, Evaluation<dim> &evaluation);
   /// The same in a state in which the body may not stay: the next step opens from the last one.
-  void try_to_open(const Particles &particles, Evaluation<dim> &evaluation);
+  /// Returns by how much a face opened, in units of its reach, before it saw the others.
+  double try_to_open(const Particles &particles, Evaluation<dim> &evaluation);
   /// The next state is not one step away from the last.
   void expect_a_jump() { has_jumped_ = true; }
   /// As if nothing had been tried since the last step.
   void forget_trial();
   /// As in the state of the last trial or step, and to first order in how far this one is from it.
-  void open_to_first_order(const Particles &particles, Evaluation<dim> &evaluation);
+  /// Returns what try_to_open() does.
+  double open_to_first_order(const Particles &particles, Evaluation<dim> &evaluation);
   /// Openings as the forces see them, in the order of all(), to be put back.
   std::vector<Opening<dim>> openings() const;
   void put_back(const std::vector<Opening<dim>> &openings);
-  /// About what is left of the stiffness of a bond and of its bending, where changes are small;
-  /// first whether it would open further.
+  /// About what is left of the stiffness of a bond (N/m) and of its bending, where changes are
+  /// small; first whether it would open further.
   struct Softness
   {
     bool opens;
-    double share, bending_share;
+    double share, bending_share, shear;
   };
   Softness softness(const CohesiveFace<dim> &face, const Particles &particles) const;
   /// Those that bear nothing any more and are open, or have slid far.
@@ -103,11 +116,23 @@ public:
   Vector<dim> opening(const Bond<dim> &bond, const Particles &particles) const;
   /// Energy of bending that a bond has lost, in J.
   double lost_bending_energy(const Bond<dim> &bond, const Particles &particles) const;
+  /// What it adds to V theta of i and of j, in m^3.
+  std::array<double, 2> opened_volumes(const Bond<dim> &bond, const Particles &particles) const;
+  /// What openings of faces between materials change in their energy, in J, volumes aside.
+  double energy_between_materials(const Particles &particles) const;
+  /// visit(i, what its openings add to X of a particle in m^dim).
+  void for_each_strain(
+      const Particles &particles,
+      const std::function<void(int, const Eigen::Matrix<double, dim, dim> &)> &visit) const;
   /// Work in J that opened faces so far. What closing ones give back is taken off.
   double work() const { return work_.value(); }
 
   std::vector<int> particles() const override;
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
+  void add_strains(const Particles &particles, Evaluation<dim> &evaluation) const override;
+  /// To the force of a bond on its first particle, in N.
+  void add_force_of(const Bond<dim> &bond, const Particles &particles,
+                    Vector<dim> &force) const override;
   void add_forces(Particles &particles, Evaluation<dim> &evaluation) const override;
   void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
                     Wrench<dim> &wrench) const override;
@@ -125,17 +150,21 @@ public:
 private:
   using Face = CohesiveFace<dim>;
   static Name name_of(const Bond<dim> &bond, const Particles &particles);
-  Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles) const;
+  Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles,
+            int material) const;
+  bool begin_opening(double time);
+  /// Each face bears its `force` now.
+  void book(const Particles &particles);
 
   void find_fronts();
 
   const BondedBody<dim> &body_;
-  Softening shape_;
-  double mode_ratio_;
+  const InelasticStrains<dim> &strains_;
+  const FractureLaw law_;
   std::map<Name, Face> faces_;
-  std::vector<int> at_front_; // ascending
+  std::vector<int> at_front_;       // ascending
   std::optional<double> opened_at_; // s
-  bool has_jumped_ = false;
+  bool has_jumped_ = false, is_booked_ = true;
   core::ExactSum work_;
 };
 } // namespace ligament::dem

@@ -36,6 +36,9 @@ public:
   /// The same for one particle, where it acts on a few only, beside the bonds' own elasticity.
   virtual void add_force_on(int, const Particles &, const Evaluation<dim> &, Wrench<dim> &) const {}
 
+  /// Adds to the force of a bond on its first particle, in N, what it exerts beside the bond's own.
+  virtual void add_force_of(const Bond<dim> &, const Particles &, Vector<dim> &) const {}
+
   /// Adds its energy to that of the particles (J), volumes aside, at the pressures of all parts.
   virtual void add_energies(const Particles &, Evaluation<dim> &,
                             std::vector<double> &energy) const = 0;

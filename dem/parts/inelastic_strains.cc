@@ -43,6 +43,18 @@ bool has_own_strains(const DemMaterial &material)
   return flows(material.plasticity) || is_viscous(material.viscosity);
 }
 
+/// Open for what is no bond's, but it lacks no face.
+template <int dim>
+OpenCell<dim> whole_cell(double volume)
+{
+  OpenCell<dim> cell;
+  cell.number[OpenCell<dim>::volume] = volume;
+  for (int row = 0; row < dim; ++row)
+    for (int a = 0; a < dim; ++a)
+      cell.number[OpenCell<dim>::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, a)] = 1;
+  return cell;
+}
+
 /// Three of each material: its own, an elastic one, and one that keeps what has slid.
 constexpr int most_laws = 255;
 } // namespace
@@ -99,14 +111,8 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
     has_load[i] = 1;
   for (int i = 0; i < n; ++i) {
     auto cell = find_cell(i, packing.volume[i]);
-    if (!cell && has_load[i]) {
-      cell.emplace();
-      cell->number[OpenCell<dim>::volume] = packing.volume[i];
-      for (int row = 0; row < dim; ++row)
-        for (int a = 0; a < dim; ++a)
-          cell->number[OpenCell<dim>::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, a)] =
-              1;
-    }
+    if (!cell && has_load[i])
+      cell = whole_cell<dim>(packing.volume[i]);
     if (cell) {
       open_[i] = int(cells_.size());
       cells_.push_back(*cell);
@@ -235,6 +241,15 @@ void InelasticStrains<dim>::set_cell(int i, double volume)
 }
 
 template <int dim>
+void InelasticStrains<dim>::open_cell(int i, double volume)
+{
+  if (!has_law() || open_[i] >= 0)
+    return;
+  open_[i] = int(cells_.size());
+  cells_.push_back(whole_cell<dim>(volume));
+}
+
+template <int dim>
 bool InelasticStrains<dim>::has_begun() const
 {
   return std::any_of(age_.begin(), age_.end(), [](std::uint8_t a) { return a != untouched; });
@@ -319,6 +334,15 @@ auto InelasticStrains<dim>::cell_strain(const InelasticSweep<dim> &sweep, int i)
 }
 
 template <int dim>
+void InelasticStrains<dim>::set_cell_strain(const InelasticSweep<dim> &sweep, int i,
+                                            const Matrix &strain)
+{
+  double *const to = sweep.cells[sweep.open[i]].number + OpenCell<dim>::strain;
+  for (int k = 0; k < dim * dim; ++k)
+    to[k] = strain(k / dim, k % dim);
+}
+
+template <int dim>
 auto InelasticStrains<dim>::tensor(int i) const -> Tensor
 {
   Tensor t = Tensor::Zero();
@@ -393,7 +417,8 @@ double InelasticStrains<dim>::flowed_volume(const Bond<dim> &b, int i) const
 
 // Of both sides, (D20b): a bond's share of -2G V e:E + G V e:(e M).
 template <int dim>
-double InelasticStrains<dim>::bond_energy(const Bond<dim> &b, const Particles &p) const
+double InelasticStrains<dim>::bond_energy(const Bond<dim> &b, const Particles &p,
+                                          const Vector<dim> &opening) const
 {
   double sum = 0;
   if (!is_strained(b.i) && !is_strained(b.j))
@@ -403,7 +428,7 @@ double InelasticStrains<dim>::bond_energy(const Bond<dim> &b, const Particles &p
     const Matrix e = strain(i);
     sum += b.shear_i * (e * e).cwiseProduct(moment(b, i)).sum();
   }
-  return sum - law_of(b).shear * m.du.dot(m.stretch_i - m.stretch_j);
+  return sum - law_of(b).shear * (m.du - opening).dot(m.stretch_i - m.stretch_j);
 }
 
 template <int dim>

@@ -61,6 +61,8 @@ public:
 
   /// These never flow, whatever their material.
   void keep_elastic(const std::vector<int> &particles);
+  /// Of a particle with so many m^3 whose strain is not that of its bonds alone.
+  void open_cell(int i, double volume);
 
   /// At the begin of an evaluation: open cells have no strains yet. At a new time particles may
   /// flow, once.
@@ -70,6 +72,7 @@ public:
   static void add_strain(const InelasticSweep<dim> &sweep, int i, const Matrix &strain);
   /// All that was added to that of an open cell, m^dim.
   static Matrix cell_strain(const InelasticSweep<dim> &sweep, int i);
+  static void set_cell_strain(const InelasticSweep<dim> &sweep, int i, const Matrix &strain);
 
   /// e of a particle, in its own axes: all of it, and of the axes of the body.
   Tensor tensor(int i) const;
@@ -89,8 +92,10 @@ public:
   /// V M : e of a particle, in m^3, and the share of a bond in it.
   double flowed_volume(int i) const;
   double flowed_volume(const Bond<dim> &bond, int i) const;
-  /// What strains change in the energy of a bond beside the pressures', in J.
-  double bond_energy(const Bond<dim> &bond, const Particles &particles) const;
+  /// What strains change in the energy of a bond beside the pressures', in J, where so much of its
+  /// motion is an opening (m).
+  double bond_energy(const Bond<dim> &bond, const Particles &particles,
+                     const Vector<dim> &opening) const;
   /// The face as it is now, its levers stretched.
   Bond<dim> stretched(const Bond<dim> &bond) const;
 
@@ -100,9 +105,10 @@ public:
   void add_energies(const Particles &, Evaluation<dim> &, std::vector<double> &) const override {}
   void remove(const BondId &id, const Bond<dim> &bond, const Particles &particles) override;
   /// After it, with the pressures of particle i before and after: its stress is that without the
-  /// face. Returns by how much what its viscous part keeps, theory.md eq. (D28), grew, in J.
-  double forget_face(const Bond<dim> &bond, int i, const Particles &particles, double before,
-                     double after);
+  /// face, which had opened by so many m. Returns by how much what its viscous part keeps,
+  /// theory.md eq. (D28), grew, in J.
+  double forget_face(const Bond<dim> &bond, int i, const Particles &particles,
+                     const Vector<dim> &opening, double before, double after);
 
   /// All bonds beside those of the network from now on.
   void set_other_faces(const std::vector<OtherFace<dim>> &faces, const Particles &particles);
@@ -112,8 +118,21 @@ public:
   /// Whether its cell lacks faces of the packing, or has other ones.
   bool is_open(int i) const { return !has_law() || open_[i] >= 0; }
 
-  /// The share of a bond within one material in X of its particle i, theory.md eq. (D22), m^dim.
-  static Matrix face_strain(const Bond<dim> &bond, int i, const Particles &particles);
+  /// The share of a bond within one material in X of its particle i, theory.md eq. (D22), m^dim;
+  /// `opening` in m of its motion is none.
+  static Matrix face_strain(const Bond<dim> &bond, int i, const Particles &particles,
+                            const Vector<dim> &opening = Vector<dim>::Zero());
+  /// e in its own axes and pressure in Pa that a particle is going to answer in this sweep to X
+  /// (m^dim), of which its cell knows a part. Nothing changes.
+  std::pair<Matrix, double> try_response(const InelasticSweep<dim> &sweep, int i, const Matrix &x,
+                                         double lambda_per_volume) const;
+  /// eta / (G Dt) of the dashpots of a particle in this sweep.
+  double dashpot_rate(int i) const
+  {
+    const ViscousStep *viscous = laws_[law_number(i)].viscous;
+    return viscous ? viscous->rate : 0;
+  }
+  double volume(int i) const; // m^3
   /// Own stress in Pa with this X (m^dim) under a pressure, eq. (D21).
   Tensor stress_of(int i, const Matrix &x, double pressure) const;
   /// How it changes with both.
@@ -151,7 +170,6 @@ private:
   Tensor moved(int i, const Tensor &e) const;
   Tensor pressed(int i) const;
   static Tensor symmetric(const Matrix &m);
-  double volume(int i) const; // m^3
   /// The viscous part of a particle whose stress jumped as it lost a face and what that had of M.
   double lose_face(int i, double volume, const Tensor &jump, const Matrix &lost, double pressure);
   /// Of a particle that stays elastic from now on.

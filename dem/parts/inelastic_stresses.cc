@@ -60,13 +60,15 @@ auto InelasticStrains<dim>::symmetric(const Matrix &m) -> Tensor
 }
 
 template <int dim>
-auto InelasticStrains<dim>::face_strain(const Bond<dim> &b, int i, const Particles &p) -> Matrix
+auto InelasticStrains<dim>::face_strain(const Bond<dim> &b, int i, const Particles &p,
+                                        const Vector<dim> &opening) -> Matrix
 {
   const auto turn_i = Turn<dim>::of(p, b.i), turn_j = Turn<dim>::of(p, b.j);
   const BondMotion<dim> m(b, turn_i, turn_j, get(p.displacement, b.i), get(p.displacement, b.j));
   const bool first = b.i == i;
   const Turn<dim> back = (first ? turn_i : turn_j).inverse();
-  const Vector<dim> du = first ? m.du : Vector<dim>(-m.du), own = du + back.change(du);
+  const Vector<dim> left = m.du - opening, du = first ? left : Vector<dim>(-left),
+                    own = du + back.change(du);
   return b.area / b.distance * own * (first ? b.lever_i : b.lever_j).transpose();
 }
 
@@ -134,14 +136,14 @@ double InelasticStrains<dim>::jump(int i, const Tensor &change, double pressure)
 
 template <int dim>
 double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
-                                          double before, double after)
+                                          const Vector<dim> &opening, double before, double after)
 {
   if (!keeps_stress(i))
     return 0;
   const double twice_shear = 2 * laws_[law_number(i)].shear;
   const Matrix lost = moment(b, i) / volume(i);
   const Tensor change =
-      stress_change(i, -face_strain(b, i, p), after - before) +
+      stress_change(i, -face_strain(b, i, p, opening), after - before) +
       symmetric((twice_shear * strain(i) - before * Matrix::Identity()) * lost);
   for (int c = 0; c < n_tensor<dim>; ++c)
     streams_.stream(Streams::stress + c)[i] += change[c];

@@ -4,27 +4,49 @@
 
 #include "dem/bond_law.h"
 #include "dem/parts/cohesive_faces.h"
+#include "dem/parts/flow_trial.h"
 
 #include <algorithm>
 #include <vector>
 
 namespace ligament::dem
 {
+/// What an opening w changes of a bond, whether its sides are of one material or in series, (D18):
+/// its force by -k w, V theta of i by -s_i a_i . w and that of j by s_j a_j . w.
+struct OpenedBond
+{
+  double shear;            // k, N/m
+  double share_i, share_j; // s, m; S/r within a material
+
+  template <int dim>
+  static OpenedBond of(const Bond<dim> &b)
+  {
+    if (!b.joins_materials) {
+      const auto law = law_of(b);
+      return {law.shear, law.area_r, law.area_r};
+    }
+    const double c_i = b.lever_i.dot(b.normal) / (2 * b.shear_i),
+                 c_j = -b.lever_j.dot(b.normal) / (2 * b.shear_j), k = b.area / (c_i + c_j);
+    return {k, k / (2 * b.shear_i), k / (2 * b.shear_j)};
+  }
+};
+
 /// A softening face in a state of its particles, in space.
 template <int dim>
 struct SofteningFace
 {
   const CohesiveFace<dim> &face;
-  BondLaw<dim> law;
+  OpenedBond law;
   Turn<dim> own;            // of the particle with which the opening turns
   BondMotion<dim> motion;   // as if nothing had opened
   Vector<dim> jump, normal; // w in m; of the face
 
-  SofteningFace(const CohesiveFace<dim> &of, const particles::Particles<dim> &p)
-      : face(of), law(law_of(of.bond)),
+  SofteningFace(const CohesiveFace<dim> &of, const particles::Particles<dim> &p,
+                const InelasticStrains<dim> &strains)
+      : face(of), law(OpenedBond::of(of.bond)),
         own(Turn<dim>::of(p, of.turns_with_i ? of.bond.i : of.bond.j)),
-        motion(of.bond, Turn<dim>::of(p, of.bond.i), Turn<dim>::of(p, of.bond.j),
-               get(p.displacement, of.bond.i), get(p.displacement, of.bond.j)),
+        motion(
+            strains.motion(of.bond, p, Turn<dim>::of(p, of.bond.i), Turn<dim>::of(p, of.bond.j))),
         jump(in_space(of.opening.jump)), normal(in_space(of.bond.normal))
   {
   }
@@ -35,24 +57,36 @@ struct SofteningFace
   /// On i, in N, under the pressures of both.
   Vector<dim> force(double p_i, double p_j) const
   {
-    return law.force(Vector<dim>(motion.du - jump), p_i, motion.a_i, p_j, motion.a_j);
+    const Vector<dim> left = motion.elastic - jump;
+    return law.shear * left +
+           Vector<dim>(law.share_i * p_i * motion.a_i - law.share_j * p_j * motion.a_j);
   }
   /// What an opening adds to V theta of i and of j, in m^3.
   double volume_i(const Vector<dim> &opening) const
   {
-    return -law.add_dilatation(opening, motion.a_i, 0);
+    return -(law.share_i * motion.a_i.dot(opening));
   }
   double volume_j(const Vector<dim> &opening) const
   {
-    return law.add_dilatation(opening, motion.a_j, 0);
+    return law.share_j * motion.a_j.dot(opening);
+  }
+  /// What it adds to X of i and of j, theory.md section 1.10, in m^dim and the axes of each.
+  std::array<Eigen::Matrix<double, dim, dim>, 2>
+  strains_of(const Vector<dim> &opening, const particles::Particles<dim> &p) const
+  {
+    const auto back = [&](int i) {
+      return Vector<dim>(opening + Turn<dim>::of(p, i).inverse().change(opening));
+    };
+    return {-law.share_i * back(face.bond.i) * face.bond.lever_i.transpose(),
+            law.share_j * back(face.bond.j) * face.bond.lever_j.transpose()};
   }
   /// How much of the force an opening takes, in N/m, through both volumes, too.
   Eigen::Matrix<double, dim, dim> stiffness(double lambda_i, double lambda_j) const
   {
-    const double square = law.area_r * law.area_r;
+    const double square_i = law.share_i * law.share_i, square_j = law.share_j * law.share_j;
     return law.shear * Eigen::Matrix<double, dim, dim>::Identity() +
-           square * lambda_i * motion.a_i * motion.a_i.transpose() +
-           square * lambda_j * motion.a_j * motion.a_j.transpose();
+           square_i * lambda_i * motion.a_i * motion.a_i.transpose() +
+           square_j * lambda_j * motion.a_j * motion.a_j.transpose();
   }
 
   /// Share of bending and twist that is left: they fall as the face's stiffness does.
@@ -65,6 +99,17 @@ struct SofteningFace
     return force / (force + law.shear * o.largest);
   }
 
+  /// At these strains of the particles, in the axes of each, in place of their own.
+  void stretch(const particles::Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &e_i,
+               const Eigen::Matrix<double, dim, dim> &e_j)
+  {
+    const auto turned = [&](int i, const Vector<dim> &v) {
+      return Vector<dim>(v + Turn<dim>::of(p, i).change(v));
+    };
+    motion.stretch(turned(face.bond.i, e_i * face.bond.lever_i),
+                   turned(face.bond.j, e_j * face.bond.lever_j));
+  }
+
   /// What the opening changes in what acts on i and on j.
   std::array<Wrench<dim>, 2> change(const particles::Particles<dim> &p, double p_i,
                                     double p_j) const
@@ -74,17 +119,31 @@ struct SofteningFace
     Wrench<dim> i, j;
     i.force = -lost;
     j.force = lost;
-    i.torque = cross(motion.a_i, Vector<dim>(law.area_r * p_i * jump - lost)) - bend;
-    j.torque = cross(motion.a_j, Vector<dim>(lost - law.area_r * p_j * jump)) + bend;
+    i.torque = cross(motion.a_i, Vector<dim>(law.share_i * p_i * jump - lost)) - bend -
+               cross(motion.stretch_i, lost);
+    j.torque = cross(motion.a_j, Vector<dim>(lost - law.share_j * p_j * jump)) + bend +
+               cross(motion.stretch_j, lost);
     (face.turns_with_i ? i : j).torque += cross(jump, force(p_i, p_j));
     return {i, j};
   }
 
-  /// The same in the energy, volumes aside, in J.
+  /// The same in the energy, volumes aside, in J; what strains of the particles' own add to it is
+  /// theirs.
   double energy_change(const particles::Particles<dim> &p) const
   {
-    return (law.twice_energy(Vector<dim>(motion.du - jump)) - law.twice_energy(motion.du)) / 2 -
-           (1 - bending_share()) * bending_energy(face.bond, p);
+    return energy_change(motion.du) - (1 - bending_share()) * bending_energy(face.bond, p);
+  }
+  /// Of what answers elastically alone.
+  double elastic_energy_change(const particles::Particles<dim> &p) const
+  {
+    return energy_change(motion.elastic) - (1 - bending_share()) * bending_energy(face.bond, p);
+  }
+
+private:
+  double energy_change(const Vector<dim> &whole) const
+  {
+    const Vector<dim> left = whole - jump;
+    return (law.shear * left.dot(left) - law.shear * whole.dot(whole)) / 2;
   }
 };
 
@@ -126,7 +185,7 @@ void take_direction(CohesiveFace<dim> &face, const Vector<dim> &way)
 }
 
 /// All of them in a state of their particles, which open together: they see each other through the
-/// pressures of these.
+/// pressures of these, and through the strains that these answer where materials flow.
 template <int dim>
 class OpeningFaces
 {
@@ -143,8 +202,9 @@ public:
   };
 
   template <typename Faces>
-  OpeningFaces(const BondedBody<dim> &body, const Particles &p, Evaluation<dim> &e, Faces &faces)
-      : body_(body), e_(e)
+  OpeningFaces(const BondedBody<dim> &body, const InelasticStrains<dim> &strains,
+               const Particles &p, Evaluation<dim> &e, Faces &faces)
+      : body_(body), p_(p), e_(e)
   {
     for (const auto &[name, face] : faces)
       particle_.insert(particle_.end(), {face.bond.i, face.bond.j});
@@ -156,21 +216,38 @@ public:
     const auto &lambda = body.lambda_per_volume();
     all_.reserve(faces.size());
     for (auto &[name, face] : faces) {
-      const SofteningFace<dim> now(face, p);
+      const SofteningFace<dim> now(face, p, strains);
       all_.push_back({&face, now, now.stiffness(lambda[face.bond.i], lambda[face.bond.j]),
                       place(face.bond.i), place(face.bond.j)});
     }
+  }
+
+  /// Before they open, by the pressures of their particles.
+  void find_pressures()
+  {
     for (const int i : particle_)
-      pressure_.push_back(whole_pressure(i, p));
+      pressure_.push_back(whole_pressure(i, p_));
+  }
+  /// The same where materials flow: open cells hold what is no bond's within a material, these
+  /// openings included.
+  void find_strains(const InelasticStrains<dim> &strains)
+  {
+    flow_.emplace(body_, strains, *e_.inelastic, p_, particle_);
+    pressure_.resize(particle_.size());
+    for (One &one : all_) {
+      const auto &[shear, share_i, share_j] = one.now.law;
+      one.stiffness += flow_->damping(one.i, shear, share_i, one.now.motion.a_i) +
+                       flow_->damping(one.j, shear, share_j, one.now.motion.a_j);
+    }
   }
 
   std::vector<One> &all() { return all_; }
 
   /// From where the last step left them; to the last digit if `is_exact`, in a step the next one
-  /// makes up for what is left.
-  void follow_law(bool is_exact)
+  /// makes up for what is left. Returns the largest change in one sweep, in units of the reach.
+  double follow_law(bool is_exact)
   {
-    sweep(is_exact, [](const One &one, const Vector<dim> &shut) {
+    const double change = sweep(is_exact, [](const One &one, const Vector<dim> &shut) {
       const Opening<dim> &stayed = one.face->stayed;
       return one.face->law.answer(
           {one.now.in_space(stayed.jump), stayed.largest, one.face->damage_before()}, shut,
@@ -178,15 +255,15 @@ public:
     });
     for (One &one : all_)
       one.face->force = one.now.in_own_axes(one.now.force(pressure_[one.i], pressure_[one.j]));
+    return change;
   }
-
   /// A face that is shut stays so.
-  void follow_tangents()
+  double follow_tangents()
   {
     std::vector<Opening<dim>> about;
     for (const One &one : all_)
       about.push_back(one.face->opening);
-    sweep(true, [&](const One &one, const Vector<dim> &shut) -> Opening<dim> {
+    return sweep(true, [&](const One &one, const Vector<dim> &shut) -> Opening<dim> {
       const Opening<dim> &there = about[&one - all_.data()];
       const Vector<dim> jump = one.now.in_space(there.jump),
                         force = one.now.in_space(one.face->force);
@@ -242,19 +319,30 @@ private:
   /// answers to small changes are symmetric. answer(one, force if it were shut) is the opening in
   /// space.
   template <typename Answer>
-  void sweep(bool is_exact, Answer &&answer)
+  double sweep(bool is_exact, Answer &&answer)
   {
     const auto &lambda = body_.lambda_per_volume();
     const auto open = [&](One &one) {
       SofteningFace<dim> &now = one.now;
       const int i = one.face->bond.i, j = one.face->bond.j;
+      if (flow_) {
+        pressure_[one.i] = flow_->answer(one.i);
+        pressure_[one.j] = flow_->answer(one.j);
+        now.stretch(p_, flow_->inelastic(one.i), flow_->inelastic(one.j));
+      }
       const Vector<dim> shut =
           now.force(pressure_[one.i], pressure_[one.j]) + one.stiffness * now.jump;
       const Opening<dim> next = answer(one, shut);
       const Vector<dim> opened = next.jump - now.jump;
       const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
-      pressure_[one.i] += to_i, e_.pressure[i] += to_i;
-      pressure_[one.j] += to_j, e_.pressure[j] += to_j;
+      if (flow_) {
+        const auto [of_i, of_j] = now.strains_of(opened, p_);
+        flow_->add(one.i, of_i);
+        flow_->add(one.j, of_j);
+      } else {
+        pressure_[one.i] += to_i, e_.pressure[i] += to_i;
+        pressure_[one.j] += to_j, e_.pressure[j] += to_j;
+      }
       now.jump = next.jump;
       one.face->opening = {now.in_own_axes(next.jump), next.largest, next.damage};
       const bool falls = one.face->fall.is_on();
@@ -262,21 +350,27 @@ private:
     };
     constexpr int most = 100;
     constexpr double round_off = 1e-14;
+    double first = 0;
     for (int round = 0; round < (is_exact ? most : 1); ++round) {
       double largest = 0;
       for (One &one : all_)
         largest = std::max(largest, open(one));
       for (auto one = all_.rbegin(); one != all_.rend(); ++one)
         largest = std::max(largest, open(*one));
+      if (round == 0)
+        first = largest;
       if (largest < round_off)
-        return;
+        break;
     }
+    return first;
   }
 
   const BondedBody<dim> &body_;
+  const Particles &p_;
   Evaluation<dim> &e_;
   std::vector<int> particle_;    // ascending
   std::vector<double> pressure_; // Pa, of these
   std::vector<One> all_;
+  std::optional<FlowTrial<dim>> flow_;
 };
 } // namespace ligament::dem

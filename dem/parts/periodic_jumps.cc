@@ -80,7 +80,7 @@ void PeriodicJumps<dim>::find_reactions(const StressedBody<dim> &state,
   };
   for (const BondId &id : across_) {
     const Bond<dim> b = state.body().bonds().bond(id);
-    add(*b.image, state.force(b, state.motion(b)));
+    add(*b.image, state.whole_force(b));
   }
   contacts.for_each_across(state.particles, add);
   std::array<std::array<bool, dim>, dim> named{};

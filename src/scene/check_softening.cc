@@ -30,6 +30,24 @@ void check_energy(const Scene &scene, const MaterialParameters &m, const std::st
             fmt::format("G_c = K_Ic^2/E' with E' = {:.4g} Pa", modulus), "remove one of them");
 }
 
+/// What the strongest of so many faces may be expected to bear, over the mean: the value that one
+/// of them exceeds on average.
+double strongest(const WeibullParameters &weibull, double n_faces)
+{
+  const double power = 1 / weibull.modulus;
+  return std::pow(std::log(std::max(n_faces, 2.)), power) / std::tgamma(1 + power);
+}
+
+/// About how many faces a zone has, whole specimens in discrete elements being meant.
+double count_faces(const Scene &scene)
+{
+  constexpr double per_particle = 4; // 3 to 6
+  double cells = 1;
+  for (int c = 0; c < scene.dimension; ++c)
+    cells *= std::max(scene.specimen.size[c] / scene.zone.spacing, 1.);
+  return per_particle * cells;
+}
+
 /// The zone in which faces soften is about E G_c/f_t^2 long.
 void check_resolution(const Scene &scene, const MaterialParameters &m, double energy,
                       const std::string &section, Findings &f)
@@ -38,53 +56,52 @@ void check_resolution(const Scene &scene, const MaterialParameters &m, double en
   const double strength = *m.fracture.strength,
                length = m.youngs_modulus * energy / (strength * strength),
                spacings = length / scene.zone.spacing;
+  const auto remedy = [&](double spacing) {
+    return fmt::format("take a \"spacing\" of {:.2g} m or less, or leave out the strength of the "
+                       "material and give "
+                       "\"toughness\" alone",
+                       spacing);
+  };
+  if (m.fracture.weibull && f.sound({section + "/weibull", "/specimen"})) {
+    const double factor = strongest(*m.fracture.weibull, count_faces(scene)),
+                 shortest = spacings / (factor * factor);
+    if (spacings >= least && shortest < least) {
+      f.error(section + "/weibull",
+              fmt::format("the strongest faces bear about {:.3g} times the \"strength\" in {} and "
+                          "soften over E G_c/f_t^2 = {:.3g} m, {:.1f} spacings",
+                          factor, section, length / (factor * factor), shortest),
+              "all take the same energy: below 2 spacings a face loses more than its neighbourhood "
+              "gives back",
+              fmt::format("take a \"spacing\" of {:.2g} m or less, or a larger \"modulus\"",
+                          length / (factor * factor) / least));
+      return;
+    }
+  }
   if (!(spacings < few))
     return;
   const std::string message =
       fmt::format("faces soften over E G_c/f_t^2 = {:.3g} m, {:.1f} spacings", length, spacings);
-  const std::string remedy = fmt::format(
-      "take a \"spacing\" of {:.2g} m or less, or leave out the strength of the material and give "
-      "\"toughness\" alone",
-      length / few);
   const std::string key = section + "/strength";
   if (spacings < least)
-    f.error(key, message, "below 2 a face loses more than its neighbourhood gives back", remedy);
+    f.error(key, message, "below 2 a face loses more than its neighbourhood gives back",
+            remedy(length / few));
   else
-    f.warning(key, message, "below 5 strength and path depend on the packing", remedy);
+    f.warning(key, message, "below 5 strength and path depend on the packing",
+              remedy(length / few));
 }
 
 /// What else the scene asks for that faces don't go together with which soften.
 void check_company(const Scene &scene, const MaterialParameters &m, const std::string &section,
                    Findings &f)
 {
-  const std::string energy = section + (m.fracture.energy ? "/energy" : "/toughness");
-  std::vector<std::pair<std::string, const MaterialParameters *>> materials = {
-      {"/material", &scene.material}};
-  for (std::size_t k = 0; k < scene.inclusions.size(); ++k)
-    materials.emplace_back(fmt::format("/inclusions/{}", k), &scene.inclusions[k].material);
-  for (const auto &[key, other] : materials) {
-    const std::string fracture = key + "/fracture", criterion = fracture + "/criterion";
-    if (f.sound({fracture, criterion}) && other->fracture.criterion != Criterion::maximum_tension)
-      f.error(f.given(criterion) ? criterion : energy,
-              fmt::format("\"criterion\" in {} is \"{}\", but faces soften", fracture,
-                          word_of(other->fracture.criterion)),
-              "they begin to soften under the largest principal stress, in all materials",
-              "choose \"maximum_tension\", with a \"strength\" that is never reached where nothing "
-              "breaks");
-    if (other->fracture.weibull && f.sound({fracture + "/weibull"}))
-      f.error(fracture + "/weibull", fmt::format("\"weibull\" in {}, but faces soften", fracture),
-              "the strongest faces would lose more than their neighbourhood gives back",
-              "remove it, or leave out \"energy\"");
-    if (other->plasticity)
-      f.error(energy, fmt::format("faces soften, but {} has \"plasticity\"", key),
-              "what flows is not told from what opens yet", "leave out one of them");
-    if (other->viscosity)
-      f.error(energy, fmt::format("faces soften, but {} has \"viscosity\"", key),
-              "what flows is not told from what opens yet", "leave out one of them");
-  }
-  if (!scene.specimen.periodic.empty())
-    f.error(energy, "faces soften, but sides are joined by \"periodic\"",
-            "openings don't know images of particles yet", "leave out one of them");
+  const std::string energy = section + (m.fracture.energy ? "/energy" : "/toughness"),
+                    criterion = section + "/criterion";
+  if (f.sound({section, criterion}) && m.fracture.criterion != Criterion::maximum_tension)
+    f.error(f.given(criterion) ? criterion : energy,
+            fmt::format("\"criterion\" in {} is \"{}\", but faces soften", section,
+                        word_of(m.fracture.criterion)),
+            "they begin to soften under the largest principal stress",
+            "choose \"maximum_tension\", or leave out \"energy\" so that they break at once");
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     if (scene.loads[k].pressure)
       f.error(fmt::format("/loads/{}/pressure", k),

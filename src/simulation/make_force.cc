@@ -190,6 +190,10 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
       law.criteria[m] = dem::FractureLaw::Criterion::opening_tension;
       figures["fracture_energy" + name] = {law.energies[m], "J/m^2"};
     }
+    law.softenings.push_back(materials[m]->fracture.softening == SofteningCurve::bilinear
+                                 ? dem::Softening{1 / 3., 0.8}
+                                 : dem::Softening{});
+    law.mode_ratios.push_back(materials[m]->fracture.mode_ratio);
     law.strengths.push_back(law.criteria[m] == dem::FractureLaw::Criterion::none
                                 ? dem::FaceStrength()
                                 : face_strength_of<dim>(scene, *materials[m], name, figures, log));
@@ -209,10 +213,11 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
     law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
                      (dim == 2 ? scene.specimen.thickness : 1);
   law.energy = law.energies[0];
-  if (scene.material.fracture.softening == SofteningCurve::bilinear)
-    law.softening = {1 / 3., 0.8};
-  law.mode_ratio = scene.material.fracture.mode_ratio;
+  law.softening = law.softenings[0];
+  law.mode_ratio = law.mode_ratios[0];
   if (materials.size() == 1) {
+    law.softenings.clear();
+    law.mode_ratios.clear();
     law.energies.clear();
     law.criteria.clear();
     law.strengths.clear();

@@ -11,6 +11,7 @@
 #include "src/verification/cases/law.h"
 #include "src/verification/cases/law_viscous.h"
 #include "src/verification/cases/softening.h"
+#include "src/verification/cases/softening_flow.h"
 #include "src/verification/cases/static.h"
 
 namespace ligament::program
@@ -64,6 +65,7 @@ std::vector<Case> all_cases()
   add(law_viscous_cases());
   add(softening_cases());
   add(face_life_cases());
+  add(softening_flow_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -14,10 +14,11 @@ struct Flight
 };
 
 /// It stretches along x at a rate of 3 `scale` per spacing, with noise of a twentieth of `scale`;
-/// steps are this fraction of the stable one.
+/// steps are this fraction of the stable one. `look` sees the force at the end.
 template <int dim>
 Flight fly(const Packing<dim> &packing, const Materials &materials, double scale, int n_steps,
-           double fraction = 0.8, const FractureLaw &fracture = {})
+           double fraction = 0.8, const FractureLaw &fracture = {},
+           const std::function<void(const ManyBodyForce<dim> &)> &look = {})
 {
   Particles<dim> p;
   packings::fill_particles(packing, materials.base().density, p);
@@ -43,10 +44,12 @@ Flight fly(const Packing<dim> &packing, const Materials &materials, double scale
     solver.drift(dt);
     solver.compute_forces(time += dt);
   }
+  if (look)
+    look(force);
   const auto losses = force.losses();
   return {start,
           solver.kinetic_energy(dt) + solver.potential_energy() + losses.plastic + losses.viscous +
-              losses.fracture + losses.breaking_step_error + losses.friction - start,
+              losses.fracture + losses.breaking_step_error + losses.friction + losses.cohesive - start,
           losses};
 }
 } // namespace ligament::dem::testing

@@ -12,12 +12,12 @@ using particles::Particles;
 template <int dim>
 struct Run
 {
-  Run(const packings::Packing<dim> &packing, const DemMaterial &material,
+  Run(const packings::Packing<dim> &packing, const Materials &materials,
       const std::vector<core::BoundaryLoad<dim>> &loads, const FractureLaw &law = {})
   {
     Particles<dim> p;
-    packings::fill_particles(packing, material.density, p);
-    auto f = std::make_unique<ManyBodyForce<dim>>(packing, material, loads, law);
+    packings::fill_particles(packing, materials.base().density, p);
+    auto f = std::make_unique<ManyBodyForce<dim>>(packing, materials, loads, law);
     force = f.get();
     solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
     dt = force->stable_step(solver->state);
