@@ -126,10 +126,8 @@ public:
     }
     const InARow<2, D> place{i};
     const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
-    const Response<2, D, InARow<2, D>> response(
-        d, *inelastic_sweep_, place, fresh,
-        OwnStress<2, D>(d, *inelastic_sweep_, place, x,
-                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const auto response =
+        respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
     V torque = hn::Mul(vp, hn::Sub(turned[0][1], turned[1][0]));

@@ -179,10 +179,8 @@ public:
     }
     const InARow<3, D> place{i};
     const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
-    const Response<3, D, InARow<3, D>> response(
-        d, *inelastic_sweep_, place, fresh,
-        OwnStress<3, D>(d, *inelastic_sweep_, place, x,
-                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const auto response =
+        respond<3>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
     const V shear_half = hn::Set(d, law_.shear_half);

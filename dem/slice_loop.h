@@ -294,10 +294,8 @@ private:
       lambda_per_volume[l] = a.lambda_per_volume[place.of[l]];
     }
     const auto used = hn::Lt(hn::Iota(d, double(lane)), hn::Set(d, double(size)));
-    const Response<dim, SliceLanes, Scattered<dim, SliceLanes>> response(
-        d, *sweep_.inelastic, place, used,
-        OwnStress<dim, SliceLanes>(d, *sweep_.inelastic, place, x,
-                                   hn::Load(d, lambda_per_volume)));
+    const auto response = dem::HWY_NAMESPACE::respond<dim>(d, *sweep_.inelastic, place, used, x,
+                                                           hn::Load(d, lambda_per_volume));
     hn::Store(response.pressure, d, pressure);
     for (int l = 0; l < n_lanes && lane + l < size; ++l)
       a.pressure[place.of[l]] = pressure[l];

@@ -13,28 +13,41 @@
 #include "dem/inelastic/von_mises.h"
 
 #include <algorithm>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// What particles answer to their strains: their e follow in memory where flow is allowed.
-template <int dim, typename D, typename At>
-class Response
+/// What particles answer to their strains.
+template <int dim, typename V>
+struct Answer
+{
+  SymmetricTensor<dim, V> strain; // e
+  V pressure;                     // Pa
+  bool is_strained;
+};
+
+/// Finds it; their e follow in memory where flow is allowed. `open`: some of them have open cells;
+/// `plain`: all are of one law, which is not viscous, and energies are not asked for.
+template <int dim, typename D, typename At, bool open, bool plain>
+class Response : public Answer<dim, hn::Vec<D>>
 {
   using V = hn::Vec<D>;
   using Streams = InelasticStreams<dim>;
+  using Own = OwnStress<dim, D, open>;
+  using Base = Answer<dim, V>;
+  using Base::is_strained;
+  using Base::pressure;
+  using Base::strain;
 
 public:
   using Tensor = SymmetricTensor<dim, V>;
 
-  Tensor strain; // e
-  V pressure;    // Pa
-  bool is_strained;
-
-  /// Particles flow where `fresh`: those that have done so in this sweep stay as they are.
+  /// Particles flow where `fresh`: those that have done so in this sweep stay as they are. `law`:
+  /// that of all where they are plain.
   HWY_INLINE Response(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
-                      const OwnStress<dim, D> &own)
-      : strain(zero_tensor<dim>(hn::Zero(d))), d_(d), s_(s), at_(at)
+                      const FlowLaw *law, const Own &own)
+      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s), at_(at)
   {
     std::uint8_t youngest = lasting, oldest = untouched;
     at.for_each_block([&](long b) HWY_ATTR {
@@ -45,18 +58,29 @@ public:
     knows_before_ = youngest == lasting;
     if (HWY_UNLIKELY(youngest != oldest) && s.may_flow)
       begin();
-    if (is_strained)
+    if (is_strained) {
       for (int c = 0; c < n_tensor<dim>; ++c)
         strain.c[c] = at.load(d, s.streams.stream(Streams::strain + c));
-    if (s.may_flow)
-      for_each_law(fresh, [&](const FlowLaw &law, hn::Mask<D> where)
-                              HWY_ATTR { flow_by(law, where, own); });
-    pressure = own.pressure(strain);
-    if (HWY_UNLIKELY(s.energy != nullptr)) {
-      at.store(d, own.own_energy(strain, twice_shear()), fresh, s.energy);
-      for_each_law(fresh, [&](const FlowLaw &law, hn::Mask<D> where)
-                              HWY_ATTR { add_kept(law, where, own); });
+      pressure = own.pressure(strain);
     }
+    if (s.may_flow) {
+      if constexpr (plain)
+        flow_by(*law, fresh, own);
+      else
+        for_each_law(fresh, [&](const FlowLaw &of_some, hn::Mask<D> where) HWY_ATTR {
+          if (of_some.viscous)
+            creep(of_some, where, own);
+          else
+            flow_by(of_some, where, own);
+          pressure = own.pressure(strain);
+        });
+    }
+    if constexpr (!plain)
+      if (s.energy != nullptr) {
+        at.store(d, own.own_energy(strain, twice_shear()), fresh, s.energy);
+        for_each_law(fresh, [&](const FlowLaw &of_some, hn::Mask<D> where)
+                                HWY_ATTR { add_kept(of_some, where, own); });
+      }
   }
 
 private:
@@ -73,27 +97,15 @@ private:
   template <typename Visit>
   HWY_INLINE void for_each_law(hn::Mask<D> fresh, Visit &&visit) const
   {
-    if (!s_.law_of) {
-      visit(s_.laws[0], fresh);
-      return;
-    }
-    const int of_first = s_.law_of[at_.particle(0)];
-    bool differ = false;
-    for (int l = 1; l < At::n; ++l)
-      differ = differ || s_.law_of[at_.particle(l)] != of_first;
-    if (HWY_LIKELY(!differ)) {
-      visit(s_.laws[of_first], fresh);
-      return;
-    }
     std::uint32_t left = lane_bits(d_, fresh);
     while (left != 0) {
       int first = 0;
       while (!(left >> first & 1))
         ++first;
-      const int law = s_.law_of[at_.particle(first)];
+      const int law = law_of(first);
       HWY_ALIGN double has[At::n];
       for (int l = 0; l < At::n; ++l) {
-        const bool same = (left >> l & 1) && s_.law_of[at_.particle(l)] == law;
+        const bool same = (left >> l & 1) && law_of(l) == law;
         has[l] = same;
         if (same)
           left &= ~(1u << l);
@@ -101,13 +113,10 @@ private:
       visit(s_.laws[law], hn::Gt(hn::Load(d_, has), hn::Zero(d_)));
     }
   }
+  int law_of(int lane) const { return s_.law_of ? s_.law_of[at_.particle(lane)] : 0; }
 
-  HWY_INLINE void flow_by(const FlowLaw &law, hn::Mask<D> where, const OwnStress<dim, D> &own)
+  HWY_INLINE void flow_by(const FlowLaw &law, hn::Mask<D> where, const Own &own)
   {
-    if (HWY_UNLIKELY(law.viscous != nullptr)) {
-      creep(law, where, own);
-      return;
-    }
     switch (law.kind) {
     case FlowLaw::Kind::elastic:
       break;
@@ -121,11 +130,10 @@ private:
   }
 
   template <typename Law>
-  HWY_INLINE void flow_by(const Law &law, double twice_shear, hn::Mask<D> where,
-                          const OwnStress<dim, D> &own)
+  HWY_INLINE void flow_by(const Law &law, double twice_shear, hn::Mask<D> where, const Own &own)
   {
-    Tensor stress = own.stress(strain, own.pressure(strain), twice_shear);
     if (!is_strained) {
+      const Tensor stress = own.elastic_stress(pressure, twice_shear);
       if (HWY_LIKELY(hn::AllFalse(d_, hn::And(where, law.is_near(stress)))))
         return;
       is_strained = true;
@@ -133,6 +141,7 @@ private:
     }
     for (int k = 0; k < Streams::n_streams; ++k)
       at_.prefetch(s_.streams.stream(k));
+    Tensor stress = own.stress(strain, pressure, twice_shear);
     double *const history = s_.streams.stream(Streams::history);
     V h = at_.load(d_, history);
     Tensor increment;
@@ -143,7 +152,8 @@ private:
         at_.store(d_, strain.c[c], flows, s_.streams.stream(Streams::strain + c));
       }
       at_.store(d_, h, flows, history);
-      stress = own.stress(strain, own.pressure(strain), twice_shear);
+      pressure = own.pressure(strain);
+      stress = own.stress(strain, pressure, twice_shear);
       book(stress, increment, flows, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
@@ -152,10 +162,10 @@ private:
 
   /// The viscous part first, plastic flow on the stress that is left, then both at once: e is
   /// their sum.
-  HWY_NOINLINE void creep(const FlowLaw &law, hn::Mask<D> where, const OwnStress<dim, D> &own)
+  HWY_NOINLINE void creep(const FlowLaw &law, hn::Mask<D> where, const Own &own)
   {
     const double twice_shear = 2 * law.shear;
-    ViscousFlow<dim, D, At> viscous(d_, law, s_.streams, at_, own);
+    ViscousFlow<dim, D, At, Own> viscous(d_, law, s_.streams, at_, own);
     Tensor plastic, all, increment = zero_tensor<dim>(hn::Zero(d_));
     for (int c = 0; c < n_tensor<dim>; ++c)
       plastic.c[c] = hn::Sub(strain.c[c], viscous.strain.c[c]);
@@ -199,17 +209,17 @@ private:
 
   /// To the energy: what viscous particles keep.
   HWY_INLINE void add_kept(const FlowLaw &law, hn::Mask<D> where,
-                           const OwnStress<dim, D> &own) const
+                           const Own &own) const
   {
     if (!law.viscous || !is_strained)
       return;
-    const V kept = ViscousFlow<dim, D, At>(d_, law, s_.streams, at_, own).kept_before();
+    const V kept = ViscousFlow<dim, D, At, Own>(d_, law, s_.streams, at_, own).kept_before();
     at_.store(d_, hn::MulAdd(own.volume(), kept, at_.load(d_, s_.energy)), where, s_.energy);
   }
 
   /// Eq. (D23).
   HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> flows,
-                       const OwnStress<dim, D> &own) const
+                       const Own &own) const
   {
     Tensor sum = stress;
     for (int c = 0; c < n_tensor<dim>; ++c)
@@ -226,7 +236,7 @@ private:
   {
     HWY_ALIGN double value[At::n];
     for (int l = 0; l < At::n; ++l)
-      value[l] = 2 * s_.laws[s_.law_of ? s_.law_of[at_.particle(l)] : 0].shear;
+      value[l] = 2 * s_.laws[law_of(l)].shear;
     return hn::Load(d_, value);
   }
 
@@ -235,6 +245,55 @@ private:
   At at_;
   bool knows_before_;
 };
+
+/// The law of all particles of a vector where that is all there is to know of them, else null.
+template <int dim, typename At>
+HWY_INLINE const FlowLaw *plain_law(const InelasticSweep<dim> &s, const At &at)
+{
+  if (s.energy || (s.law_of && !at.is_same(s.law_of)))
+    return nullptr;
+  const FlowLaw *const law = s.laws + (s.law_of ? s.law_of[at.particle(0)] : 0);
+  return law->viscous ? nullptr : law;
+}
+
+/// Of any particles.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_NOINLINE void respond_apart(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
+                                const V (&x)[dim][dim], V lambda_per_volume, Answer<dim, V> &answer)
+{
+  const FlowLaw *const law = plain_law(s, at);
+  const auto respond_with = [&](auto open, auto plain) HWY_ATTR {
+    answer = Response<dim, D, At, open(), plain()>(
+        d, s, at, fresh, law, OwnStress<dim, D, open()>(d, s, at, x, lambda_per_volume));
+  };
+  if (!at.any_open(s.open))
+    respond_with(std::false_type(), std::false_type());
+  else if (law)
+    respond_with(std::true_type(), std::true_type());
+  else
+    respond_with(std::true_type(), std::false_type());
+}
+
+/// What particles with these X (OwnStress) answer; they flow where `fresh`.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_INLINE Answer<dim, V> respond(D d, const InelasticSweep<dim> &s, const At &at,
+                                  hn::Mask<D> fresh, const V (&x)[dim][dim], V lambda_per_volume)
+{
+  if constexpr (At::n > 1) {
+    const FlowLaw *const law = plain_law(s, at);
+    if (HWY_LIKELY(law && !at.any_open(s.open)))
+      return Response<dim, D, At, false, true>(
+          d, s, at, fresh, law, OwnStress<dim, D, false>(d, s, at, x, lambda_per_volume));
+  }
+  // Copies, lest all else is kept in memory, too.
+  V copy[dim][dim];
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      copy[a][b] = x[a][b];
+  Answer<dim, V> answer;
+  respond_apart<dim>(d, s, at, fresh, copy, lambda_per_volume, answer);
+  return answer;
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
