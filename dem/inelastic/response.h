@@ -25,6 +25,25 @@ struct Answer
   SymmetricTensor<dim, V> strain; // e
   V pressure;                     // Pa
   bool is_strained;
+
+  HWY_INLINE Answer(const SymmetricTensor<dim, V> &e, V p, bool strained)
+      : pressure(p), is_strained(strained)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      strain.c[c] = e.c[c];
+  }
+  // Number by number: bytes copied as one block stay in memory.
+  HWY_INLINE Answer(const Answer &other) : Answer(other.strain, other.pressure, other.is_strained)
+  {
+  }
+  HWY_INLINE Answer &operator=(const Answer &other)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      strain.c[c] = other.strain.c[c];
+    pressure = other.pressure;
+    is_strained = other.is_strained;
+    return *this;
+  }
 };
 
 /// Finds it; their e follow in memory where flow is allowed. `open`: some of them have open cells;
@@ -47,7 +66,7 @@ public:
   /// that of all where they are plain.
   HWY_INLINE Response(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
                       const FlowLaw *law, const Own &own)
-      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s), at_(at)
+      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s), streams_(s.streams), at_(at)
   {
     std::uint8_t youngest = lasting, oldest = untouched;
     at.for_each_block([&](long b) HWY_ATTR {
@@ -60,7 +79,7 @@ public:
       begin();
     if (is_strained) {
       for (int c = 0; c < n_tensor<dim>; ++c)
-        strain.c[c] = at.load(d, s.streams.stream(Streams::strain + c));
+        strain.c[c] = at.load(d, streams_.stream(Streams::strain + c));
       pressure = own.pressure(strain);
     }
     if (s.may_flow) {
@@ -140,16 +159,16 @@ private:
       begin();
     }
     for (int k = 0; k < Streams::n_streams; ++k)
-      at_.prefetch(s_.streams.stream(k));
+      at_.prefetch(streams_.stream(k));
     Tensor stress = own.stress(strain, pressure, twice_shear);
-    double *const history = s_.streams.stream(Streams::history);
+    double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
     Tensor increment;
     const auto flows = law.flow(stress, where, h, increment);
     if (!hn::AllFalse(d_, flows)) {
       for (int c = 0; c < n_tensor<dim>; ++c) {
         strain.c[c] = hn::Add(strain.c[c], increment.c[c]);
-        at_.store(d_, strain.c[c], flows, s_.streams.stream(Streams::strain + c));
+        at_.store(d_, strain.c[c], flows, streams_.stream(Streams::strain + c));
       }
       at_.store(d_, h, flows, history);
       pressure = own.pressure(strain);
@@ -157,7 +176,7 @@ private:
       book(stress, increment, flows, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
-      at_.store(d_, stress.c[c], where, s_.streams.stream(Streams::stress + c));
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
   }
 
   /// The viscous part first, plastic flow on the stress that is left, then both at once: e is
@@ -165,7 +184,7 @@ private:
   HWY_NOINLINE void creep(const FlowLaw &law, hn::Mask<D> where, const Own &own)
   {
     const double twice_shear = 2 * law.shear;
-    ViscousFlow<dim, D, At, Own> viscous(d_, law, s_.streams, at_, own);
+    ViscousFlow<dim, D, At, Own> viscous(d_, law, streams_, at_, own);
     Tensor plastic, all, increment = zero_tensor<dim>(hn::Zero(d_));
     for (int c = 0; c < n_tensor<dim>; ++c)
       plastic.c[c] = hn::Sub(strain.c[c], viscous.strain.c[c]);
@@ -176,7 +195,7 @@ private:
       return own.stress(all, own.pressure(all), twice_shear);
     };
     Tensor stress = find_stress();
-    double *const history = s_.streams.stream(Streams::history);
+    double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
     FlowLaw stiffened = law; // what flows plastically no longer drives the viscous part
     stiffened.shear *= 1 - law.viscous->answer();
@@ -198,12 +217,12 @@ private:
     Tensor before = stress;
     if (knows_before_)
       for (int c = 0; c < n_tensor<dim>; ++c)
-        before.c[c] = at_.load(d_, s_.streams.stream(Streams::stress + c));
+        before.c[c] = at_.load(d_, streams_.stream(Streams::stress + c));
     viscous.store(where, before, stress);
     for (int c = 0; c < n_tensor<dim>; ++c) {
       strain.c[c] = hn::IfThenElse(where, all.c[c], strain.c[c]);
-      at_.store(d_, all.c[c], where, s_.streams.stream(Streams::strain + c));
-      at_.store(d_, stress.c[c], where, s_.streams.stream(Streams::stress + c));
+      at_.store(d_, all.c[c], where, streams_.stream(Streams::strain + c));
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
     }
   }
 
@@ -213,7 +232,7 @@ private:
   {
     if (!law.viscous || !is_strained)
       return;
-    const V kept = ViscousFlow<dim, D, At, Own>(d_, law, s_.streams, at_, own).kept_before();
+    const V kept = ViscousFlow<dim, D, At, Own>(d_, law, streams_, at_, own).kept_before();
     at_.store(d_, hn::MulAdd(own.volume(), kept, at_.load(d_, s_.energy)), where, s_.energy);
   }
 
@@ -224,8 +243,8 @@ private:
     Tensor sum = stress;
     for (int c = 0; c < n_tensor<dim>; ++c)
       sum.c[c] = hn::Add(
-          sum.c[c], knows_before_ ? at_.load(d_, s_.streams.stream(Streams::stress + c)) : sum.c[c]);
-    double *const taken = s_.streams.stream(Streams::taken);
+          sum.c[c], knows_before_ ? at_.load(d_, streams_.stream(Streams::stress + c)) : sum.c[c]);
+    double *const taken = streams_.stream(Streams::taken);
     const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
     at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), flows,
               taken);
@@ -242,6 +261,7 @@ private:
 
   D d_;
   const InelasticSweep<dim> &s_;
+  const Streams streams_;
   At at_;
   bool knows_before_;
 };
@@ -290,7 +310,7 @@ HWY_INLINE Answer<dim, V> respond(D d, const InelasticSweep<dim> &s, const At &a
   for (int a = 0; a < dim; ++a)
     for (int b = 0; b < dim; ++b)
       copy[a][b] = x[a][b];
-  Answer<dim, V> answer;
+  Answer<dim, V> answer(zero_tensor<dim>(hn::Zero(d)), hn::Zero(d), false);
   respond_apart<dim>(d, s, at, fresh, copy, lambda_per_volume, answer);
   return answer;
 }
