@@ -21,7 +21,7 @@ namespace ligament::dem::HWY_NAMESPACE
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
 /// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
 /// particle are the two numbers of h and of g along n and along its normal. Strains of their own
-/// take 2G S/r q R e n from g, eq. (D22), of which the matrix is kept.
+/// take 2G S/r q R e n from g, eq. (D22), which is kept for two directions.
 template <int n_dir, long stride_, bool inelastic_>
 class Bonds2d
 {
@@ -104,19 +104,30 @@ public:
     double *const at = w_ + i;
     const auto u = displacement(d, at);
     Pair<V> sum[2] = {{zero, zero}, {zero, zero}}; // of Du (x) n, column by column
-    for_directions([&](auto direction) HWY_ATTR {
-      constexpr int k = decltype(direction)::value;
-      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto h = along<k, h_>(d, at);
-      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
-      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
-      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+    const auto add = [&](const Pair<V> &both, int k) HWY_ATTR {
       const auto n = normal(d, k);
-      sum[0] = mul_add(n.x, e, sum[0]);
-      sum[1] = mul_add(n.y, e, sum[1]);
-    });
+      sum[0] = mul_add(n.x, both, sum[0]);
+      sum[1] = mul_add(n.y, both, sum[1]);
+    };
     const auto h = load(d, at + h_ * stride); // cos - 1, sin
-    V turned[2][2], x[2][2];                  // R^T sum; times S q / r
+    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir)))) {
+      const auto twice = h + h;
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto around = twice + (load(d, f + h_ * stride) + load(d, b + h_ * stride));
+        add(law_.relative(displacement(d, f) - displacement(d, b), turned_normal<k>(d, around)), k);
+      });
+    } else
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
+        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
+        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+      });
+    V turned[2][2], x[2][2]; // R^T sum; times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 2; ++b) {
       turned[0][b] = hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y)));
@@ -131,8 +142,8 @@ public:
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
     V torque = hn::Mul(vp, hn::Sub(turned[0][1], turned[1][0]));
-    const auto part = law_.part_along(vp, h); // of the matrix [x -y; y x]
-    V g[2][2] = {{part.x, hn::Neg(part.y)}, {part.y, part.x}};
+    const auto part = law_.part_along(vp, h);
+    Pair<V> g[2] = {turned_normal<0>(d, part), turned_normal<1>(d, part)};
     if (response.is_strained) {
       const auto &e = response.strain;
       const V shear_half = hn::Set(d, law_.shear_half);
@@ -140,17 +151,18 @@ public:
         return hn::MulAdd(turned[a][0], e(0, b), hn::Mul(turned[a][1], e(1, b)));
       };
       torque = hn::MulAdd(shear_half, hn::Sub(moved(1, 0), moved(0, 1)), torque);
-      for (int b = 0; b < 2; ++b) { // R e
-        const V along = e(0, b), across = e(1, b);
-        g[0][b] = hn::NegMulAdd(
-            shear_half, hn::Add(along, hn::NegMulAdd(h.y, across, hn::Mul(h.x, along))), g[0][b]);
-        g[1][b] = hn::NegMulAdd(
-            shear_half, hn::Add(across, hn::MulAdd(h.y, along, hn::Mul(h.x, across))), g[1][b]);
+      for (int m = 0; m < 2; ++m) {
+        const auto n = normal(d, m);
+        const Pair<V> en{hn::MulAdd(e(0, 0), n.x, hn::Mul(e(0, 1), n.y)),
+                         hn::MulAdd(e(1, 0), n.x, hn::Mul(e(1, 1), n.y))};
+        const Pair<V> change{hn::NegMulAdd(h.y, en.y, hn::Mul(h.x, en.x)),
+                             hn::MulAdd(h.y, en.x, hn::Mul(h.x, en.y))};
+        g[m] = neg_mul_add(shear_half, en + change, g[m]);
       }
     }
     hn::StoreU(torque, d, at + moment_ * stride);
-    for (int k = 0; k < 4; ++k)
-      hn::StoreU(g[k / 2][k % 2], d, at + matrix(k) * stride);
+    for (int m = 0; m < 2; ++m)
+      store(d, g[m], at + basis(m) * stride);
   }
 
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
@@ -301,7 +313,12 @@ private:
   template <int k, int first, typename D>
   HWY_INLINE Pair<hn::Vec<D>> along(D d, const double *at) const
   {
-    const auto part = load(d, at + first * stride);
+    return turned_normal<k>(d, load(d, at + first * stride));
+  }
+  /// The vector with these parts along the normal of direction k and across it.
+  template <int k, typename D>
+  HWY_INLINE Pair<hn::Vec<D>> turned_normal(D d, const Pair<hn::Vec<D>> &part) const
+  {
     const auto n = normal(d, k);
     return {hn::NegMulAdd(part.y, n.y, hn::Mul(part.x, n.x)),
             hn::MulAdd(part.y, n.x, hn::Mul(part.x, n.y))};
@@ -311,9 +328,10 @@ private:
   HWY_INLINE Pair<hn::Vec<D>> part(D d, const double *at) const
   {
     if constexpr (inelastic) {
-      const auto n = normal(d, k);
-      const auto g = [&](int m) HWY_ATTR { return hn::LoadU(d, at + matrix(m) * stride); };
-      return {hn::MulAdd(g(0), n.x, hn::Mul(g(1), n.y)), hn::MulAdd(g(2), n.x, hn::Mul(g(3), n.y))};
+      if constexpr (k < 2)
+        return load(d, at + basis(k) * stride);
+      else // the third normal is the sum of the others
+        return load(d, at + basis(0) * stride) + load(d, at + basis(1) * stride);
     } else
       return along<k, g_>(d, at);
   }
@@ -324,9 +342,9 @@ private:
   }
 
   // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the lattice's; of
-  // inelastic ones own torque in place of the sum, and four numbers of g.
+  // inelastic ones own torque in place of the sum, and g of two directions.
   static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7, other_ = 8;
-  static constexpr int matrix(int k) { return k < 2 ? g_ + k : moment_ - 1 + k; }
+  static constexpr int basis(int k) { return k == 0 ? g_ : other_; }
 
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;

@@ -29,7 +29,8 @@ public:
     return hn::Ge(reached, hn::Set(d_, 0.5 * law_.yield));
   }
 
-  /// The increment of e where `where`; the history follows. Returns where anything flows.
+  /// The increment of e, 0 where nothing flows or not `where`; the history follows. Returns where
+  /// anything flows.
   HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
                               Tensor &increment) const
   {

@@ -56,7 +56,9 @@ struct InARow
   HWY_INLINE V load(D d, const double *stream) const { return hn::LoadU(d, stream + i); }
   HWY_INLINE void store(D d, V value, hn::Mask<D> where, double *stream) const
   {
-    if constexpr (n > 1)
+    if (HWY_LIKELY(hn::AllTrue(d, where)))
+      hn::StoreU(value, d, stream + i);
+    else if constexpr (n > 1)
       hn::BlendedStore(value, where, d, stream + i);
     else if (lane_bits(d, where) & 1) // a masked store would look at lanes behind the first one, too
       stream[i] = hn::GetLane(value);

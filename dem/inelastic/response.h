@@ -168,12 +168,12 @@ private:
     if (!hn::AllFalse(d_, flows)) {
       for (int c = 0; c < n_tensor<dim>; ++c) {
         strain.c[c] = hn::Add(strain.c[c], increment.c[c]);
-        at_.store(d_, strain.c[c], flows, streams_.stream(Streams::strain + c));
+        at_.store(d_, strain.c[c], where, streams_.stream(Streams::strain + c));
       }
-      at_.store(d_, h, flows, history);
+      at_.store(d_, h, where, history);
       pressure = own.pressure(strain);
       stress = own.stress(strain, pressure, twice_shear);
-      book(stress, increment, flows, own);
+      book(stress, increment, where, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
       at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
@@ -237,7 +237,7 @@ private:
   }
 
   /// Eq. (D23).
-  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> flows,
+  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> where,
                        const Own &own) const
   {
     Tensor sum = stress;
@@ -246,7 +246,7 @@ private:
           sum.c[c], knows_before_ ? at_.load(d_, streams_.stream(Streams::stress + c)) : sum.c[c]);
     double *const taken = streams_.stream(Streams::taken);
     const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
-    at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), flows,
+    at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), where,
               taken);
   }
 

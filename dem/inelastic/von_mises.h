@@ -30,7 +30,8 @@ public:
     return hn::Ge(double_dot(deviator(d_, stress)), hn::Set(d_, half * half / 1.5));
   }
 
-  /// The increment of e where `where`; the history follows. Returns where anything flows.
+  /// The increment of e, 0 where nothing flows or not `where`; the history follows. Returns where
+  /// anything flows.
   HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
                               Tensor &increment) const
   {
@@ -43,13 +44,17 @@ public:
     if (hn::AllFalse(d_, flows))
       return flows;
     const V three_shear = hn::Set(d_, 3 * law_.shear);
-    V strain = hn::Div(hn::Sub(equivalent, yield), hn::Add(three_shear, slope));
-    if (law_.n_points > 0 || law_.saturation > 0)
+    V strain = hn::Sub(equivalent, yield);
+    if (law_.n_points == 0 && law_.saturation == 0)
+      strain = hn::Mul(strain, hn::Set(d_, 1 / (3 * law_.shear + law_.hardening)));
+    else {
+      strain = hn::Div(strain, hn::Add(three_shear, slope));
       for (int step = 0; step < 3; ++step) { // Newton's
         find_yield(hn::Add(history, strain), yield, slope);
         const V excess = hn::Sub(hn::NegMulAdd(three_shear, strain, equivalent), yield);
         strain = hn::Max(zero, hn::Add(strain, hn::Div(excess, hn::Add(three_shear, slope))));
       }
+    }
     strain = hn::IfThenElseZero(flows, strain);
     history = hn::Add(history, strain);
     const V along = hn::IfThenElseZero(
