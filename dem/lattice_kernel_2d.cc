@@ -136,7 +136,7 @@ public:
         x[a][b] = hn::Mul(factor, turned[a][b]);
     }
     const InARow<2, D> place{i};
-    const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
+    const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
     const auto response =
         respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);

@@ -19,6 +19,8 @@ class DruckerPragerReturn
   using Tensor = SymmetricTensor<dim, V>;
 
 public:
+  static constexpr bool is_radial = false;
+
   HWY_INLINE DruckerPragerReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
 
   /// Where the stress is at least half as large as the first one that flows.

@@ -160,6 +160,11 @@ private:
     }
     for (int k = 0; k < Streams::n_streams; ++k)
       at_.prefetch(streams_.stream(k));
+    if constexpr (Law::is_radial && !open)
+      if (!own.is_plane_stress()) {
+        flow_along(law, twice_shear, where, own);
+        return;
+      }
     Tensor stress = own.stress(strain, pressure, twice_shear);
     double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
@@ -177,6 +182,41 @@ private:
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
       at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
+  }
+
+  /// The same where flow is a share of the deviator and takes as much of the stress, none of it of
+  /// the pressure.
+  template <typename Law>
+  HWY_INLINE void flow_along(const Law &law, double twice_shear, hn::Mask<D> where, const Own &own)
+  {
+    Tensor stress = own.stress(strain, pressure, twice_shear);
+    const Tensor s = deviator(d_, stress);
+    const V square = double_dot(s);
+    double *const history = streams_.stream(Streams::history);
+    V h = at_.load(d_, history), along;
+    const auto flows = law.find_flow(square, where, h, along);
+    if (!hn::AllFalse(d_, flows)) {
+      at_.store(d_, h, where, history);
+      const V relaxed = hn::Mul(hn::Set(d_, twice_shear), along);
+      V work = hn::NegMulAdd(relaxed, square, square); // with the stress after, and before
+      work = hn::Add(work, knows_before_ ? double_dot(s, load(Streams::stress)) : work);
+      for (int c = 0; c < n_tensor<dim>; ++c) {
+        strain.c[c] = hn::MulAdd(along, s.c[c], strain.c[c]);
+        stress.c[c] = hn::NegMulAdd(relaxed, s.c[c], stress.c[c]);
+        at_.store(d_, strain.c[c], where, streams_.stream(Streams::strain + c));
+      }
+      book(hn::Mul(along, work), where, own);
+    }
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
+  }
+
+  HWY_INLINE Tensor load(int stream) const
+  {
+    Tensor t;
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      t.c[c] = at_.load(d_, streams_.stream(stream + c));
+    return t;
   }
 
   /// The viscous part first, plastic flow on the stress that is left, then both at once: e is
@@ -214,10 +254,7 @@ private:
       stress = find_stress();
       book(stress, increment, flows, own);
     }
-    Tensor before = stress;
-    if (knows_before_)
-      for (int c = 0; c < n_tensor<dim>; ++c)
-        before.c[c] = at_.load(d_, streams_.stream(Streams::stress + c));
+    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
     viscous.store(where, before, stress);
     for (int c = 0; c < n_tensor<dim>; ++c) {
       strain.c[c] = hn::IfThenElse(where, all.c[c], strain.c[c]);
@@ -240,14 +277,17 @@ private:
   HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> where,
                        const Own &own) const
   {
-    Tensor sum = stress;
+    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
+    Tensor sum;
     for (int c = 0; c < n_tensor<dim>; ++c)
-      sum.c[c] = hn::Add(
-          sum.c[c], knows_before_ ? at_.load(d_, streams_.stream(Streams::stress + c)) : sum.c[c]);
+      sum.c[c] = hn::Add(stress.c[c], before.c[c]);
+    book(double_dot(sum, increment), where, own);
+  }
+  HWY_INLINE void book(V twice_work, hn::Mask<D> where, const Own &own) const
+  {
     double *const taken = streams_.stream(Streams::taken);
     const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
-    at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), where,
-              taken);
+    at_.store(d_, hn::MulAdd(half_volume, twice_work, at_.load(d_, taken)), where, taken);
   }
 
   /// 2G of the lanes.

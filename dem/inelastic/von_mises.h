@@ -21,6 +21,9 @@ class VonMisesReturn
   using Tensor = SymmetricTensor<dim, V>;
 
 public:
+  /// Whether all that flows is a share of the deviator.
+  static constexpr bool is_radial = true;
+
   HWY_INLINE VonMisesReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
 
   /// Where the stress is at least half as large as the first one that flows.
@@ -35,32 +38,45 @@ public:
   HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
                               Tensor &increment) const
   {
-    const V zero = hn::Zero(d_);
     const Tensor s = deviator(d_, stress);
-    const V equivalent = hn::Sqrt(hn::Mul(hn::Set(d_, 1.5), double_dot(s)));
+    V along;
+    const auto flows = find_flow(double_dot(s), where, history, along);
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      increment.c[c] = hn::Mul(along, s.c[c]);
+    return flows;
+  }
+
+  /// The same as increment over deviator s, from s:s.
+  HWY_INLINE hn::Mask<D> find_flow(V square, hn::Mask<D> where, V &history, V &along) const
+  {
+    const V zero = hn::Zero(d_);
+    const V equivalent = hn::Sqrt(hn::Mul(hn::Set(d_, 1.5), square));
+    along = zero;
     V yield, slope;
     find_yield(history, yield, slope);
     const auto flows = hn::And(where, hn::Gt(equivalent, yield));
     if (hn::AllFalse(d_, flows))
       return flows;
+    if (law_.n_points == 0 && law_.saturation == 0) {
+      const double per_stress = 1 / (3 * law_.shear + law_.hardening);
+      const V strain = hn::IfThenElseZero(
+          flows, hn::Mul(hn::Sub(equivalent, yield), hn::Set(d_, per_stress)));
+      history = hn::Add(history, strain);
+      // Beside the strain, not after it.
+      const V excess = hn::NegMulAdd(yield, hn::Div(hn::Set(d_, 1.), equivalent), hn::Set(d_, 1.));
+      along = hn::IfThenElseZero(flows, hn::Mul(hn::Set(d_, 1.5 * per_stress), excess));
+      return flows;
+    }
     const V three_shear = hn::Set(d_, 3 * law_.shear);
-    V strain = hn::Sub(equivalent, yield);
-    if (law_.n_points == 0 && law_.saturation == 0)
-      strain = hn::Mul(strain, hn::Set(d_, 1 / (3 * law_.shear + law_.hardening)));
-    else {
-      strain = hn::Div(strain, hn::Add(three_shear, slope));
-      for (int step = 0; step < 3; ++step) { // Newton's
-        find_yield(hn::Add(history, strain), yield, slope);
-        const V excess = hn::Sub(hn::NegMulAdd(three_shear, strain, equivalent), yield);
-        strain = hn::Max(zero, hn::Add(strain, hn::Div(excess, hn::Add(three_shear, slope))));
-      }
+    V strain = hn::Div(hn::Sub(equivalent, yield), hn::Add(three_shear, slope));
+    for (int step = 0; step < 3; ++step) { // Newton's
+      find_yield(hn::Add(history, strain), yield, slope);
+      const V excess = hn::Sub(hn::NegMulAdd(three_shear, strain, equivalent), yield);
+      strain = hn::Max(zero, hn::Add(strain, hn::Div(excess, hn::Add(three_shear, slope))));
     }
     strain = hn::IfThenElseZero(flows, strain);
     history = hn::Add(history, strain);
-    const V along = hn::IfThenElseZero(
-        flows, hn::Div(hn::Mul(hn::Set(d_, 1.5), strain), equivalent));
-    for (int c = 0; c < n_tensor<dim>; ++c)
-      increment.c[c] = hn::Mul(along, s.c[c]);
+    along = hn::IfThenElseZero(flows, hn::Div(hn::Mul(hn::Set(d_, 1.5), strain), equivalent));
     return flows;
   }
 
