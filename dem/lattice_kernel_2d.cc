@@ -127,13 +127,13 @@ public:
         auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
         add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
       });
-    V turned[2][2], x[2][2]; // R^T sum; times S q / r
+    V x[2][2]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 2; ++b) {
-      turned[0][b] = hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y)));
-      turned[1][b] = hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y)));
-      for (int a = 0; a < 2; ++a)
-        x[a][b] = hn::Mul(factor, turned[a][b]);
+      x[0][b] =
+          hn::Mul(factor, hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y))));
+      x[1][b] =
+          hn::Mul(factor, hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y))));
     }
     const InARow<2, D> place{i};
     const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
@@ -141,16 +141,17 @@ public:
         respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
-    V torque = hn::Mul(vp, hn::Sub(turned[0][1], turned[1][0]));
+    V torque = hn::Mul(p, hn::Sub(x[0][1], x[1][0]));
     const auto part = law_.part_along(vp, h);
     Pair<V> g[2] = {turned_normal<0>(d, part), turned_normal<1>(d, part)};
     if (response.is_strained) {
       const auto &e = response.strain;
       const V shear_half = hn::Set(d, law_.shear_half);
       const auto moved = [&](int a, int b) HWY_ATTR { // X e
-        return hn::MulAdd(turned[a][0], e(0, b), hn::Mul(turned[a][1], e(1, b)));
+        return hn::MulAdd(x[a][0], e(0, b), hn::Mul(x[a][1], e(1, b)));
       };
-      torque = hn::MulAdd(shear_half, hn::Sub(moved(1, 0), moved(0, 1)), torque);
+      const V modulus = hn::Set(d, law_.shear_half / law_.volumetric);
+      torque = hn::MulAdd(modulus, hn::Sub(moved(1, 0), moved(0, 1)), torque);
       for (int m = 0; m < 2; ++m) {
         const auto n = normal(d, m);
         const Pair<V> en{hn::MulAdd(e(0, 0), n.x, hn::Mul(e(0, 1), n.y)),
@@ -186,7 +187,8 @@ public:
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto g = part<k>(d, at);
       const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + part<k>(d, f)), k);
-      const auto t_b = masked(mask, law_.force(u - displacement(d, b), part<k>(d, b) + g), n_dir + k);
+      const auto t_b =
+          masked(mask, law_.force(u - displacement(d, b), part<k>(d, b) + g), n_dir + k);
       const auto net = t_f - t_b, both = t_f + t_b, a = normal(d, k) + along<k, h_>(d, at);
       force = force + net;
       torque = add_cross(a, both, torque);
@@ -267,10 +269,10 @@ private:
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,
                                       const double *to) const
   {
-    const auto t = masked(mask,
-                          law_.force(displacement(d, to) - displacement(d, from),
-                                     part<k>(d, from) + part<k>(d, to)),
-                          bit);
+    const auto t = masked(
+        mask,
+        law_.force(displacement(d, to) - displacement(d, from), part<k>(d, from) + part<k>(d, to)),
+        bit);
     const auto n = normal(d, k);
     const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
     return reaches(d, t, mean, hn::Set(d, c_.strength), c_.tangent);

@@ -156,26 +156,35 @@ public:
     const auto u = displacement(d, at);
     // Sum of Du (x) n, column by column.
     V3 sum[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
-    for_directions([&](auto direction) HWY_ATTR {
-      constexpr int k = decltype(direction)::value;
-      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto h = along<k, h_>(d, at);
-      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
-      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
-      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+    const auto add = [&](const V3 &both, int k) HWY_ATTR {
       const auto n = normal(d, k);
-      sum[0] = mul_add(n.x, e, sum[0]);
-      sum[1] = mul_add(n.y, e, sum[1]);
-      sum[2] = mul_add(n.z, e, sum[2]);
-    });
+      sum[0] = mul_add(n.x, both, sum[0]);
+      sum[1] = mul_add(n.y, both, sum[1]);
+      sum[2] = mul_add(n.z, both, sum[2]);
+    };
+    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir))))
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        const auto around = (own + own) + (along<k, h_>(d, f) + along<k, h_>(d, b));
+        add(law_.relative(displacement(d, f) - displacement(d, b), around), k);
+      });
+    else
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
+        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
+        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+      });
     const Change<V> change(quaternion(d, at));
-    V turned[3][3], x[3][3]; // R^T sum; times S q / r
+    V x[3][3]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 3; ++b) {
-      const V3 own = sum[b] + change.of_inverse(sum[b]);
-      turned[0][b] = own.x, turned[1][b] = own.y, turned[2][b] = own.z;
-      for (int a = 0; a < 3; ++a)
-        x[a][b] = hn::Mul(factor, turned[a][b]);
+      const V3 own = factor * (sum[b] + change.of_inverse(sum[b]));
+      x[0][b] = own.x, x[1][b] = own.y, x[2][b] = own.z;
     }
     const InARow<3, D> place{i};
     const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
@@ -185,15 +194,15 @@ public:
     hn::StoreU(p, d, a_.pressure + i);
     const V shear_half = hn::Set(d, law_.shear_half);
     const auto &e = response.strain;
-    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = k q X e - v p X.
+    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = 2G X e - p X.
+    const V modulus = hn::Set(d, law_.shear_half / law_.volumetric);
     const auto y = [&](int a, int b) HWY_ATTR {
-      V own = hn::Neg(hn::Mul(vp, turned[a][b]));
+      V own = hn::Neg(hn::Mul(p, x[a][b]));
       if (response.is_strained)
-        own = hn::MulAdd(shear_half,
-                         hn::MulAdd(turned[a][0], e(0, b),
-                                    hn::MulAdd(turned[a][1], e(1, b),
-                                               hn::Mul(turned[a][2], e(2, b)))),
-                         own);
+        own = hn::MulAdd(
+            modulus,
+            hn::MulAdd(x[a][0], e(0, b), hn::MulAdd(x[a][1], e(1, b), hn::Mul(x[a][2], e(2, b)))),
+            own);
       return own;
     };
     const V3 torque{hn::Sub(y(2, 1), y(1, 2)), hn::Sub(y(0, 2), y(2, 0)),

@@ -40,8 +40,7 @@ public:
     const V middle = mean(d_, stress);
     const Tensor s = deviator(d_, stress);
     const V tau = shear(s);
-    const V yield =
-        hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield));
+    const V yield = hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield));
     const V excess = hn::Sub(hn::MulAdd(friction, middle, tau), yield);
     const auto flows = hn::And(where, hn::Gt(excess, hn::Zero(d_)));
     if (hn::AllFalse(d_, flows))
@@ -55,19 +54,17 @@ public:
     const V shear_strain = hn::IfThenElse(apex, hn::Div(tau, shear_modulus), cone);
     V volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
     if (law_.friction > 0) {
-      const V largest = hn::Div(hn::MulAdd(hn::Set(d_, law_.hardening), shear_strain, yield),
-                                friction);
-      volume = hn::IfThenElse(
-          apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)), volume);
+      const V largest =
+          hn::Div(hn::MulAdd(hn::Set(d_, law_.hardening), shear_strain, yield), friction);
+      volume = hn::IfThenElse(apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)),
+                              volume);
     }
     const V along = hn::IfThenElseZero(
-        flows, hn::Div(hn::Mul(hn::Set(d_, 0.5), shear_strain),
-                       hn::Max(tau, hn::Set(d_, 1e-300))));
+        flows, hn::Div(hn::Mul(hn::Set(d_, 0.5), shear_strain), hn::Max(tau, hn::Set(d_, 1e-300))));
     const V third = hn::IfThenElseZero(flows, hn::Mul(hn::Set(d_, 1 / 3.), volume));
     history = hn::Add(history, hn::IfThenElseZero(flows, shear_strain));
     for (int c = 0; c < n_tensor<dim>; ++c)
-      increment.c[c] =
-          c < 3 ? hn::MulAdd(along, s.c[c], third) : hn::Mul(along, s.c[c]);
+      increment.c[c] = c < 3 ? hn::MulAdd(along, s.c[c], third) : hn::Mul(along, s.c[c]);
     return flows;
   }
 

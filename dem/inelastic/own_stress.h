@@ -7,6 +7,9 @@
 #endif
 
 #include "dem/inelastic/tensor_lanes.h"
+#include "dem/transpose_lanes.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -146,8 +149,8 @@ private:
     Tensor t;
     for (int a = 0; a < dim; ++a)
       for (int b = a; b < dim; ++b)
-        t.c[tensor_place<dim>(a, b)] = a == b ? hn::Mul(per_volume, x_[a][a])
-                                              : hn::Mul(half, hn::Add(x_[a][b], x_[b][a]));
+        t.c[tensor_place<dim>(a, b)] =
+            a == b ? hn::Mul(per_volume, x_[a][a]) : hn::Mul(half, hn::Add(x_[a][b], x_[b][a]));
     return t;
   }
   /// Adds p sym M.
@@ -179,34 +182,39 @@ private:
     return sum;
   }
 
-  template <typename At>
-  HWY_INLINE void take_open(const InelasticSweep<dim> &s, const At &at)
+  static constexpr Cell whole_cell()
   {
-    constexpr int n = At::n;
-    int cell[n];
-    for (int l = 0; l < n; ++l)
-      cell[l] = s.open[at.particle(l)];
-    Cell whole; // of lanes without an open cell
+    Cell whole; // its volume is 0: that of the lane stays
     for (int row = 0; row < dim; ++row)
       for (int a = 0; a < dim; ++a)
         whole.number[Cell::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, a)] = 1;
-    HWY_ALIGN double volumes[n];
-    hn::Store(volume_, d_, volumes);
-    HWY_ALIGN double number[Cell::size][n];
-    for (int l = 0; l < n; ++l) {
-      const Cell &of = cell[l] >= 0 ? s.cells[cell[l]] : whole;
-      for (int k = 0; k < Cell::size; ++k)
-        number[k][l] = of.number[k];
-      if (cell[l] < 0)
-        number[Cell::volume][l] = volumes[l];
+    return whole;
+  }
+
+  template <typename At>
+  HWY_INLINE void take_open(const InelasticSweep<dim> &s, const At &at)
+  {
+    static constexpr Cell whole = whole_cell();
+    const double *cell[At::n];
+    for (int l = 0; l < At::n; ++l) {
+      const int open_cell = s.open[at.particle(l)];
+      cell[l] = (open_cell >= 0 ? s.cells[open_cell] : whole).number;
+    }
+    V number[Cell::size];
+    for (int c = 0; c < Cell::size; c += 8) {
+      const int first = std::min(c, Cell::size - 8);
+      const auto eight = transpose(d_, [&](int l) HWY_ATTR { return cell[l] + first; });
+      for (int k = 0; k < 8; ++k)
+        number[first + k] = eight.number[k];
     }
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
-        x_[a][b] = hn::Add(x_[a][b], hn::Load(d_, number[Cell::strain + dim * a + b]));
-    volume_ = hn::Load(d_, number[Cell::volume]);
+        x_[a][b] = hn::Add(x_[a][b], number[Cell::strain + dim * a + b]);
+    const V volume = number[Cell::volume];
+    volume_ = hn::IfThenElse(hn::Gt(volume, hn::Zero(d_)), volume, volume_);
     for (int row = 0; row < dim; ++row)
       for (int k = 0; k < n_in_plane<dim>; ++k)
-        moment_[row][k] = hn::Load(d_, number[Cell::moment + row * n_in_plane<dim> + k]);
+        moment_[row][k] = number[Cell::moment + row * n_in_plane<dim> + k];
   }
 
   D d_;

@@ -60,7 +60,8 @@ struct InARow
       hn::StoreU(value, d, stream + i);
     else if constexpr (n > 1)
       hn::BlendedStore(value, where, d, stream + i);
-    else if (lane_bits(d, where) & 1) // a masked store would look at lanes behind the first one, too
+    else if (lane_bits(d, where) &
+             1) // a masked store would look at lanes behind the first one, too
       stream[i] = hn::GetLane(value);
   }
 };

@@ -1,5 +1,5 @@
-// What particles answer to their strains: the sweep that finds the pressures flows by their laws and
-// books it; compiled once for every instruction set.
+// What particles answer to their strains: the sweep that finds the pressures flows by their laws
+// and books it; compiled once for every instruction set.
 #if defined(LIGAMENT_DEM_RESPONSE_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIGAMENT_DEM_RESPONSE_H
 #undef LIGAMENT_DEM_RESPONSE_H
@@ -66,7 +66,8 @@ public:
   /// that of all where they are plain.
   HWY_INLINE Response(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
                       const FlowLaw *law, const Own &own)
-      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s), streams_(s.streams), at_(at)
+      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s),
+        streams_(s.streams), at_(at)
   {
     std::uint8_t youngest = lasting, oldest = untouched;
     at.for_each_block([&](long b) HWY_ATTR {
@@ -264,8 +265,7 @@ private:
   }
 
   /// To the energy: what viscous particles keep.
-  HWY_INLINE void add_kept(const FlowLaw &law, hn::Mask<D> where,
-                           const Own &own) const
+  HWY_INLINE void add_kept(const FlowLaw &law, hn::Mask<D> where, const Own &own) const
   {
     if (!law.viscous || !is_strained)
       return;

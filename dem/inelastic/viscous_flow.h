@@ -126,8 +126,7 @@ private:
 
   /// dev (e_v + sigma / (2G)): of the strain behind the stress and e_v. Of e_v, too, lest the
   /// dashpot feeds what rounding leaves of its trace.
-  HWY_INLINE Tensor driven(const Own &own, const Tensor &other,
-                           const Tensor &viscous) const
+  HWY_INLINE Tensor driven(const Own &own, const Tensor &other, const Tensor &viscous) const
   {
     Tensor all;
     for (int c = 0; c < n_tensor<dim>; ++c)

@@ -59,11 +59,12 @@ public:
       return flows;
     if (law_.n_points == 0 && law_.saturation == 0) {
       const double per_stress = 1 / (3 * law_.shear + law_.hardening);
-      const V strain = hn::IfThenElseZero(
-          flows, hn::Mul(hn::Sub(equivalent, yield), hn::Set(d_, per_stress)));
+      const V strain =
+          hn::IfThenElseZero(flows, hn::Mul(hn::Sub(equivalent, yield), hn::Set(d_, per_stress)));
       history = hn::Add(history, strain);
       // Beside the strain, not after it.
-      const V excess = hn::NegMulAdd(yield, hn::Div(hn::Set(d_, 1.), equivalent), hn::Set(d_, 1.));
+      const V share = hn::Div(yield, hn::Max(equivalent, yield));
+      const V excess = hn::Sub(hn::Set(d_, 1.), share);
       along = hn::IfThenElseZero(flows, hn::Mul(hn::Set(d_, 1.5 * per_stress), excess));
       return flows;
     }
@@ -76,7 +77,8 @@ public:
     }
     strain = hn::IfThenElseZero(flows, strain);
     history = hn::Add(history, strain);
-    along = hn::IfThenElseZero(flows, hn::Div(hn::Mul(hn::Set(d_, 1.5), strain), equivalent));
+    along = hn::IfThenElseZero(
+        flows, hn::Div(hn::Mul(hn::Set(d_, 1.5), strain), hn::Max(equivalent, yield)));
     return flows;
   }
 
@@ -101,8 +103,8 @@ private:
     yield = hn::MulAdd(hn::Set(d_, law_.hardening), p, hn::Set(d_, law_.yield));
     slope = hn::Set(d_, law_.hardening);
     if (law_.saturation > 0) {
-      const V left = hn::Mul(hn::Set(d_, law_.saturation),
-                             hn::Exp(d_, hn::Mul(hn::Set(d_, -law_.rate), p)));
+      const V left =
+          hn::Mul(hn::Set(d_, law_.saturation), hn::Exp(d_, hn::Mul(hn::Set(d_, -law_.rate), p)));
       yield = hn::Add(yield, hn::Sub(hn::Set(d_, law_.saturation), left));
       slope = hn::MulAdd(hn::Set(d_, law_.rate), left, slope);
     }
