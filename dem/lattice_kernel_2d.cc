@@ -127,6 +127,15 @@ public:
         auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
         add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
       });
+    const InARow<2, D> place{i};
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square = add_dot(sum[0], sum[0], dot(sum[1], sum[1]));
+    if (HWY_LIKELY(is_quiet<2>(d, *inelastic_sweep_, place,
+                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
+    {
+      answer_elastically(d, i, sum, h);
+      return;
+    }
     V x[2][2]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 2; ++b) {
@@ -135,7 +144,6 @@ public:
       x[1][b] =
           hn::Mul(factor, hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y))));
     }
-    const InARow<2, D> place{i};
     const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
     const auto response =
         respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
@@ -258,6 +266,24 @@ public:
   }
 
 private:
+  /// What Du (x) n of all bonds does where there is nothing else.
+  template <typename D, typename V = hn::Vec<D>>
+  HWY_INLINE void answer_elastically(D d, long i, const Pair<V> (&sum)[2], const Pair<V> &h) const
+  {
+    const V middle = hn::Add(sum[0].x, sum[1].y), turn = hn::Sub(sum[0].y, sum[1].x);
+    const V theta = hn::Add(middle, hn::MulAdd(h.x, middle, hn::Mul(h.y, turn)));
+    const V moment = hn::Add(turn, hn::NegMulAdd(h.y, middle, hn::Mul(h.x, turn)));
+    const V p = hn::Mul(
+        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
+    const V vp = law_.pressing(p);
+    const auto part = law_.part_along(vp, h);
+    double *const at = w_ + i;
+    hn::StoreU(p, d, a_.pressure + i);
+    hn::StoreU(hn::Neg(hn::Mul(vp, moment)), d, at + moment_ * stride);
+    store(d, turned_normal<0>(d, part), at + basis(0) * stride);
+    store(d, turned_normal<1>(d, part), at + basis(1) * stride);
+  }
+
   template <typename D>
   HWY_INLINE PlaneBending<hn::Vec<D>> bending(D d) const
   {

@@ -180,13 +180,21 @@ public:
         add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
       });
     const Change<V> change(quaternion(d, at));
+    const InARow<3, D> place{i};
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square = add_dot(sum[0], sum[0], add_dot(sum[1], sum[1], dot(sum[2], sum[2])));
+    if (HWY_LIKELY(is_quiet<3>(d, *inelastic_sweep_, place,
+                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
+    {
+      answer_elastically(d, i, sum, change);
+      return;
+    }
     V x[3][3]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 3; ++b) {
       const V3 own = factor * (sum[b] + change.of_inverse(sum[b]));
       x[0][b] = own.x, x[1][b] = own.y, x[2][b] = own.z;
     }
-    const InARow<3, D> place{i};
     const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
     const auto response =
         respond<3>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
@@ -327,6 +335,30 @@ public:
   }
 
 private:
+  /// What Du (x) n of all bonds does where there is nothing else.
+  template <typename D, typename V = hn::Vec<D>>
+  HWY_INLINE void answer_elastically(D d, long i, const Triple<V> (&sum)[3],
+                                     const Change<V> &change) const
+  {
+    V theta = hn::Add(sum[0].x, hn::Add(sum[1].y, sum[2].z));
+    theta = add_dot(change.x, sum[0], add_dot(change.y, sum[1], add_dot(change.z, sum[2], theta)));
+    Triple<V> moment{hn::Sub(sum[1].z, sum[2].y), hn::Sub(sum[2].x, sum[0].z),
+                     hn::Sub(sum[0].y, sum[1].x)};
+    moment = add_cross(change.x, sum[0],
+                       add_cross(change.y, sum[1], add_cross(change.z, sum[2], moment)));
+    const V p = hn::Mul(
+        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
+    const V vp = law_.pressing(p);
+    double *const at = w_ + i;
+    hn::StoreU(p, d, a_.pressure + i);
+    store(d, hn::Neg(vp) * moment, at + moment_ * stride);
+    for (int m = 0; m < 3; ++m)
+      store(
+          d,
+          law_.part(vp, normal(d, Basis<n_dir>::direction[m]), load(d, at + (h_ + 3 * m) * stride)),
+          at + (g_ + 3 * m) * stride);
+  }
+
   /// Of the face in direction k between two particles, bit `bit` of the mask.
   template <int k, typename D>
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,

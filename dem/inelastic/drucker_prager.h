@@ -23,6 +23,16 @@ public:
 
   HWY_INLINE DruckerPragerReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
 
+  /// Whether no strain E with these E:E of a whole cell has a stress that is near: sigma_m is at
+  /// most K sqrt(3 E:E), and sqrt(1/2 s:s) at most G sqrt(2 E:E).
+  HWY_INLINE bool is_far(V square) const
+  {
+    constexpr double root_3 = 1.7320508075688773, root_2 = 1.4142135623730951, round_off = 1e-9;
+    const double most = root_3 * law_.friction * law_.bulk + root_2 * law_.shear;
+    const V limit = hn::Set(d_, (0.25 - round_off) * law_.yield * law_.yield);
+    return hn::AllTrue(d_, hn::Lt(hn::Mul(hn::Set(d_, most * most), square), limit));
+  }
+
   /// Where the stress is at least half as large as the first one that flows.
   HWY_INLINE hn::Mask<D> is_near(const Tensor &stress) const
   {

@@ -316,6 +316,29 @@ HWY_INLINE const FlowLaw *plain_law(const InelasticSweep<dim> &s, const At &at)
   return law->viscous ? nullptr : law;
 }
 
+/// Whether particles whose strains E have these E:E have none of their own, keep nothing and stay
+/// below what laws look at, whatever the directions of E.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_INLINE bool is_quiet(D d, const InelasticSweep<dim> &s, const At &at, V square)
+{
+  const FlowLaw *const law = plain_law(s, at);
+  if (HWY_UNLIKELY(!law || at.any_open(s.open) || (dim == 2 && !s.is_plane_strain)))
+    return false;
+  std::uint8_t oldest = untouched;
+  at.for_each_block([&](long b) HWY_ATTR { oldest = std::max(oldest, s.age[b]); });
+  if (oldest > untouched)
+    return false;
+  switch (law->kind) {
+  case FlowLaw::Kind::elastic:
+    return true;
+  case FlowLaw::Kind::von_mises:
+    return VonMisesReturn<dim, D>(d, *law).is_far(square);
+  case FlowLaw::Kind::drucker_prager:
+    return DruckerPragerReturn<dim, D>(d, *law).is_far(square);
+  }
+  return false;
+}
+
 /// Of any particles.
 template <int dim, typename D, typename At, typename V = hn::Vec<D>>
 HWY_NOINLINE void respond_apart(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,

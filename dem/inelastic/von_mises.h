@@ -26,6 +26,15 @@ public:
 
   HWY_INLINE VonMisesReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
 
+  /// Whether no strain E with these E:E of a whole cell has a stress that is near.
+  HWY_INLINE bool is_far(V square) const
+  {
+    const V factor = hn::Set(d_, 6 * 4 * law_.shear * law_.shear);
+    constexpr double round_off = 1e-9;
+    const V limit = hn::Set(d_, (1 - round_off) * law_.yield * law_.yield);
+    return hn::AllTrue(d_, hn::Lt(hn::Mul(factor, square), limit));
+  }
+
   /// Where the stress is at least half as large as the first one that flows.
   HWY_INLINE hn::Mask<D> is_near(const Tensor &stress) const
   {
