@@ -98,7 +98,10 @@ public:
   HWY_INLINE void strain(D d, long i, const Offsets &offsets, int done) const
   {
     using V = hn::Vec<D>;
+    const InARow<2, D> place{i};
     prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    place.prefetch(a_.mask);
+    place.prefetch(inelastic_sweep_->open);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     double *const at = w_ + i;
@@ -127,7 +130,6 @@ public:
         auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
         add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
       });
-    const InARow<2, D> place{i};
     const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
     const V square = add_dot(sum[0], sum[0], dot(sum[1], sum[1]));
     if (HWY_LIKELY(is_quiet<2>(d, *inelastic_sweep_, place,

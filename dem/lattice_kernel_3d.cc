@@ -149,7 +149,10 @@ public:
   {
     using V = hn::Vec<D>;
     using V3 = Triple<V>;
+    const InARow<3, D> place{i};
     prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    place.prefetch(a_.mask);
+    place.prefetch(inelastic_sweep_->open);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     double *const at = w_ + i;
@@ -180,7 +183,6 @@ public:
         add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
       });
     const Change<V> change(quaternion(d, at));
-    const InARow<3, D> place{i};
     const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
     const V square = add_dot(sum[0], sum[0], add_dot(sum[1], sum[1], dot(sum[2], sum[2])));
     if (HWY_LIKELY(is_quiet<3>(d, *inelastic_sweep_, place,

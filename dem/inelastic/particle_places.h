@@ -43,7 +43,11 @@ struct InARow
   }
   /// Asks for what streams hold some vectors after these: they are too many for the processor to
   /// follow by itself.
-  HWY_INLINE void prefetch(const double *stream) const { hwy::Prefetch(stream + i + 64); }
+  template <typename Number>
+  HWY_INLINE void prefetch(const Number *stream) const
+  {
+    hwy::Prefetch(stream + i + 64);
+  }
   /// visit(block) of all that they lie in.
   template <typename Visit>
   HWY_INLINE void for_each_block(Visit &&visit) const
