@@ -79,6 +79,10 @@ LatticeKernel<dim>::LatticeKernel(const std::vector<DirectionData<dim>> &directi
     c.twist = d.twist - d.bending;
     area_ = d.area;
   }
+  if (dim == 2 && n == 3) // the third normal is the sum of the others
+    core::require((directions[2].normal - (directions[0].normal + directions[1].normal)).norm() <
+                      1e-12,
+                  "three directions in 2D must be those of a hexagonal lattice");
   if (dim == 3 && n == 6) { // the kernel turns three normals and combines the others
     const auto &m = directions;
     const Vector<dim> a = m[0].normal, b = m[1].normal, e = m[5].normal;

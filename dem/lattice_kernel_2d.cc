@@ -21,7 +21,7 @@ namespace ligament::dem::HWY_NAMESPACE
 ///   S t = 2G S/r (u_j - u_i) + (g_i + g_j), g = v p n + (v p - 2G S/r q) h,
 /// formed by the same operations from either end, so that pair forces cancel exactly. Kept of each
 /// particle are the two numbers of h and of g along n and along its normal. Strains of their own
-/// take 2G S/r q R e n from g, eq. (D22), of which the matrix is kept.
+/// take 2G S/r q R e n from g, eq. (D22), which is kept for two directions.
 template <int n_dir, long stride_, bool inelastic_>
 class Bonds2d
 {
@@ -98,61 +98,82 @@ public:
   HWY_INLINE void strain(D d, long i, const Offsets &offsets, int done) const
   {
     using V = hn::Vec<D>;
+    const InARow<2, D> place{i};
     prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    place.prefetch(a_.mask);
+    place.prefetch(inelastic_sweep_->open);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     double *const at = w_ + i;
     const auto u = displacement(d, at);
     Pair<V> sum[2] = {{zero, zero}, {zero, zero}}; // of Du (x) n, column by column
-    for_directions([&](auto direction) HWY_ATTR {
-      constexpr int k = decltype(direction)::value;
-      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto h = along<k, h_>(d, at);
-      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
-      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
-      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+    const auto add = [&](const Pair<V> &both, int k) HWY_ATTR {
       const auto n = normal(d, k);
-      sum[0] = mul_add(n.x, e, sum[0]);
-      sum[1] = mul_add(n.y, e, sum[1]);
-    });
+      sum[0] = mul_add(n.x, both, sum[0]);
+      sum[1] = mul_add(n.y, both, sum[1]);
+    };
     const auto h = load(d, at + h_ * stride); // cos - 1, sin
-    V turned[2][2], x[2][2];                  // R^T sum; times S q / r
+    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir)))) {
+      const auto twice = h + h;
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto around = twice + (load(d, f + h_ * stride) + load(d, b + h_ * stride));
+        add(law_.relative(displacement(d, f) - displacement(d, b), turned_normal<k>(d, around)), k);
+      });
+    } else
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
+        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
+        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+      });
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square = add_dot(sum[0], sum[0], dot(sum[1], sum[1]));
+    if (HWY_LIKELY(is_quiet<2>(d, *inelastic_sweep_, place,
+                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
+    {
+      answer_elastically(d, i, sum, h);
+      return;
+    }
+    V x[2][2]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 2; ++b) {
-      turned[0][b] = hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y)));
-      turned[1][b] = hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y)));
-      for (int a = 0; a < 2; ++a)
-        x[a][b] = hn::Mul(factor, turned[a][b]);
+      x[0][b] =
+          hn::Mul(factor, hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y))));
+      x[1][b] =
+          hn::Mul(factor, hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y))));
     }
-    const InARow<2, D> place{i};
-    const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
-    const Response<2, D, InARow<2, D>> response(
-        d, *inelastic_sweep_, place, fresh,
-        OwnStress<2, D>(d, *inelastic_sweep_, place, x,
-                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
+    const auto response =
+        respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
-    V torque = hn::Mul(vp, hn::Sub(turned[0][1], turned[1][0]));
-    const auto part = law_.part_along(vp, h); // of the matrix [x -y; y x]
-    V g[2][2] = {{part.x, hn::Neg(part.y)}, {part.y, part.x}};
+    V torque = hn::Mul(p, hn::Sub(x[0][1], x[1][0]));
+    const auto part = law_.part_along(vp, h);
+    Pair<V> g[2] = {turned_normal<0>(d, part), turned_normal<1>(d, part)};
     if (response.is_strained) {
       const auto &e = response.strain;
       const V shear_half = hn::Set(d, law_.shear_half);
       const auto moved = [&](int a, int b) HWY_ATTR { // X e
-        return hn::MulAdd(turned[a][0], e(0, b), hn::Mul(turned[a][1], e(1, b)));
+        return hn::MulAdd(x[a][0], e(0, b), hn::Mul(x[a][1], e(1, b)));
       };
-      torque = hn::MulAdd(shear_half, hn::Sub(moved(1, 0), moved(0, 1)), torque);
-      for (int b = 0; b < 2; ++b) { // R e
-        const V along = e(0, b), across = e(1, b);
-        g[0][b] = hn::NegMulAdd(
-            shear_half, hn::Add(along, hn::NegMulAdd(h.y, across, hn::Mul(h.x, along))), g[0][b]);
-        g[1][b] = hn::NegMulAdd(
-            shear_half, hn::Add(across, hn::MulAdd(h.y, along, hn::Mul(h.x, across))), g[1][b]);
+      const V modulus = hn::Set(d, law_.shear_half / law_.volumetric);
+      torque = hn::MulAdd(modulus, hn::Sub(moved(1, 0), moved(0, 1)), torque);
+      for (int m = 0; m < 2; ++m) {
+        const auto n = normal(d, m);
+        const Pair<V> en{hn::MulAdd(e(0, 0), n.x, hn::Mul(e(0, 1), n.y)),
+                         hn::MulAdd(e(1, 0), n.x, hn::Mul(e(1, 1), n.y))};
+        const Pair<V> change{hn::NegMulAdd(h.y, en.y, hn::Mul(h.x, en.x)),
+                             hn::MulAdd(h.y, en.x, hn::Mul(h.x, en.y))};
+        g[m] = neg_mul_add(shear_half, en + change, g[m]);
       }
     }
     hn::StoreU(torque, d, at + moment_ * stride);
-    for (int k = 0; k < 4; ++k)
-      hn::StoreU(g[k / 2][k % 2], d, at + matrix(k) * stride);
+    for (int m = 0; m < 2; ++m)
+      store(d, g[m], at + basis(m) * stride);
   }
 
   /// Also finds the particles to look at: those with a forward face whose force, in any direction,
@@ -176,7 +197,8 @@ public:
       const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
       const auto g = part<k>(d, at);
       const auto t_f = masked(mask, law_.force(displacement(d, f) - u, g + part<k>(d, f)), k);
-      const auto t_b = masked(mask, law_.force(u - displacement(d, b), part<k>(d, b) + g), n_dir + k);
+      const auto t_b =
+          masked(mask, law_.force(u - displacement(d, b), part<k>(d, b) + g), n_dir + k);
       const auto net = t_f - t_b, both = t_f + t_b, a = normal(d, k) + along<k, h_>(d, at);
       force = force + net;
       torque = add_cross(a, both, torque);
@@ -246,6 +268,24 @@ public:
   }
 
 private:
+  /// What Du (x) n of all bonds does where there is nothing else.
+  template <typename D, typename V = hn::Vec<D>>
+  HWY_INLINE void answer_elastically(D d, long i, const Pair<V> (&sum)[2], const Pair<V> &h) const
+  {
+    const V middle = hn::Add(sum[0].x, sum[1].y), turn = hn::Sub(sum[0].y, sum[1].x);
+    const V theta = hn::Add(middle, hn::MulAdd(h.x, middle, hn::Mul(h.y, turn)));
+    const V moment = hn::Add(turn, hn::NegMulAdd(h.y, middle, hn::Mul(h.x, turn)));
+    const V p = hn::Mul(
+        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
+    const V vp = law_.pressing(p);
+    const auto part = law_.part_along(vp, h);
+    double *const at = w_ + i;
+    hn::StoreU(p, d, a_.pressure + i);
+    hn::StoreU(hn::Neg(hn::Mul(vp, moment)), d, at + moment_ * stride);
+    store(d, turned_normal<0>(d, part), at + basis(0) * stride);
+    store(d, turned_normal<1>(d, part), at + basis(1) * stride);
+  }
+
   template <typename D>
   HWY_INLINE PlaneBending<hn::Vec<D>> bending(D d) const
   {
@@ -257,10 +297,10 @@ private:
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,
                                       const double *to) const
   {
-    const auto t = masked(mask,
-                          law_.force(displacement(d, to) - displacement(d, from),
-                                     part<k>(d, from) + part<k>(d, to)),
-                          bit);
+    const auto t = masked(
+        mask,
+        law_.force(displacement(d, to) - displacement(d, from), part<k>(d, from) + part<k>(d, to)),
+        bit);
     const auto n = normal(d, k);
     const auto mean = (n + n) + (along<k, h_>(d, from) + along<k, h_>(d, to));
     return reaches(d, t, mean, hn::Set(d, c_.strength), c_.tangent);
@@ -303,7 +343,12 @@ private:
   template <int k, int first, typename D>
   HWY_INLINE Pair<hn::Vec<D>> along(D d, const double *at) const
   {
-    const auto part = load(d, at + first * stride);
+    return turned_normal<k>(d, load(d, at + first * stride));
+  }
+  /// The vector with these parts along the normal of direction k and across it.
+  template <int k, typename D>
+  HWY_INLINE Pair<hn::Vec<D>> turned_normal(D d, const Pair<hn::Vec<D>> &part) const
+  {
     const auto n = normal(d, k);
     return {hn::NegMulAdd(part.y, n.y, hn::Mul(part.x, n.x)),
             hn::MulAdd(part.y, n.x, hn::Mul(part.x, n.y))};
@@ -313,9 +358,10 @@ private:
   HWY_INLINE Pair<hn::Vec<D>> part(D d, const double *at) const
   {
     if constexpr (inelastic) {
-      const auto n = normal(d, k);
-      const auto g = [&](int m) HWY_ATTR { return hn::LoadU(d, at + matrix(m) * stride); };
-      return {hn::MulAdd(g(0), n.x, hn::Mul(g(1), n.y)), hn::MulAdd(g(2), n.x, hn::Mul(g(3), n.y))};
+      if constexpr (k < 2)
+        return load(d, at + basis(k) * stride);
+      else // the third normal is the sum of the others
+        return load(d, at + basis(0) * stride) + load(d, at + basis(1) * stride);
     } else
       return along<k, g_>(d, at);
   }
@@ -326,9 +372,9 @@ private:
   }
 
   // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the lattice's; of
-  // inelastic ones own torque in place of the sum, and four numbers of g.
+  // inelastic ones own torque in place of the sum, and g of two directions.
   static constexpr int u_ = 0, angle_ = 2, h_ = 3, g_ = 5, moment_ = 7, other_ = 8;
-  static constexpr int matrix(int k) { return k < 2 ? g_ + k : moment_ - 1 + k; }
+  static constexpr int basis(int k) { return k == 0 ? g_ : other_; }
 
   LatticeArrays<2> a_;
   LatticeConstants<2> c_;

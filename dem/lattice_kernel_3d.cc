@@ -149,53 +149,70 @@ public:
   {
     using V = hn::Vec<D>;
     using V3 = Triple<V>;
+    const InARow<3, D> place{i};
     prefetch(std::array{a_.lambda_per_volume, static_cast<const double *>(a_.pressure)}, i);
+    place.prefetch(a_.mask);
+    place.prefetch(inelastic_sweep_->open);
     const BondMask<D> mask(d, a_.mask, i);
     const V zero = hn::Zero(d);
     double *const at = w_ + i;
     const auto u = displacement(d, at);
     // Sum of Du (x) n, column by column.
     V3 sum[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
-    for_directions([&](auto direction) HWY_ATTR {
-      constexpr int k = decltype(direction)::value;
-      const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-      const auto h = along<k, h_>(d, at);
-      auto forward = law_.relative(displacement(d, f) - u, h + along<k, h_>(d, f));
-      auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + h);
-      const auto e = masked(mask, forward, k) + masked(mask, backward, n_dir + k);
+    const auto add = [&](const V3 &both, int k) HWY_ATTR {
       const auto n = normal(d, k);
-      sum[0] = mul_add(n.x, e, sum[0]);
-      sum[1] = mul_add(n.y, e, sum[1]);
-      sum[2] = mul_add(n.z, e, sum[2]);
-    });
+      sum[0] = mul_add(n.x, both, sum[0]);
+      sum[1] = mul_add(n.y, both, sum[1]);
+      sum[2] = mul_add(n.z, both, sum[2]);
+    };
+    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir))))
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        const auto around = (own + own) + (along<k, h_>(d, f) + along<k, h_>(d, b));
+        add(law_.relative(displacement(d, f) - displacement(d, b), around), k);
+      });
+    else
+      for_directions([&](auto direction) HWY_ATTR {
+        constexpr int k = decltype(direction)::value;
+        const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
+        const auto own = along<k, h_>(d, at);
+        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
+        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
+        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+      });
     const Change<V> change(quaternion(d, at));
-    V turned[3][3], x[3][3]; // R^T sum; times S q / r
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square = add_dot(sum[0], sum[0], add_dot(sum[1], sum[1], dot(sum[2], sum[2])));
+    if (HWY_LIKELY(is_quiet<3>(d, *inelastic_sweep_, place,
+                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
+    {
+      answer_elastically(d, i, sum, change);
+      return;
+    }
+    V x[3][3]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
     for (int b = 0; b < 3; ++b) {
-      const V3 own = sum[b] + change.of_inverse(sum[b]);
-      turned[0][b] = own.x, turned[1][b] = own.y, turned[2][b] = own.z;
-      for (int a = 0; a < 3; ++a)
-        x[a][b] = hn::Mul(factor, turned[a][b]);
+      const V3 own = factor * (sum[b] + change.of_inverse(sum[b]));
+      x[0][b] = own.x, x[1][b] = own.y, x[2][b] = own.z;
     }
-    const InARow<3, D> place{i};
-    const auto fresh = hn::Ge(hn::Iota(d, double(i)), hn::Set(d, double(done)));
-    const Response<3, D, InARow<3, D>> response(
-        d, *inelastic_sweep_, place, fresh,
-        OwnStress<3, D>(d, *inelastic_sweep_, place, x,
-                        hn::LoadU(d, a_.lambda_per_volume + i)));
+    const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
+    const auto response =
+        respond<3>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
     const V shear_half = hn::Set(d, law_.shear_half);
     const auto &e = response.strain;
-    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = k q X e - v p X.
+    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = 2G X e - p X.
+    const V modulus = hn::Set(d, law_.shear_half / law_.volumetric);
     const auto y = [&](int a, int b) HWY_ATTR {
-      V own = hn::Neg(hn::Mul(vp, turned[a][b]));
+      V own = hn::Neg(hn::Mul(p, x[a][b]));
       if (response.is_strained)
-        own = hn::MulAdd(shear_half,
-                         hn::MulAdd(turned[a][0], e(0, b),
-                                    hn::MulAdd(turned[a][1], e(1, b),
-                                               hn::Mul(turned[a][2], e(2, b)))),
-                         own);
+        own = hn::MulAdd(
+            modulus,
+            hn::MulAdd(x[a][0], e(0, b), hn::MulAdd(x[a][1], e(1, b), hn::Mul(x[a][2], e(2, b)))),
+            own);
       return own;
     };
     const V3 torque{hn::Sub(y(2, 1), y(1, 2)), hn::Sub(y(0, 2), y(2, 0)),
@@ -320,6 +337,30 @@ public:
   }
 
 private:
+  /// What Du (x) n of all bonds does where there is nothing else.
+  template <typename D, typename V = hn::Vec<D>>
+  HWY_INLINE void answer_elastically(D d, long i, const Triple<V> (&sum)[3],
+                                     const Change<V> &change) const
+  {
+    V theta = hn::Add(sum[0].x, hn::Add(sum[1].y, sum[2].z));
+    theta = add_dot(change.x, sum[0], add_dot(change.y, sum[1], add_dot(change.z, sum[2], theta)));
+    Triple<V> moment{hn::Sub(sum[1].z, sum[2].y), hn::Sub(sum[2].x, sum[0].z),
+                     hn::Sub(sum[0].y, sum[1].x)};
+    moment = add_cross(change.x, sum[0],
+                       add_cross(change.y, sum[1], add_cross(change.z, sum[2], moment)));
+    const V p = hn::Mul(
+        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
+    const V vp = law_.pressing(p);
+    double *const at = w_ + i;
+    hn::StoreU(p, d, a_.pressure + i);
+    store(d, hn::Neg(vp) * moment, at + moment_ * stride);
+    for (int m = 0; m < 3; ++m)
+      store(
+          d,
+          law_.part(vp, normal(d, Basis<n_dir>::direction[m]), load(d, at + (h_ + 3 * m) * stride)),
+          at + (g_ + 3 * m) * stride);
+  }
+
   /// Of the face in direction k between two particles, bit `bit` of the mask.
   template <int k, typename D>
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,

@@ -11,6 +11,7 @@
 #include "dem/inelastic/response.h"
 #include "dem/lane_vectors.h"
 #include "dem/stress_bound.h"
+#include "dem/transpose_lanes.h"
 
 #include <hwy/cache_control.h>
 
@@ -21,10 +22,8 @@ using SliceLanes = hn::CappedTag<double, slice_width>;
 
 /// The numbers of a record, each for all lanes.
 template <typename D>
-struct Record
-{
-  hn::Vec<D> number[record_size];
-};
+using Record = EightNumbers<D>;
+static_assert(record_size == 8);
 
 /// The same with the strain of their own.
 template <typename D>
@@ -32,48 +31,6 @@ struct StrainedRecord : Record<D>
 {
   hn::Vec<D> strain[record_size];
 };
-
-/// Transposes rows of eight numbers in registers, twice as fast as gathering numbers one by one;
-/// row(n) is where the numbers of lane n start.
-template <typename D, typename Row>
-HWY_INLINE Record<D> transpose(D d, Row &&row)
-{
-  Record<D> r;
-#if HWY_TARGET == HWY_SCALAR
-  for (int c = 0; c < record_size; ++c)
-    r.number[c] = hn::LoadU(d, row(0) + c);
-#else
-  constexpr int n = int(hn::MaxLanes(D()));
-  if constexpr (n == 8) {
-    const hn::Half<D> half;
-    for (int c = 0; c < record_size; c += 4) {
-      const auto two_rows = [&](int k) HWY_ATTR {
-        return hn::Combine(d, hn::LoadU(half, row(k + 4) + c), hn::LoadU(half, row(k) + c));
-      };
-      const auto v0 = two_rows(0), v1 = two_rows(1), v2 = two_rows(2), v3 = two_rows(3);
-      const auto even_a = hn::InterleaveLower(d, v0, v1), odd_a = hn::InterleaveUpper(d, v0, v1);
-      const auto even_b = hn::InterleaveLower(d, v2, v3), odd_b = hn::InterleaveUpper(d, v2, v3);
-      r.number[c] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(even_b), even_a);
-      r.number[c + 1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd_b), odd_a);
-      r.number[c + 2] = hn::OddEvenBlocks(even_b, hn::SwapAdjacentBlocks(even_a));
-      r.number[c + 3] = hn::OddEvenBlocks(odd_b, hn::SwapAdjacentBlocks(odd_a));
-    }
-  } else
-    for (int c = 0; c < record_size; c += 2) {
-      const auto every_other = [&](int k) HWY_ATTR {
-        if constexpr (n == 4) {
-          const hn::Half<D> half;
-          return hn::Combine(d, hn::LoadU(half, row(k + 2) + c), hn::LoadU(half, row(k) + c));
-        } else
-          return hn::LoadU(d, row(k) + c);
-      };
-      const auto a = every_other(0), b = every_other(1);
-      r.number[c] = hn::InterleaveLower(d, a, b);
-      r.number[c + 1] = hn::InterleaveUpper(d, a, b);
-    }
-#endif
-  return r;
-}
 
 /// The bonds of a vector of particles, one below the other.
 template <int dim, bool with_stiffness>
@@ -182,8 +139,8 @@ public:
     }
   }
 
-  /// Of what Law::add_strain sums and Law::turn_back takes to the particles' axes, what the particles answer; or into their open cells, with those
-  /// whose faces are the lattice's.
+  /// Of what Law::add_strain sums and Law::turn_back takes to the particles' axes, what the
+  /// particles answer; or into their open cells, with those whose faces are the lattice's.
   HWY_INLINE void strains() const
   {
     const SliceLanes d;
@@ -294,10 +251,8 @@ private:
       lambda_per_volume[l] = a.lambda_per_volume[place.of[l]];
     }
     const auto used = hn::Lt(hn::Iota(d, double(lane)), hn::Set(d, double(size)));
-    const Response<dim, SliceLanes, Scattered<dim, SliceLanes>> response(
-        d, *sweep_.inelastic, place, used,
-        OwnStress<dim, SliceLanes>(d, *sweep_.inelastic, place, x,
-                                   hn::Load(d, lambda_per_volume)));
+    const auto response = dem::HWY_NAMESPACE::respond<dim>(d, *sweep_.inelastic, place, used, x,
+                                                           hn::Load(d, lambda_per_volume));
     hn::Store(response.pressure, d, pressure);
     for (int l = 0; l < n_lanes && lane + l < size; ++l)
       a.pressure[place.of[l]] = pressure[l];

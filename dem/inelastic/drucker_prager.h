@@ -19,7 +19,19 @@ class DruckerPragerReturn
   using Tensor = SymmetricTensor<dim, V>;
 
 public:
+  static constexpr bool is_radial = false;
+
   HWY_INLINE DruckerPragerReturn(D d, const FlowLaw &law) : d_(d), law_(law) {}
+
+  /// Whether no strain E with these E:E of a whole cell has a stress that is near: sigma_m is at
+  /// most K sqrt(3 E:E), and sqrt(1/2 s:s) at most G sqrt(2 E:E).
+  HWY_INLINE bool is_far(V square) const
+  {
+    constexpr double root_3 = 1.7320508075688773, root_2 = 1.4142135623730951, round_off = 1e-9;
+    const double most = root_3 * law_.friction * law_.bulk + root_2 * law_.shear;
+    const V limit = hn::Set(d_, (0.25 - round_off) * law_.yield * law_.yield);
+    return hn::AllTrue(d_, hn::Lt(hn::Mul(hn::Set(d_, most * most), square), limit));
+  }
 
   /// Where the stress is at least half as large as the first one that flows.
   HWY_INLINE hn::Mask<D> is_near(const Tensor &stress) const
@@ -29,7 +41,8 @@ public:
     return hn::Ge(reached, hn::Set(d_, 0.5 * law_.yield));
   }
 
-  /// The increment of e where `where`; the history follows. Returns where anything flows.
+  /// The increment of e, 0 where nothing flows or not `where`; the history follows. Returns where
+  /// anything flows.
   HWY_INLINE hn::Mask<D> flow(const Tensor &stress, hn::Mask<D> where, V &history,
                               Tensor &increment) const
   {
@@ -53,17 +66,15 @@ public:
     V volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
     if (law_.friction > 0) {
       const V largest = hn::Div(yield_at(hn::Add(history, shear_strain)), friction);
-      volume = hn::IfThenElse(
-          apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)), volume);
+      volume = hn::IfThenElse(apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)),
+                              volume);
     }
     const V along = hn::IfThenElseZero(
-        flows, hn::Div(hn::Mul(hn::Set(d_, 0.5), shear_strain),
-                       hn::Max(tau, hn::Set(d_, 1e-300))));
+        flows, hn::Div(hn::Mul(hn::Set(d_, 0.5), shear_strain), hn::Max(tau, hn::Set(d_, 1e-300))));
     const V third = hn::IfThenElseZero(flows, hn::Mul(hn::Set(d_, 1 / 3.), volume));
     history = hn::Add(history, hn::IfThenElseZero(flows, shear_strain));
     for (int c = 0; c < n_tensor<dim>; ++c)
-      increment.c[c] =
-          c < 3 ? hn::MulAdd(along, s.c[c], third) : hn::Mul(along, s.c[c]);
+      increment.c[c] = c < 3 ? hn::MulAdd(along, s.c[c], third) : hn::Mul(along, s.c[c]);
     return flows;
   }
 

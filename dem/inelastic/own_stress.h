@@ -7,13 +7,16 @@
 #endif
 
 #include "dem/inelastic/tensor_lanes.h"
+#include "dem/transpose_lanes.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
 /// The strains of particles from the motion of all their faces, and what they answer at inelastic
-/// strains e.
-template <int dim, typename D>
+/// strains e; `open`: some of them have open cells.
+template <int dim, typename D, bool open>
 class OwnStress
 {
   using V = hn::Vec<D>;
@@ -29,7 +32,6 @@ public:
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
         x_[a][b] = x[a][b];
-    is_open_ = at.any_open(s.open);
     if (s.volume) {
       volume_ = at.load(d, s.volume);
       per_volume_ = hn::Div(hn::Set(d, 1.), volume_);
@@ -37,22 +39,19 @@ public:
       volume_ = hn::Set(d, s.whole_volume);
       per_volume_ = hn::Set(d, s.per_whole_volume);
     }
-    if (HWY_UNLIKELY(is_open_)) {
-      int cell[At::n];
-      for (int l = 0; l < At::n; ++l)
-        cell[l] = s.open[at.particle(l)];
-      take_open(s, cell);
+    if constexpr (open) {
+      take_open(s, at);
       per_volume_ = hn::Div(hn::Set(d, 1.), volume_);
     }
   }
 
+  /// lambda theta in Pa.
+  HWY_INLINE V elastic_pressure() const { return hn::Mul(lambda_per_volume_, trace()); }
   /// lambda (theta - M:e) in Pa.
   HWY_INLINE V pressure(const Tensor &e) const
   {
-    V trace = x_[0][0], flowed = hn::Zero(d_);
-    for (int a = 1; a < dim; ++a)
-      trace = hn::Add(trace, x_[a][a]);
-    if (HWY_UNLIKELY(is_open_)) {
+    V flowed = hn::Zero(d_);
+    if constexpr (open) {
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           flowed = hn::MulAdd(e(a, b), moment(a, b, a), flowed);
@@ -61,32 +60,35 @@ public:
         flowed = hn::Add(e.c[a], flowed);
     if (dim == 2 && is_plane_strain_)
       flowed = hn::Add(e.c[2], flowed);
-    return hn::Mul(lambda_per_volume_, hn::NegMulAdd(volume_, flowed, trace));
+    return hn::Mul(lambda_per_volume_, hn::NegMulAdd(volume_, flowed, trace()));
   }
 
   /// In Pa, at the pressure of these e.
   HWY_INLINE Tensor stress(const Tensor &e, V pressure, double twice_shear) const
   {
     const V modulus = hn::Set(d_, twice_shear), half = hn::Set(d_, 0.5);
-    const V per_volume = hn::Mul(modulus, per_volume_);
-    Tensor t;
+    Tensor t = sheared(modulus);
     for (int a = 0; a < dim; ++a)
       for (int b = a; b < dim; ++b) {
         V &sum = t.c[tensor_place<dim>(a, b)];
-        sum = hn::Mul(per_volume, a == b ? x_[a][a]
-                                         : hn::Mul(half, hn::Add(x_[a][b], x_[b][a])));
-        if (HWY_UNLIKELY(is_open_)) {
+        if constexpr (open) {
           const V kept = hn::Mul(half, hn::Add(moved(e, a, b), moved(e, b, a)));
-          const V pressed = hn::Mul(half, hn::Add(moment(a, a, b), moment(b, b, a)));
-          sum = hn::MulAdd(pressure, pressed, hn::NegMulAdd(modulus, kept, sum));
-        } else {
+          sum = hn::NegMulAdd(modulus, kept, sum);
+        } else
           sum = hn::NegMulAdd(modulus, e(a, b), sum);
-          if (a == b)
-            sum = hn::Add(sum, pressure);
-        }
       }
+    press(pressure, t);
     if constexpr (dim == 2)
       t.c[2] = is_plane_strain_ ? hn::NegMulAdd(modulus, e.c[2], pressure) : hn::Zero(d_);
+    return t;
+  }
+  /// Without e.
+  HWY_INLINE Tensor elastic_stress(V pressure, double twice_shear) const
+  {
+    Tensor t = sheared(hn::Set(d_, twice_shear));
+    press(pressure, t);
+    if constexpr (dim == 2)
+      t.c[2] = is_plane_strain_ ? pressure : hn::Zero(d_);
     return t;
   }
 
@@ -97,7 +99,7 @@ public:
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b) {
         sum = hn::MulAdd(e(a, b), x_[a][b], sum);
-        kept = hn::MulAdd(e(a, b), is_open_ ? moved(e, a, b) : e(a, b), kept);
+        kept = hn::MulAdd(e(a, b), open ? moved(e, a, b) : e(a, b), kept);
       }
     if (dim == 2 && is_plane_strain_)
       kept = hn::MulAdd(e.c[2], e.c[2], kept);
@@ -106,7 +108,7 @@ public:
   }
 
   V volume() const { return volume_; }
-  bool is_open() const { return is_open_; }
+  static constexpr bool is_open() { return open; }
   /// Of open vectors: where M is not the identity.
   HWY_INLINE hn::Mask<D> is_incomplete() const
   {
@@ -132,6 +134,40 @@ public:
 private:
   using Cell = OpenCell<dim>;
 
+  HWY_INLINE V trace() const
+  {
+    V sum = x_[0][0];
+    for (int a = 1; a < dim; ++a)
+      sum = hn::Add(sum, x_[a][a]);
+    return sum;
+  }
+  /// 2G E
+  HWY_INLINE Tensor sheared(V modulus) const
+  {
+    const V per_volume = hn::Mul(modulus, per_volume_);
+    const V half = hn::Mul(hn::Set(d_, 0.5), per_volume);
+    Tensor t;
+    for (int a = 0; a < dim; ++a)
+      for (int b = a; b < dim; ++b)
+        t.c[tensor_place<dim>(a, b)] =
+            a == b ? hn::Mul(per_volume, x_[a][a]) : hn::Mul(half, hn::Add(x_[a][b], x_[b][a]));
+    return t;
+  }
+  /// Adds p sym M.
+  HWY_INLINE void press(V pressure, Tensor &t) const
+  {
+    if constexpr (open) {
+      const V half = hn::Mul(hn::Set(d_, 0.5), pressure);
+      for (int a = 0; a < dim; ++a)
+        for (int b = a; b < dim; ++b) {
+          V &sum = t.c[tensor_place<dim>(a, b)];
+          sum = hn::MulAdd(half, hn::Add(moment(a, a, b), moment(b, b, a)), sum);
+        }
+    } else
+      for (int a = 0; a < dim; ++a)
+        t.c[a] = hn::Add(t.c[a], pressure);
+  }
+
   /// M_ab as row `row` of e M has it.
   HWY_INLINE V moment(int row, int a, int b) const
   {
@@ -146,37 +182,46 @@ private:
     return sum;
   }
 
-  template <int n>
-  HWY_NOINLINE void take_open(const InelasticSweep<dim> &s, const int (&cell)[n])
+  static constexpr Cell whole_cell()
   {
-    Cell whole; // of lanes without an open cell
+    Cell whole; // its volume is 0: that of the lane stays
     for (int row = 0; row < dim; ++row)
       for (int a = 0; a < dim; ++a)
         whole.number[Cell::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, a)] = 1;
-    HWY_ALIGN double volumes[n];
-    hn::Store(volume_, d_, volumes);
-    HWY_ALIGN double number[Cell::size][n];
-    for (int l = 0; l < n; ++l) {
-      const Cell &of = cell[l] >= 0 ? s.cells[cell[l]] : whole;
-      for (int k = 0; k < Cell::size; ++k)
-        number[k][l] = of.number[k];
-      if (cell[l] < 0)
-        number[Cell::volume][l] = volumes[l];
+    return whole;
+  }
+
+  template <typename At>
+  HWY_INLINE void take_open(const InelasticSweep<dim> &s, const At &at)
+  {
+    static constexpr Cell whole = whole_cell();
+    const double *cell[At::n];
+    for (int l = 0; l < At::n; ++l) {
+      const int open_cell = s.open[at.particle(l)];
+      cell[l] = (open_cell >= 0 ? s.cells[open_cell] : whole).number;
+    }
+    V number[Cell::size];
+    for (int c = 0; c < Cell::size; c += 8) {
+      const int first = std::min(c, Cell::size - 8);
+      const auto eight = transpose(d_, [&](int l) HWY_ATTR { return cell[l] + first; });
+      for (int k = 0; k < 8; ++k)
+        number[first + k] = eight.number[k];
     }
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
-        x_[a][b] = hn::Add(x_[a][b], hn::Load(d_, number[Cell::strain + dim * a + b]));
-    volume_ = hn::Load(d_, number[Cell::volume]);
+        x_[a][b] = hn::Add(x_[a][b], number[Cell::strain + dim * a + b]);
+    const V volume = number[Cell::volume];
+    volume_ = hn::IfThenElse(hn::Gt(volume, hn::Zero(d_)), volume, volume_);
     for (int row = 0; row < dim; ++row)
       for (int k = 0; k < n_in_plane<dim>; ++k)
-        moment_[row][k] = hn::Load(d_, number[Cell::moment + row * n_in_plane<dim> + k]);
+        moment_[row][k] = number[Cell::moment + row * n_in_plane<dim> + k];
   }
 
   D d_;
   V x_[dim][dim];
   V lambda_per_volume_, volume_, per_volume_;
   V moment_[dim][n_in_plane<dim>];
-  bool is_plane_strain_, is_open_ = false;
+  bool is_plane_strain_;
 };
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

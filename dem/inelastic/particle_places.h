@@ -13,6 +13,7 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
@@ -31,9 +32,22 @@ struct InARow
     const hn::CappedTag<std::int32_t, n> d;
     return !hn::AllTrue(d, hn::Lt(hn::LoadU(d, open + i), hn::Zero(d)));
   }
+  /// Whether all have the same of these numbers.
+  HWY_INLINE bool is_same(const std::uint8_t *numbers) const
+  {
+    static_assert(n <= 8);
+    std::uint64_t all = 0, ones = 0;
+    std::memcpy(&all, numbers + i, n);
+    std::memset(&ones, 1, n);
+    return all == ones * numbers[i];
+  }
   /// Asks for what streams hold some vectors after these: they are too many for the processor to
   /// follow by itself.
-  HWY_INLINE void prefetch(const double *stream) const { hwy::Prefetch(stream + i + 64); }
+  template <typename Number>
+  HWY_INLINE void prefetch(const Number *stream) const
+  {
+    hwy::Prefetch(stream + i + 64);
+  }
   /// visit(block) of all that they lie in.
   template <typename Visit>
   HWY_INLINE void for_each_block(Visit &&visit) const
@@ -46,9 +60,12 @@ struct InARow
   HWY_INLINE V load(D d, const double *stream) const { return hn::LoadU(d, stream + i); }
   HWY_INLINE void store(D d, V value, hn::Mask<D> where, double *stream) const
   {
-    if constexpr (n > 1)
+    if (HWY_LIKELY(hn::AllTrue(d, where)))
+      hn::StoreU(value, d, stream + i);
+    else if constexpr (n > 1)
       hn::BlendedStore(value, where, d, stream + i);
-    else if (lane_bits(d, where) & 1) // a masked store would look at lanes behind the first one, too
+    else if (lane_bits(d, where) &
+             1) // a masked store would look at lanes behind the first one, too
       stream[i] = hn::GetLane(value);
   }
 };
@@ -73,6 +90,13 @@ struct Scattered
     for (int l = 0; l < n; ++l)
       any = std::max(any, open[of[l]]);
     return any >= 0;
+  }
+  HWY_INLINE bool is_same(const std::uint8_t *numbers) const
+  {
+    bool same = true;
+    for (int l = 1; l < n; ++l)
+      same = same && numbers[of[l]] == numbers[of[0]];
+    return same;
   }
   HWY_INLINE void prefetch(const double *) const {}
   HWY_INLINE V load(D d, const double *stream) const

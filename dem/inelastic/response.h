@@ -1,5 +1,5 @@
-// What particles answer to their strains: the sweep that finds the pressures flows by their laws and
-// books it; compiled once for every instruction set.
+// What particles answer to their strains: the sweep that finds the pressures flows by their laws
+// and books it; compiled once for every instruction set.
 #if defined(LIGAMENT_DEM_RESPONSE_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIGAMENT_DEM_RESPONSE_H
 #undef LIGAMENT_DEM_RESPONSE_H
@@ -13,28 +13,61 @@
 #include "dem/inelastic/von_mises.h"
 
 #include <algorithm>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-/// What particles answer to their strains: their e follow in memory where flow is allowed.
-template <int dim, typename D, typename At>
-class Response
+/// What particles answer to their strains.
+template <int dim, typename V>
+struct Answer
+{
+  SymmetricTensor<dim, V> strain; // e
+  V pressure;                     // Pa
+  bool is_strained;
+
+  HWY_INLINE Answer(const SymmetricTensor<dim, V> &e, V p, bool strained)
+      : pressure(p), is_strained(strained)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      strain.c[c] = e.c[c];
+  }
+  // Number by number: bytes copied as one block stay in memory.
+  HWY_INLINE Answer(const Answer &other) : Answer(other.strain, other.pressure, other.is_strained)
+  {
+  }
+  HWY_INLINE Answer &operator=(const Answer &other)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      strain.c[c] = other.strain.c[c];
+    pressure = other.pressure;
+    is_strained = other.is_strained;
+    return *this;
+  }
+};
+
+/// Finds it; their e follow in memory where flow is allowed. `open`: some of them have open cells;
+/// `plain`: all are of one law, which is not viscous, and energies are not asked for.
+template <int dim, typename D, typename At, bool open, bool plain>
+class Response : public Answer<dim, hn::Vec<D>>
 {
   using V = hn::Vec<D>;
   using Streams = InelasticStreams<dim>;
+  using Own = OwnStress<dim, D, open>;
+  using Base = Answer<dim, V>;
+  using Base::is_strained;
+  using Base::pressure;
+  using Base::strain;
 
 public:
   using Tensor = SymmetricTensor<dim, V>;
 
-  Tensor strain; // e
-  V pressure;    // Pa
-  bool is_strained;
-
-  /// Particles flow where `fresh`: those that have done so in this sweep stay as they are.
+  /// Particles flow where `fresh`: those that have done so in this sweep stay as they are. `law`:
+  /// that of all where they are plain.
   HWY_INLINE Response(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
-                      const OwnStress<dim, D> &own)
-      : strain(zero_tensor<dim>(hn::Zero(d))), d_(d), s_(s), at_(at)
+                      const FlowLaw *law, const Own &own)
+      : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s),
+        streams_(s.streams), at_(at)
   {
     std::uint8_t youngest = lasting, oldest = untouched;
     at.for_each_block([&](long b) HWY_ATTR {
@@ -45,18 +78,29 @@ public:
     knows_before_ = youngest == lasting;
     if (HWY_UNLIKELY(youngest != oldest) && s.may_flow)
       begin();
-    if (is_strained)
+    if (is_strained) {
       for (int c = 0; c < n_tensor<dim>; ++c)
-        strain.c[c] = at.load(d, s.streams.stream(Streams::strain + c));
-    if (s.may_flow)
-      for_each_law(fresh, [&](const FlowLaw &law, hn::Mask<D> where)
-                              HWY_ATTR { flow_by(law, where, own); });
-    pressure = own.pressure(strain);
-    if (HWY_UNLIKELY(s.energy != nullptr)) {
-      at.store(d, own.own_energy(strain, twice_shear()), fresh, s.energy);
-      for_each_law(fresh, [&](const FlowLaw &law, hn::Mask<D> where)
-                              HWY_ATTR { add_kept(law, where, own); });
+        strain.c[c] = at.load(d, streams_.stream(Streams::strain + c));
+      pressure = own.pressure(strain);
     }
+    if (s.may_flow) {
+      if constexpr (plain)
+        flow_by(*law, fresh, own);
+      else
+        for_each_law(fresh, [&](const FlowLaw &of_some, hn::Mask<D> where) HWY_ATTR {
+          if (of_some.viscous)
+            creep(of_some, where, own);
+          else
+            flow_by(of_some, where, own);
+          pressure = own.pressure(strain);
+        });
+    }
+    if constexpr (!plain)
+      if (s.energy != nullptr) {
+        at.store(d, own.own_energy(strain, twice_shear()), fresh, s.energy);
+        for_each_law(fresh, [&](const FlowLaw &of_some, hn::Mask<D> where)
+                                HWY_ATTR { add_kept(of_some, where, own); });
+      }
   }
 
 private:
@@ -73,27 +117,15 @@ private:
   template <typename Visit>
   HWY_INLINE void for_each_law(hn::Mask<D> fresh, Visit &&visit) const
   {
-    if (!s_.law_of) {
-      visit(s_.laws[0], fresh);
-      return;
-    }
-    const int of_first = s_.law_of[at_.particle(0)];
-    bool differ = false;
-    for (int l = 1; l < At::n; ++l)
-      differ = differ || s_.law_of[at_.particle(l)] != of_first;
-    if (HWY_LIKELY(!differ)) {
-      visit(s_.laws[of_first], fresh);
-      return;
-    }
     std::uint32_t left = lane_bits(d_, fresh);
     while (left != 0) {
       int first = 0;
       while (!(left >> first & 1))
         ++first;
-      const int law = s_.law_of[at_.particle(first)];
+      const int law = law_of(first);
       HWY_ALIGN double has[At::n];
       for (int l = 0; l < At::n; ++l) {
-        const bool same = (left >> l & 1) && s_.law_of[at_.particle(l)] == law;
+        const bool same = (left >> l & 1) && law_of(l) == law;
         has[l] = same;
         if (same)
           left &= ~(1u << l);
@@ -101,13 +133,10 @@ private:
       visit(s_.laws[law], hn::Gt(hn::Load(d_, has), hn::Zero(d_)));
     }
   }
+  int law_of(int lane) const { return s_.law_of ? s_.law_of[at_.particle(lane)] : 0; }
 
-  HWY_INLINE void flow_by(const FlowLaw &law, hn::Mask<D> where, const OwnStress<dim, D> &own)
+  HWY_INLINE void flow_by(const FlowLaw &law, hn::Mask<D> where, const Own &own)
   {
-    if (HWY_UNLIKELY(law.viscous != nullptr)) {
-      creep(law, where, own);
-      return;
-    }
     switch (law.kind) {
     case FlowLaw::Kind::elastic:
       break;
@@ -121,41 +150,82 @@ private:
   }
 
   template <typename Law>
-  HWY_INLINE void flow_by(const Law &law, double twice_shear, hn::Mask<D> where,
-                          const OwnStress<dim, D> &own)
+  HWY_INLINE void flow_by(const Law &law, double twice_shear, hn::Mask<D> where, const Own &own)
   {
-    Tensor stress = own.stress(strain, own.pressure(strain), twice_shear);
     if (!is_strained) {
+      const Tensor stress = own.elastic_stress(pressure, twice_shear);
       if (HWY_LIKELY(hn::AllFalse(d_, hn::And(where, law.is_near(stress)))))
         return;
       is_strained = true;
       begin();
     }
     for (int k = 0; k < Streams::n_streams; ++k)
-      at_.prefetch(s_.streams.stream(k));
-    double *const history = s_.streams.stream(Streams::history);
+      at_.prefetch(streams_.stream(k));
+    if constexpr (Law::is_radial && !open)
+      if (!own.is_plane_stress()) {
+        flow_along(law, twice_shear, where, own);
+        return;
+      }
+    Tensor stress = own.stress(strain, pressure, twice_shear);
+    double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
     Tensor increment;
     const auto flows = law.flow(stress, where, h, increment);
     if (!hn::AllFalse(d_, flows)) {
       for (int c = 0; c < n_tensor<dim>; ++c) {
         strain.c[c] = hn::Add(strain.c[c], increment.c[c]);
-        at_.store(d_, strain.c[c], flows, s_.streams.stream(Streams::strain + c));
+        at_.store(d_, strain.c[c], where, streams_.stream(Streams::strain + c));
       }
-      at_.store(d_, h, flows, history);
-      stress = own.stress(strain, own.pressure(strain), twice_shear);
-      book(stress, increment, flows, own);
+      at_.store(d_, h, where, history);
+      pressure = own.pressure(strain);
+      stress = own.stress(strain, pressure, twice_shear);
+      book(stress, increment, where, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
-      at_.store(d_, stress.c[c], where, s_.streams.stream(Streams::stress + c));
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
+  }
+
+  /// The same where flow is a share of the deviator and takes as much of the stress, none of it of
+  /// the pressure.
+  template <typename Law>
+  HWY_INLINE void flow_along(const Law &law, double twice_shear, hn::Mask<D> where, const Own &own)
+  {
+    Tensor stress = own.stress(strain, pressure, twice_shear);
+    const Tensor s = deviator(d_, stress);
+    const V square = double_dot(s);
+    double *const history = streams_.stream(Streams::history);
+    V h = at_.load(d_, history), along;
+    const auto flows = law.find_flow(square, where, h, along);
+    if (!hn::AllFalse(d_, flows)) {
+      at_.store(d_, h, where, history);
+      const V relaxed = hn::Mul(hn::Set(d_, twice_shear), along);
+      V work = hn::NegMulAdd(relaxed, square, square); // with the stress after, and before
+      work = hn::Add(work, knows_before_ ? double_dot(s, load(Streams::stress)) : work);
+      for (int c = 0; c < n_tensor<dim>; ++c) {
+        strain.c[c] = hn::MulAdd(along, s.c[c], strain.c[c]);
+        stress.c[c] = hn::NegMulAdd(relaxed, s.c[c], stress.c[c]);
+        at_.store(d_, strain.c[c], where, streams_.stream(Streams::strain + c));
+      }
+      book(hn::Mul(along, work), where, own);
+    }
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
+  }
+
+  HWY_INLINE Tensor load(int stream) const
+  {
+    Tensor t;
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      t.c[c] = at_.load(d_, streams_.stream(stream + c));
+    return t;
   }
 
   /// The viscous part first, plastic flow on the stress that is left, then both at once: e is
   /// their sum.
-  HWY_NOINLINE void creep(const FlowLaw &law, hn::Mask<D> where, const OwnStress<dim, D> &own)
+  HWY_NOINLINE void creep(const FlowLaw &law, hn::Mask<D> where, const Own &own)
   {
     const double twice_shear = 2 * law.shear;
-    ViscousFlow<dim, D, At> viscous(d_, law, s_.streams, at_, own);
+    ViscousFlow<dim, D, At, Own> viscous(d_, law, streams_, at_, own);
     Tensor plastic, all, increment = zero_tensor<dim>(hn::Zero(d_));
     for (int c = 0; c < n_tensor<dim>; ++c)
       plastic.c[c] = hn::Sub(strain.c[c], viscous.strain.c[c]);
@@ -166,7 +236,7 @@ private:
       return own.stress(all, own.pressure(all), twice_shear);
     };
     Tensor stress = find_stress();
-    double *const history = s_.streams.stream(Streams::history);
+    double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
     FlowLaw stiffened = law; // what flows plastically no longer drives the viscous part
     stiffened.shear *= 1 - law.viscous->answer();
@@ -185,40 +255,39 @@ private:
       stress = find_stress();
       book(stress, increment, flows, own);
     }
-    Tensor before = stress;
-    if (knows_before_)
-      for (int c = 0; c < n_tensor<dim>; ++c)
-        before.c[c] = at_.load(d_, s_.streams.stream(Streams::stress + c));
+    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
     viscous.store(where, before, stress);
     for (int c = 0; c < n_tensor<dim>; ++c) {
       strain.c[c] = hn::IfThenElse(where, all.c[c], strain.c[c]);
-      at_.store(d_, all.c[c], where, s_.streams.stream(Streams::strain + c));
-      at_.store(d_, stress.c[c], where, s_.streams.stream(Streams::stress + c));
+      at_.store(d_, all.c[c], where, streams_.stream(Streams::strain + c));
+      at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
     }
   }
 
   /// To the energy: what viscous particles keep.
-  HWY_INLINE void add_kept(const FlowLaw &law, hn::Mask<D> where,
-                           const OwnStress<dim, D> &own) const
+  HWY_INLINE void add_kept(const FlowLaw &law, hn::Mask<D> where, const Own &own) const
   {
     if (!law.viscous || !is_strained)
       return;
-    const V kept = ViscousFlow<dim, D, At>(d_, law, s_.streams, at_, own).kept_before();
+    const V kept = ViscousFlow<dim, D, At, Own>(d_, law, streams_, at_, own).kept_before();
     at_.store(d_, hn::MulAdd(own.volume(), kept, at_.load(d_, s_.energy)), where, s_.energy);
   }
 
   /// Eq. (D23).
-  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> flows,
-                       const OwnStress<dim, D> &own) const
+  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> where,
+                       const Own &own) const
   {
-    Tensor sum = stress;
+    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
+    Tensor sum;
     for (int c = 0; c < n_tensor<dim>; ++c)
-      sum.c[c] = hn::Add(
-          sum.c[c], knows_before_ ? at_.load(d_, s_.streams.stream(Streams::stress + c)) : sum.c[c]);
-    double *const taken = s_.streams.stream(Streams::taken);
+      sum.c[c] = hn::Add(stress.c[c], before.c[c]);
+    book(double_dot(sum, increment), where, own);
+  }
+  HWY_INLINE void book(V twice_work, hn::Mask<D> where, const Own &own) const
+  {
+    double *const taken = streams_.stream(Streams::taken);
     const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
-    at_.store(d_, hn::MulAdd(half_volume, double_dot(sum, increment), at_.load(d_, taken)), flows,
-              taken);
+    at_.store(d_, hn::MulAdd(half_volume, twice_work, at_.load(d_, taken)), where, taken);
   }
 
   /// 2G of the lanes.
@@ -226,15 +295,88 @@ private:
   {
     HWY_ALIGN double value[At::n];
     for (int l = 0; l < At::n; ++l)
-      value[l] = 2 * s_.laws[s_.law_of ? s_.law_of[at_.particle(l)] : 0].shear;
+      value[l] = 2 * s_.laws[law_of(l)].shear;
     return hn::Load(d_, value);
   }
 
   D d_;
   const InelasticSweep<dim> &s_;
+  const Streams streams_;
   At at_;
   bool knows_before_;
 };
+
+/// The law of all particles of a vector where that is all there is to know of them, else null.
+template <int dim, typename At>
+HWY_INLINE const FlowLaw *plain_law(const InelasticSweep<dim> &s, const At &at)
+{
+  if (s.energy || (s.law_of && !at.is_same(s.law_of)))
+    return nullptr;
+  const FlowLaw *const law = s.laws + (s.law_of ? s.law_of[at.particle(0)] : 0);
+  return law->viscous ? nullptr : law;
+}
+
+/// Whether particles whose strains E have these E:E have none of their own, keep nothing and stay
+/// below what laws look at, whatever the directions of E.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_INLINE bool is_quiet(D d, const InelasticSweep<dim> &s, const At &at, V square)
+{
+  const FlowLaw *const law = plain_law(s, at);
+  if (HWY_UNLIKELY(!law || at.any_open(s.open) || (dim == 2 && !s.is_plane_strain)))
+    return false;
+  std::uint8_t oldest = untouched;
+  at.for_each_block([&](long b) HWY_ATTR { oldest = std::max(oldest, s.age[b]); });
+  if (oldest > untouched)
+    return false;
+  switch (law->kind) {
+  case FlowLaw::Kind::elastic:
+    return true;
+  case FlowLaw::Kind::von_mises:
+    return VonMisesReturn<dim, D>(d, *law).is_far(square);
+  case FlowLaw::Kind::drucker_prager:
+    return DruckerPragerReturn<dim, D>(d, *law).is_far(square);
+  }
+  return false;
+}
+
+/// Of any particles.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_NOINLINE void respond_apart(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
+                                const V (&x)[dim][dim], V lambda_per_volume, Answer<dim, V> &answer)
+{
+  const FlowLaw *const law = plain_law(s, at);
+  const auto respond_with = [&](auto open, auto plain) HWY_ATTR {
+    answer = Response<dim, D, At, open(), plain()>(
+        d, s, at, fresh, law, OwnStress<dim, D, open()>(d, s, at, x, lambda_per_volume));
+  };
+  if (!at.any_open(s.open))
+    respond_with(std::false_type(), std::false_type());
+  else if (law)
+    respond_with(std::true_type(), std::true_type());
+  else
+    respond_with(std::true_type(), std::false_type());
+}
+
+/// What particles with these X (OwnStress) answer; they flow where `fresh`.
+template <int dim, typename D, typename At, typename V = hn::Vec<D>>
+HWY_INLINE Answer<dim, V> respond(D d, const InelasticSweep<dim> &s, const At &at,
+                                  hn::Mask<D> fresh, const V (&x)[dim][dim], V lambda_per_volume)
+{
+  if constexpr (At::n > 1) {
+    const FlowLaw *const law = plain_law(s, at);
+    if (HWY_LIKELY(law && !at.any_open(s.open)))
+      return Response<dim, D, At, false, true>(
+          d, s, at, fresh, law, OwnStress<dim, D, false>(d, s, at, x, lambda_per_volume));
+  }
+  // Copies, lest all else is kept in memory, too.
+  V copy[dim][dim];
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      copy[a][b] = x[a][b];
+  Answer<dim, V> answer(zero_tensor<dim>(hn::Zero(d)), hn::Zero(d), false);
+  respond_apart<dim>(d, s, at, fresh, copy, lambda_per_volume, answer);
+  return answer;
+}
 } // namespace ligament::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
-template <int dim, typename D, typename At>
+template <int dim, typename D, typename At, typename Own>
 class ViscousFlow
 {
   using V = hn::Vec<D>;
@@ -25,7 +25,7 @@ public:
 
   /// As the step before left them.
   HWY_INLINE ViscousFlow(D d, const FlowLaw &law, const Streams &streams, const At &at,
-                         const OwnStress<dim, D> &own)
+                         const Own &own)
       : strain(zero_tensor<dim>(hn::Zero(d))), d_(d), step_(*law.viscous), streams_(streams),
         at_(at), own_(own), still_(own.without_motion()), twice_shear_(2 * law.shear),
         strain_before_(load(Streams::viscous)), driving_before_(load(Streams::driving)),
@@ -126,8 +126,7 @@ private:
 
   /// dev (e_v + sigma / (2G)): of the strain behind the stress and e_v. Of e_v, too, lest the
   /// dashpot feeds what rounding leaves of its trace.
-  HWY_INLINE Tensor driven(const OwnStress<dim, D> &own, const Tensor &other,
-                           const Tensor &viscous) const
+  HWY_INLINE Tensor driven(const Own &own, const Tensor &other, const Tensor &viscous) const
   {
     Tensor all;
     for (int c = 0; c < n_tensor<dim>; ++c)
@@ -232,8 +231,8 @@ private:
   const ViscousStep &step_;
   const Streams &streams_;
   At at_;
-  const OwnStress<dim, D> &own_;
-  OwnStress<dim, D> still_;
+  const Own &own_;
+  Own still_;
   double twice_shear_;
   Tensor strain_before_, driving_before_, rated_before_;
   Tensor driving_ = zero_tensor<dim>(hn::Zero(d_)); // d
