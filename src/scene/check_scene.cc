@@ -2,6 +2,7 @@
 
 #include "core/parameters/spelling.h"
 #include "src/drawing/shown_field.h"
+#include "src/scene/check_flow_loads.h"
 #include "src/scene/zone_around.h"
 
 #include <fmt/format.h>
@@ -181,6 +182,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_tools(scene, f);
   check_phases(scene, f);
   check_scales(scene, f);
+  check_flow_loads(scene, f);
   check_pictures(scene, f);
 }
 } // namespace ligament::program
