@@ -284,7 +284,11 @@ ValueRange value_range(const std::vector<Picture> &pictures)
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  const double lower = quantile(0.01), upper = quantile(0.99);
+  double lower = quantile(0.01), upper = quantile(0.99);
+  if (lower == upper) { // all but a few are equal: these few are what the picture is about
+    lower = quantile(0);
+    upper = quantile(1);
+  }
   const double least = std::max(1e-12 * std::max(std::abs(lower), std::abs(upper)), 1e-300);
   return {lower, std::max(upper, lower + least)};
 }

@@ -2,6 +2,7 @@
 
 #include "core/parameters/spelling.h"
 #include "src/drawing/shown_field.h"
+#include "src/scene/check_flow_loads.h"
 #include "src/scene/zone_around.h"
 
 #include <fmt/format.h>
@@ -120,9 +121,13 @@ void check_time(const Scene &scene, Findings &f)
             fmt::format("\"step\" in /time is {} s, longer than the duration of {} s",
                         *scene.time.step, scene.time.duration),
             "nothing would be computed", "give a smaller step, or none");
-  if (f.sound({"/time/stop_when", "/material/fracture/criterion"}) &&
-      scene.time.stop_when == StopWhen::specimen_broken &&
-      scene.material.fracture.criterion == Criterion::none)
+  const bool breaks =
+      scene.material.fracture.criterion != Criterion::none ||
+      std::any_of(scene.inclusions.begin(), scene.inclusions.end(), [](const Inclusion &i) {
+        return i.material.fracture.criterion != Criterion::none;
+      });
+  if (f.sound({"/time/stop_when", "/material/fracture/criterion", "/inclusions"}) &&
+      scene.time.stop_when == StopWhen::specimen_broken && !breaks)
     f.warning("/time/stop_when", "\"stop_when\" in /time waits for a fracture that cannot happen",
               "the fracture criterion is \"none\"", "");
 }
@@ -182,6 +187,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_tools(scene, f);
   check_phases(scene, f);
   check_scales(scene, f);
+  check_flow_loads(scene, f);
   check_pictures(scene, f);
 }
 } // namespace ligament::program

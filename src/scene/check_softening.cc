@@ -122,7 +122,8 @@ void check_softening(const Scene &scene, const MaterialParameters &m, const std:
   for (const char *name : {"softening", "mode_ratio"})
     if (const std::string key = section + "/" + name; !softens && f.sound_and_given({key}))
       f.warning(key, fmt::format("\"{}\" in {} is not used", name, section),
-                "faces break at once: there is no \"energy\"", "");
+                "faces break at once: there is no \"energy\"",
+                "add \"energy\", or a \"toughness\" beside the strength, or remove it");
   if (!softens)
     return;
   check_company(scene, m, section, f);

@@ -116,7 +116,7 @@ void declare_plasticity(Section &s, PlasticityParameters &p)
 {
   s.add("law", p.law, "von Mises: metals; Drucker and Prager: rock and soil, whose strength grows with pressure and which dilate", words(PlasticityLaw()));
   s.add("yield_stress", p.yield_stress, "of von_mises: uniaxial stress at which flow begins; either this or a curve").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
-  s.add("hardening", p.hardening, "growth of the yield stress (of drucker_prager: of the shear strength) with the plastic strain").in("Pa").usually(0, 2e12, "GPa MPa kPa").at_least(0);
+  s.add("hardening", p.hardening, "growth of the yield stress (of drucker_prager: of the shear strength) with the plastic strain; it must not fall, since softening without a length depends on the spacing").in("Pa").usually(0, 2e12, "GPa MPa kPa").at_least(0);
   s.add("saturation", p.saturation, "of von_mises: Voce's Q, by how much the yield stress grows besides, saturating").in("Pa").usually(1e3, 2e11, "MPa kPa GPa").above(0);
   s.add("saturation_rate", p.saturation_rate, "of von_mises: Voce's b, how fast: Q (1 - exp(-b p)) over the plastic strain p").above(0).at_most(1e6);
   s.list("curve", p.curve, "of von_mises, in place of the yield stress and its growth: points of the curve, straight between them and level behind the last", declare_yield_point);

@@ -190,6 +190,21 @@ TEST(Picture, ParticlesCarryTheirColours)
   EXPECT_NE(drawing.find(">velocity (m/s)<"), std::string::npos);
 }
 
+// A field that is zero nearly everywhere shows what is not.
+TEST(Picture, RareValuesHaveColours)
+{
+  Picture picture;
+  Scatter scatter;
+  scatter.values.assign(1000, 0.);
+  scatter.values[500] = 0.8;
+  picture.scatters = {scatter};
+  EXPECT_EQ(value_range({picture})[0], 0);
+  EXPECT_EQ(value_range({picture})[1], 0.8);
+  for (int k = 0; k < 1000; ++k)
+    picture.scatters[0].values[k] = k == 0 ? 1e6 : k; // a few hot ones don't
+  EXPECT_LT(value_range({picture})[1], 1000);
+}
+
 /// Two particles, a cell and the face between the particles, which have moved apart.
 BodyState two_particles()
 {
