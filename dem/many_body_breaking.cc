@@ -49,8 +49,9 @@ void ManyBodyForce<dim>::drop_bond(const BondId &id, const Bond<dim> &b, const P
 }
 
 template <int dim>
-double ManyBodyForce<dim>::follow_jump(
-    const std::vector<typename InelasticStrains<dim>::Tensor> &before, const Particles &p)
+double
+ManyBodyForce<dim>::follow_jump(const std::vector<typename InelasticStrains<dim>::Tensor> &before,
+                                const Particles &p)
 {
   const auto after = interfaces_.own_stresses(p, evaluation_);
   double kept = 0;
@@ -143,7 +144,10 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       at_once.push_back(id);
       continue;
     }
-    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), b.weight * energy * b.area);
+    const auto stress = state.stresses_of({std::min(b.i, b.j), std::max(b.i, b.j)});
+    const Strain<dim> mean = (stress[0] + stress[1]) / 2;
+    const Vector<dim> way = PrincipalTension<dim>::direction(mean);
+    cohesive_.begin(id, b, p, state.force(b, state.motion(b)), way, b.weight * energy * b.area);
     body_.add_other_particle(b.i);
     body_.add_other_particle(b.j);
     began_at_ = time_;

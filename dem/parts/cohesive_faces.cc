@@ -6,6 +6,9 @@ namespace ligament::dem
 {
 namespace
 {
+/// Of the bond's stiffness: less than it, so that nothing snaps.
+constexpr double excess_slope = 0.25;
+
 /// visit(column, number) for all that a face remembers.
 template <int dim, typename F, typename Visit>
 void for_each_number(F &face, Visit &&visit)
@@ -16,6 +19,8 @@ void for_each_number(F &face, Visit &&visit)
   };
   visit("strength", face.law.strength);
   visit("reach", face.law.reach);
+  visit("excess", face.law.excess);
+  visit("excess_reach", face.law.excess_reach);
   vector("opening", face.stayed.jump);
   visit("largest", face.stayed.largest);
   visit("damage", face.stayed.damage);
@@ -56,15 +61,19 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
           {Vector<dim>::Zero()}};
 }
 
-// The strength is what the face bears now, so that nothing jumps; the reach gives the area below
-// the curve.
+// The strength is the face's share of what a crack across `way` bears. What it bears now beyond
+// that falls off as it opens, so that nothing jumps. The reach gives the area below the curve.
 template <int dim>
 void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Particles &p,
-                               const Vector<dim> &force, double energy)
+                               const Vector<dim> &force, const Vector<dim> &way, double energy)
 {
   Face face = make(id, b, p);
   const SofteningFace<dim> now(face, p);
-  face.law.strength = face.law.effective(force, now.normal);
+  const double bears = face.law.effective(force, now.normal);
+  face.law.strength =
+      std::min(bears, face.law.effective(Vector<dim>(force.dot(way) * way), now.normal));
+  face.law.excess = bears - face.law.strength;
+  face.law.excess_reach = face.law.excess / (excess_slope * now.law.shear);
   face.whole_energy = energy;
   face.force = face.last_force = now.in_own_axes(force);
   take_direction(face, face.last_force);
@@ -105,8 +114,10 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
                          (now.bending_share(face.stayed) - now.bending_share()) *
                              bending_product(face.bond, face.last_turn, turn);
     face.spent += face.law.strength * face.law.reach *
-                  (face.law.shape.area_from(face.stayed.damage) -
-                   face.law.shape.area_from(face.opening.damage));
+                      (face.law.shape.area_from(face.stayed.damage) -
+                       face.law.shape.area_from(face.opening.damage)) +
+                  face.law.excess_energy_from(face.stayed.largest) -
+                  face.law.excess_energy_from(face.opening.largest);
     work_.add(taken);
     face.work += taken;
     face.stayed = face.opening;

@@ -50,10 +50,11 @@ public:
   /// Null where it has not begun to open.
   const CohesiveFace<dim> *find(const Bond<dim> &bond, const Particles &particles) const;
 
-  /// A bond begins to soften at this force (N) on its particle i. `energy` in J is what it takes to
-  /// open it wholly along its normal.
+  /// A bond begins to soften at this force (N) on its particle i. `way` is the unit direction of
+  /// the largest principal stress, in space; `energy` in J is what it takes to open the bond wholly
+  /// along its normal.
   void begin(const BondId &id, const Bond<dim> &bond, const Particles &particles,
-             const Vector<dim> &force, double energy);
+             const Vector<dim> &force, const Vector<dim> &way, double energy);
 
   /// Once at every new time, between the pressures of the parts and those of the rows: openings
   /// follow the motion, face after face; what that takes is booked.
