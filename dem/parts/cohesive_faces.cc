@@ -8,6 +8,9 @@ namespace
 {
 /// Of the bond's stiffness: less than it, so that nothing snaps.
 constexpr double excess_slope = 0.25;
+/// n.e1 of faces that a straight crack across e1 needs at least; and of the criterion's cone. Those
+/// between keep more of what they bear: else a crack along any row would cost the same.
+constexpr double crack_cosine = 0.5, least_cosine = 0.3;
 
 /// visit(column, number) for all that a face remembers.
 template <int dim, typename F, typename Visit>
@@ -69,10 +72,12 @@ void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Parti
 {
   Face face = make(id, b, p);
   const SofteningFace<dim> now(face, p);
-  const double bears = face.law.effective(force, now.normal);
-  face.law.strength =
-      std::min(bears, face.law.effective(Vector<dim>(force.dot(way) * way), now.normal));
-  face.law.excess = bears - face.law.strength;
+  const double bears = face.law.effective(force, now.normal),
+               along = face.law.effective(Vector<dim>(force.dot(way) * way), now.normal),
+               cosine = std::abs(now.normal.dot(way)),
+               part = std::clamp((cosine - least_cosine) / (crack_cosine - least_cosine), 0., 1.);
+  face.law.excess = part * std::max(bears - along, 0.);
+  face.law.strength = bears - face.law.excess;
   face.law.excess_reach = face.law.excess / (excess_slope * now.law.shear);
   face.whole_energy = energy;
   face.force = face.last_force = now.in_own_axes(force);
