@@ -184,7 +184,10 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       double whole = b.weight * energy * b.area;
       if (search_.strengths_scatter())
         whole = std::max(whole, least_energy(b, force, fracture().softening_of(material)));
-      cohesive_.begin(id, b, p, force, material, whole);
+      const auto stress = state.stresses_of({std::min(b.i, b.j), std::max(b.i, b.j)});
+      const Strain<dim> mean = (stress[0] + stress[1]) / 2;
+      const Vector<dim> way = PrincipalTension<dim>::direction(mean);
+      cohesive_.begin(id, b, p, force, way, material, whole);
     }
     for (const int i : {b.i, b.j}) {
       body_.add_other_particle(i);

@@ -81,9 +81,19 @@ struct CohesiveLaw
   Softening shape;
   double mode_ratio; // beta
   double friction;
+  double excess = 0;       // N, what it bore above the strength when it began
+  double excess_reach = 0; // m, the opening at which that is gone
 
   /// Share of the strength that is left.
   double left(const Opening<dim> &o) const { return shape.at(o.damage).value; }
+
+  /// Below the line of the excess, in J, from this largest opening on.
+  double excess_energy_from(double largest) const
+  {
+    return excess_share(largest) > 0
+               ? excess * excess_reach / 2 * std::pow(excess_share(largest), 2)
+               : 0;
+  }
 
   /// (t_n^2 + t_t^2/beta^2)^(1/2) of a traction times area.
   double effective(const Vector<dim> &force, const Vector<dim> &normal) const
@@ -132,14 +142,14 @@ struct CohesiveLaw
     if (o.damage >= 1)
       return Matrix::Zero();
     constexpr double shut = 1e-6; // of the reach
-    const auto [share, slope] = shape.at(o.damage);
-    const double secant = strength * share / std::max(o.largest, shut * reach),
+    const auto [value, slope] = borne(o);
+    const double secant = value / std::max(o.largest, shut * reach),
                  size = std::sqrt(o.jump.dot(metric * o.jump));
     if (unloads(size, o))
       return secant * metric;
     const Vector<dim> way = size > 0 ? o.jump : Vector<dim>(metric.inverse() * last_force);
     const Vector<dim> pulled = metric * way / std::sqrt(way.dot(metric * way));
-    return secant * metric + (strength * slope / reach - secant) * pulled * pulled.transpose();
+    return secant * metric + (slope - secant) * pulled * pulled.transpose();
   }
 
 private:
@@ -150,10 +160,32 @@ private:
     return size < (1 - round_off) * o.largest;
   }
 
+  /// What is left of the excess.
+  double excess_share(double largest) const
+  {
+    return largest < excess_reach ? 1 - largest / excess_reach : 0;
+  }
+  /// f in N at the largest opening, and its slope in N/m.
+  struct Borne
+  {
+    double value, slope;
+  };
+  Borne borne(double largest, double damage) const
+  {
+    const auto [share, slope] = shape.at(damage);
+    Borne b{strength * share, strength * slope / reach};
+    if (const double rest = damage < 1 ? excess_share(largest) : 0; rest > 0) {
+      b.value += excess * rest;
+      b.slope -= excess / excess_reach;
+    }
+    return b;
+  }
+  Borne borne(const Opening<dim> &o) const { return borne(o.largest, o.damage); }
+
   /// f/kappa, N/m.
   double bond_stiffness(const Opening<dim> &o) const
   {
-    return o.largest > 0 ? strength * left(o) / o.largest : 0;
+    return o.largest > 0 ? borne(o).value / o.largest : 0;
   }
 
   /// Without contact: F - C w = (f/kappa) B w and kappa = max(kappa, |w|), |w|^2 = w.Bw. With
@@ -168,12 +200,12 @@ private:
     {
       Matrix inverse;
       Vector<dim> y;
-      double size, slope; // of the share
+      double size, slope; // of f, N/m
     };
     const auto damage = [&](double kappa) { return last.damage + (kappa - last.largest) / reach; };
     const auto at = [&](double kappa) {
-      const auto [share, slope] = shape.at(damage(kappa));
-      Trial t{(kappa * stiffness + strength * share * metric).inverse(), {}, 0, slope};
+      const auto [value, slope] = borne(kappa, damage(kappa));
+      Trial t{(kappa * stiffness + value * metric).inverse(), {}, 0, slope};
       t.y = t.inverse * force;
       t.size = size(t.y);
       return t;
@@ -196,8 +228,7 @@ private:
     for (int k = 0; k < most && high - low > round_off; ++k) {
       (now.size > 1 ? low : high) = kappa;
       const Vector<dim> pulled = metric * now.y;
-      const Vector<dim> change =
-          -now.inverse * (stiffness * now.y + strength * now.slope / reach * pulled);
+      const Vector<dim> change = -now.inverse * (stiffness * now.y + now.slope * pulled);
       const double rate = -pulled.dot(change) / (now.size * now.size * now.size); // of 1/|y|
       double next = kappa - (1 / now.size - 1) / rate;
       if (!(next > low && next < high)) {

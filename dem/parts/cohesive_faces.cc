@@ -8,6 +8,12 @@ namespace ligament::dem
 {
 namespace
 {
+/// Of the bond's stiffness: less than it, so that nothing snaps.
+constexpr double excess_slope = 0.25;
+/// n.e1 of faces that a straight crack across e1 needs at least; and of the criterion's cone. Those
+/// between keep more of what they bear: else a crack along any row would cost the same.
+constexpr double crack_cosine = 0.5, least_cosine = 0.3;
+
 /// visit(column, number) for all that a face remembers.
 template <int dim, typename F, typename Visit>
 void for_each_number(F &face, Visit &&visit)
@@ -18,6 +24,8 @@ void for_each_number(F &face, Visit &&visit)
   };
   visit("strength", face.law.strength);
   visit("reach", face.law.reach);
+  visit("excess", face.law.excess);
+  visit("excess_reach", face.law.excess_reach);
   vector("opening", face.stayed.jump);
   visit("largest", face.stayed.largest);
   visit("damage", face.stayed.damage);
@@ -61,15 +69,22 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
           {Vector<dim>::Zero()}};
 }
 
-// The strength is what the face bears now, so that nothing jumps; the reach gives the area below
-// the curve.
+// The strength is the face's share of what a crack across `way` bears. What it bears now beyond
+// that falls off as it opens, so that nothing jumps. The reach gives the area below the curve.
 template <int dim>
 void CohesiveFaces<dim>::begin(const BondId &id, const Bond<dim> &b, const Particles &p,
-                               const Vector<dim> &force, int material, double energy)
+                               const Vector<dim> &force, const Vector<dim> &way, int material,
+                               double energy)
 {
   Face face = make(id, b, p, material);
   const SofteningFace<dim> now(face, p, strains_);
-  face.law.strength = face.law.effective(force, now.normal);
+  const double bears = face.law.effective(force, now.normal),
+               along = face.law.effective(Vector<dim>(force.dot(way) * way), now.normal),
+               cosine = std::abs(now.normal.dot(way)),
+               part = std::clamp((cosine - least_cosine) / (crack_cosine - least_cosine), 0., 1.);
+  face.law.excess = part * std::max(bears - along, 0.);
+  face.law.strength = bears - face.law.excess;
+  face.law.excess_reach = face.law.excess / (excess_slope * now.law.shear);
   face.whole_energy = energy;
   face.force = face.last_force = now.in_own_axes(force);
   take_direction(face, face.last_force);
@@ -211,8 +226,10 @@ void CohesiveFaces<dim>::book(const Particles &p)
                              bending_product(face.bond, face.last_turn, turn);
     if (!face.fall.is_on())
       face.spent += face.law.strength * face.law.reach *
-                    (face.law.shape.area_from(face.stayed.damage) -
-                     face.law.shape.area_from(face.opening.damage));
+                        (face.law.shape.area_from(face.stayed.damage) -
+                         face.law.shape.area_from(face.opening.damage)) +
+                    face.law.excess_energy_from(face.stayed.largest) -
+                    face.law.excess_energy_from(face.opening.largest);
     work_.add(taken);
     face.work += taken;
     face.stayed = face.opening;

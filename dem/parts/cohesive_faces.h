@@ -60,9 +60,10 @@ public:
   const CohesiveFace<dim> *find(const Bond<dim> &bond, const Particles &particles) const;
 
   /// A bond begins to soften at this force (N) on its particle i, by the law of this material.
-  /// `energy` in J is what it takes to open it wholly along its normal.
+  /// `way` is the unit direction of the largest principal stress, in space; `energy` in J is what
+  /// it takes to open the bond wholly along its normal.
   void begin(const BondId &id, const Bond<dim> &bond, const Particles &particles,
-             const Vector<dim> &force, int material, double energy);
+             const Vector<dim> &force, const Vector<dim> &way, int material, double energy);
 
   /// In place of it: from now (s) on its strength falls to nothing within `duration`. False where
   /// it bears neither tension nor shear: then nothing could fall.

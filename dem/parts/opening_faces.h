@@ -181,7 +181,9 @@ void take_direction(CohesiveFace<dim> &face, const Vector<dim> &way)
                area = face.law.strength * shape.area_from(face.opening.damage);
   constexpr double shortest = 0.2, longest = 2; // of the whole reach
   if (area > 0)
-    face.law.reach = std::clamp((energy - face.spent) / area, shortest * whole, longest * whole);
+    face.law.reach =
+        std::clamp((energy - face.spent - face.law.excess_energy_from(face.opening.largest)) / area,
+                   shortest * whole, longest * whole);
 }
 
 /// All of them in a state of their particles, which open together: they see each other through the

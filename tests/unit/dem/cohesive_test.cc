@@ -1,5 +1,6 @@
 // Faces that soften: work per area, gradient at frozen openings, balance, numbering.
 #include "dem/laws/cohesive.h"
+#include "tests/oracle/cohesive_beam.h"
 #include "tests/unit/dem/cases.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
@@ -391,6 +392,53 @@ TEST(CohesiveCrack, TakesItsEnergyPerProjectedArea)
 {
   for (const double degrees : {0., 10.})
     EXPECT_NEAR(work_per_area(degrees), 1, 0.05) << degrees;
+}
+/// Largest 3 P S/(2 (D-a)^2) over the strength of the oracle's beam, of one E G_c/f_t^2 and so many
+/// rows of a hexagonal packing along it; a is what the cut breaks, seen along the beam.
+double strength_of_section(double depth)
+{
+  const double span = 2.5 * depth, part = 0.04 * depth, beside = 0.01, strength = 1e-3;
+  packings::LatticeParameters<2> lattice;
+  lattice.spacing = lattice.thickness = 1;
+  lattice.lower = {-span / 2 - 0.2 * depth, 0};
+  lattice.upper = {span / 2 + 0.2 * depth, depth};
+  lattice.cracks = {{{beside, -1}, {beside, 0.3 * depth}}};
+  auto packing = packings::make_lattice_packing<2>(lattice);
+  double notch = 0;
+  for (const auto &face : packing.faces)
+    if (face.cracked)
+      notch += face.area * std::abs(face.normal[0]);
+  FractureLaw law{FractureLaw::Criterion::opening_tension, strength};
+  law.energy = depth * strength * strength;
+  law.softening = {1 / 3., 0.8};
+  const double duration = 120 * depth,
+               stroke = 1.5 * strength * span * span / (6 * depth) + 4 * depth * strength;
+  std::vector<core::BoundaryLoad<2>> loads(3);
+  for (int k = 0; k < 3; ++k) {
+    const double middle = (k - 1) * span / 2;
+    loads[k].boundary = k == 1 ? 3 : 2;
+    loads[k].part =
+        core::Part<2>::box(Vector<2>(middle - part, -1), Vector<2>(middle + part, depth + 1));
+    loads[k].value[1] = k == 1 ? -stroke / duration : 0;
+    loads[k].history = core::Ramp{0.1 * duration};
+  }
+  Run<2> run(packing, DemMaterial{1, 0.2, 1, PlaneMode::stress, 0}, loads, law);
+  run.dt *= 0.9;
+  double peak = 0, load = 0;
+  while (run.time < duration && (peak == 0 || load > 0.8 * peak || run.time < 0.2 * duration)) {
+    run.step(0.3 / depth);
+    load = run.force->reaction(0)[1] + run.force->reaction(2)[1];
+    peak = std::max(peak, load);
+  }
+  return 1.5 * peak * span / std::pow(depth - notch, 2) / strength;
+}
+
+// The notch's front is drawn along the beam, too: faces that are inclined must not bear more than
+// their share of a straight crack.
+TEST(CohesiveCrack, BeamBearsWhatAStraightCrackThroughItDoes)
+{
+  const double line = oracle::CohesiveBeam(100, 0.3, 1).strength_of_section();
+  EXPECT_NEAR(strength_of_section(20) / line, 1, 0.03);
 }
 } // namespace
 } // namespace ligament::dem::testing
