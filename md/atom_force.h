@@ -63,7 +63,7 @@ public:
 
   /// sum |r_a + r_b|^2 over the pairs of nearest neighbours that are most opposite, over the
   /// squared spacing (C. Kelchner, S. Plimpton, J. Hamilton, Phys. Rev. B 58 (1998) 11085): 0 in
-  /// the crystal, however strained; about 1 and more at defects.
+  /// the crystal, however strained; some tenths and more at defects.
   std::vector<double> centro_symmetry(const Particles &atoms) const;
   /// Neighbours nearer than midway between the first and the next shell (bcc: second and third): 6,
   /// 12 or 14 in the crystal.
