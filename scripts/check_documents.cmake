@@ -23,7 +23,7 @@ file(GLOB documents RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/docs
 foreach(document IN LISTS documents)
   get_filename_component(folder ${ROOT}/${document} DIRECTORY)
   read_text(${ROOT}/${document} text)
-  string(REGEX MATCHALL "`(core|particles|dem|fem|coupling|src|tests|examples|docs|scripts|bench)/[A-Za-z0-9_./]*`"
+  string(REGEX MATCHALL "`(core|particles|packings|dem|md|fem|coupling|src|tests|examples|docs|scripts|bench)/[A-Za-z0-9_./]*`"
     paths "${text}")
   foreach(path IN LISTS paths)
     string(REPLACE "`" "" path "${path}")
@@ -41,14 +41,14 @@ foreach(document IN LISTS documents)
 endforeach()
 
 file(READ ${ROOT}/docs/theory.md theory)
-file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/* ${ROOT}/particles/* ${ROOT}/packings/* ${ROOT}/dem/*
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/* ${ROOT}/particles/* ${ROOT}/packings/* ${ROOT}/dem/* ${ROOT}/md/*
   ${ROOT}/fem/* ${ROOT}/coupling/* ${ROOT}/src/* ${ROOT}/tests/* ${ROOT}/examples/*)
 foreach(source IN LISTS sources)
   if(NOT source MATCHES "\\.(h|cc|inl|md)$")
     continue()
   endif()
   read_text(${ROOT}/${source} text)
-  string(REGEX MATCHALL "\\(([DFCE][0-9]+[a-z]?)\\)" equations "${text}")
+  string(REGEX MATCHALL "\\(([DFCEM][0-9]+[a-z]?)\\)" equations "${text}")
   foreach(equation IN LISTS equations)
     string(REGEX REPLACE "[()]" "" number "${equation}")
     if(NOT theory MATCHES "tag{([^}]*, )?${number}[,}]")

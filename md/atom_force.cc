@@ -1,0 +1,194 @@
+#include "md/atom_force.h"
+
+#include "core/check.h"
+#include "particles/block_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::md
+{
+namespace
+{
+template <int dim>
+AtomBody<dim> make_body(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
+                        const std::vector<int> &species)
+{
+  AtomBody<dim> body{crystal.potential(), species, packing.period, {}};
+  if (species.empty())
+    body.species.assign(packing.size(), crystal.parameters().species);
+  core::require(int(body.species.size()) == packing.size(),
+                "the species of atoms are not as many as the atoms");
+  for (const int a : body.species)
+    core::require(a >= 0 && a < body.potential.n_species(),
+                  "an atom of a species that the potential has not");
+  return body;
+}
+
+double sum(const std::vector<double> &values)
+{
+  return particles::block_sum(int(values.size()), [&](int i) { return values[i]; }).value();
+}
+} // namespace
+
+template <int dim>
+AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
+                          const AtomForceOptions &options)
+    : crystal_(crystal), body_(make_body(crystal, packing, options.species)),
+      reference_(packing.centre), kernel_(body_.potential),
+      list_(body_.potential.cutoff(), options.skin, packing.period)
+{
+  const Particles atoms = at_rest();
+  list_.build<dim>(atoms.reference, atoms.displacement);
+  reference_density_ = densities(atoms);
+  reference_energy_ = sum(energies(atoms));
+}
+
+template <int dim>
+particles::Particles<dim> AtomForce<dim>::at_rest() const
+{
+  Particles atoms;
+  atoms.drop_orientations();
+  atoms.resize(int(reference_[0].size()));
+  atoms.reference = reference_;
+  return atoms;
+}
+
+template <int dim>
+void AtomForce<dim>::update_list(const Particles &atoms) const
+{
+  if (list_.update<dim>(atoms.reference, atoms.displacement)) {
+    list_is_reference_ = false;
+    built_ = atoms.displacement;
+  }
+}
+
+template <int dim>
+void AtomForce<dim>::compute(Particles &atoms, double)
+{
+  update_list(atoms);
+  if (kernel_.can_compute() && body_.weight.empty())
+    kernel_.compute<dim>(list_, atoms.force);
+  else
+    compute_plainly(atoms);
+}
+
+template <int dim>
+std::vector<double> AtomForce<dim>::densities(const Particles &atoms) const
+{
+  std::vector<double> density(atoms.size(), 0.);
+  if (body_.potential.has_embedding())
+    for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+      const BondJets jets = body_.potential.bond(body_.species[b.i], body_.species[b.j], b.length);
+      density[b.i] += jets.density_at_i.value;
+      density[b.j] += jets.density_at_j.value;
+    });
+  return density;
+}
+
+template <int dim>
+void AtomForce<dim>::compute_plainly(Particles &atoms) const
+{
+  for (auto &component : atoms.force)
+    std::fill(component.begin(), component.end(), 0.);
+  for_each_tension(atoms, [&](const Bond<dim> &b, double tension) {
+    const Vector<dim> f = tension / b.length * b.present;
+    add(atoms.force, b.i, f);
+    add(atoms.force, b.j, Vector<dim>(-f));
+  });
+}
+
+template <int dim>
+std::vector<double> AtomForce<dim>::energies(const Particles &atoms) const
+{
+  std::vector<double> energy(atoms.size(), 0.), density = densities(atoms);
+  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+    const double half =
+        body_.weight_of(b.i, b.j) / 2 *
+        body_.potential.bond(body_.species[b.i], body_.species[b.j], b.length).pair.value;
+    energy[b.i] += half;
+    energy[b.j] += half;
+  });
+  for (int i = 0; i < atoms.size(); ++i)
+    energy[i] += body_.weight_of(i) * body_.potential.embedding(body_.species[i], density[i]).value;
+  return energy;
+}
+
+template <int dim>
+std::vector<double> AtomForce<dim>::energy_changes(const Particles &atoms) const
+{
+  const Potential &p = body_.potential;
+  std::vector<double> energy(atoms.size(), 0.), density(atoms.size(), 0.);
+  for_each_present_bond(atoms, true, [&](const Bond<dim> &b) {
+    const int a = body_.species[b.i], c = body_.species[b.j];
+    const double length = b.reference.norm(), longer = b.longer();
+    const double half = body_.weight_of(b.i, b.j) / 2 * p.pair_spline(a, c).change(length, longer);
+    energy[b.i] += half;
+    energy[b.j] += half;
+    if (p.has_embedding()) {
+      density[b.i] += p.density_spline(a, c).change(length, longer);
+      density[b.j] += p.density_spline(c, a).change(length, longer);
+    }
+  });
+  for (int i = 0; i < atoms.size() && p.has_embedding(); ++i)
+    energy[i] += body_.weight_of(i) *
+                 p.embedding_spline(body_.species[i]).change(reference_density_[i], density[i]);
+  return energy;
+}
+
+template <int dim>
+double AtomForce<dim>::potential_energy(const Particles &atoms) const
+{
+  update_list(atoms);
+  if (list_is_reference_)
+    return sum(energy_changes(atoms));
+  return sum(energies(atoms)) - reference_energy_;
+}
+
+template <int dim>
+double AtomForce<dim>::stable_step(const Particles &atoms) const
+{
+  return md::stable_step(AtomTangent<dim>(body_, atoms), atoms);
+}
+
+template <int dim>
+void AtomForce<dim>::set_energy_weights(const std::vector<double> &weights)
+{
+  core::require(list_is_reference_ && body_.weight.empty() &&
+                    weights.size() == body_.species.size(),
+                "energy weights are set once, for all atoms, before these move");
+  body_.weight = weights;
+  reference_energy_ = sum(energies(at_rest()));
+}
+
+template <int dim>
+void AtomForce<dim>::add_tangent(
+    const Particles &atoms, const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
+    const std::vector<int> *of) const
+{
+  AtomTangent<dim>(body_, atoms).add_terms(add, of);
+}
+
+template <int dim>
+void AtomForce<dim>::for_each_face(
+    const Particles &atoms, const std::function<void(const particles::FaceView<dim> &)> &visit,
+    const std::vector<int> *of) const
+{
+  double lengths = 0;
+  for (const Vector<dim> &bond : crystal_.half_bonds())
+    if (bond.norm() < crystal_.potential().cutoff())
+      lengths += 2 * bond.norm();
+  const double area = 2 * dim * crystal_.volume() / lengths;
+  const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
+  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
+    const Vector<dim> normal = b.reference.normalized(), half = b.reference / 2;
+    if (is_asked(b.i))
+      visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, true});
+    if (is_asked(b.j))
+      visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, true});
+  });
+}
+
+template class AtomForce<2>;
+template class AtomForce<3>;
+} // namespace ligament::md

@@ -1,0 +1,118 @@
+// Forces between atoms: a potential on a neighbour list, as the loop and the coupler know forces.
+#pragma once
+
+#include "md/atom_kernel.h"
+#include "md/atom_tangent.h"
+#include "md/crystal.h"
+#include "packings/packing.h"
+
+#include <memory>
+
+namespace ligament::md
+{
+struct AtomForceOptions
+{
+  double skin = 1e-10;           // m: how much farther than the cut-off the neighbour list sees
+  std::vector<int> species = {}; // of each atom; empty: all are the crystal's
+};
+
+/// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as
+/// long as no atom has moved by half of the skin they are sums of differences, with all their
+/// digits.
+template <int dim>
+class AtomForce : public particles::ParticleForce<dim>
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  /// The packing is one of the crystal (cut_crystal()), perhaps with atoms of other species.
+  AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
+            const AtomForceOptions &options = {});
+
+  bool has_rotations() const override { return false; }
+  void compute(Particles &atoms, double time) override;
+  double potential_energy(const Particles &atoms) const override;
+  /// About the reference, (M6).
+  double stable_step(const Particles &atoms) const override;
+  particles::ElasticConstants<dim> elastic_constants() const override
+  {
+    return crystal_.elastic_constants();
+  }
+  void set_energy_weights(const std::vector<double> &weights) override;
+  void add_tangent(const Particles &atoms,
+                   const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
+                   const std::vector<int> *of = nullptr) const override;
+  void save(core::State &state, const core::Names &names, const Particles &atoms) const override;
+  void load(const core::State &state, const core::Names &names, const Particles &atoms) override;
+
+  /// Pairs within the cut-off in the reference. The area is the same for all, so that the pyramids
+  /// between an atom of the crystal and the middle of its bonds fill its volume; atoms at the
+  /// surface have no faces there.
+  void for_each_face(const Particles &atoms,
+                     const std::function<void(const particles::FaceView<dim> &)> &visit,
+                     const std::vector<int> *of = nullptr) const override;
+
+  /// Of the atoms' bonds, each half, over the reference volume: (M7). For small strains Cauchy's
+  /// stress, in general Kirchhoff's.
+  void stresses(const Particles &atoms, Components<n_strains<dim>> &stress) const override;
+  /// Pairs that the list has at present.
+  long n_bonds() const override { return list_.n_pairs(); }
+
+  const Crystal<dim> &crystal() const { return crystal_; }
+  const NeighbourList &list() const { return list_; }
+
+  /// sum |r_a + r_b|^2 over the pairs of nearest neighbours that are most opposite, over the
+  /// squared spacing (C. Kelchner, S. Plimpton, J. Hamilton, Phys. Rev. B 58 (1998) 11085): 0 in
+  /// the crystal, however strained; some tenths and more at defects.
+  std::vector<double> centro_symmetry(const Particles &atoms) const;
+  /// Neighbours nearer than midway between the first and the next shell (bcc: second and third): 6,
+  /// 12 or 14 in the crystal.
+  std::vector<int> coordination(const Particles &atoms) const;
+
+private:
+  void update_list(const Particles &atoms) const;
+  Particles at_rest() const;
+  /// visit(bond) of the list as it is.
+  template <typename Visit>
+  void for_each_present_bond(const Particles &atoms, bool or_reference, Visit &&visit) const
+  {
+    for_each_bond<dim>(list_, atoms, body_.period, or_reference, visit);
+  }
+  /// visit(bond, tension): N, above 0 where it pulls.
+  template <typename Visit>
+  void for_each_tension(const Particles &atoms, Visit &&visit) const;
+  void compute_plainly(Particles &atoms) const;
+  std::vector<double> densities(const Particles &atoms) const;
+  /// Half of each pair's energy and the embedding energy of each atom, in J; and what they are
+  /// more than in the reference, bond by bond.
+  std::vector<double> energies(const Particles &atoms) const;
+  std::vector<double> energy_changes(const Particles &atoms) const;
+  /// Vectors to the present neighbours of each atom within `reach`, in m.
+  std::vector<std::vector<Vector<dim>>> neighbours(const Particles &atoms, double reach) const;
+
+  Crystal<dim> crystal_;
+  AtomBody<dim> body_;
+  Components<dim> reference_; // m
+  AtomKernel kernel_;
+  std::vector<double> reference_density_;
+  double reference_energy_ = 0; // J
+  // Looking at a state may bring the list up to date.
+  mutable NeighbourList list_;
+  mutable bool list_is_reference_ = true;
+  mutable Components<dim> built_; // m, else: displacements at which it was built
+};
+
+template <int dim>
+template <typename Visit>
+void AtomForce<dim>::for_each_tension(const Particles &atoms, Visit &&visit) const
+{
+  std::vector<double> slope = densities(atoms);
+  for (int i = 0; i < atoms.size(); ++i)
+    slope[i] = body_.weight_of(i) * body_.potential.embedding(body_.species[i], slope[i]).slope;
+  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+    const BondJets jets = body_.potential.bond(body_.species[b.i], body_.species[b.j], b.length);
+    visit(b, body_.weight_of(b.i, b.j) * jets.pair.slope + slope[b.i] * jets.density_at_i.slope +
+                 slope[b.j] * jets.density_at_j.slope);
+  });
+}
+} // namespace ligament::md

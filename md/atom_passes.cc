@@ -1,0 +1,241 @@
+// Compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "md/atom_passes.cc"
+#include "core/dispatch.h"
+#include "md/atom_kernel.h"
+
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway wants it.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ligament::md::HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+constexpr int lanes = int(hn::MaxLanes(D()));
+
+/// Four numbers of each lane, one lane after the other in a vector.
+struct Columns
+{
+  V a, b, c, d;
+};
+
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128 // plain code: lane by lane
+template <typename Index>
+Columns load_columns(const double *first, int stride, const Index *index)
+{
+  const D d;
+  HWY_ALIGN double columns[4][lanes];
+  for (int lane = 0; lane < lanes; ++lane)
+    for (int c = 0; c < 4; ++c)
+      columns[c][lane] = first[std::ptrdiff_t(stride) * index[lane] + c];
+  return {hn::Load(d, columns[0]), hn::Load(d, columns[1]), hn::Load(d, columns[2]),
+          hn::Load(d, columns[3])};
+}
+
+void store_rows(V x, V y, V z, double *rows)
+{
+  const D d;
+  HWY_ALIGN double columns[3][lanes];
+  hn::Store(x, d, columns[0]);
+  hn::Store(y, d, columns[1]);
+  hn::Store(z, d, columns[2]);
+  for (int lane = 0; lane < lanes; ++lane)
+    for (int c = 0; c < 4; ++c)
+      rows[4 * lane + c] = c < 3 ? columns[c][lane] : 0;
+}
+
+void add_record(const double *from, double *to)
+{
+  for (int c = 0; c < 4; ++c)
+    to[c] += from[c];
+}
+#else
+/// Vectors of [a b | c d] of lanes 0 and 4, 1 and 5, ... become columns.
+HWY_INLINE Columns transposed(V r0, V r1, V r2, V r3)
+{
+  const D d;
+  const V ac01 = hn::InterleaveLower(d, r0, r1), bd01 = hn::InterleaveUpper(d, r0, r1),
+          ac23 = hn::InterleaveLower(d, r2, r3), bd23 = hn::InterleaveUpper(d, r2, r3);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ac23), ac01),
+          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(bd23), bd01),
+          hn::OddEvenBlocks(ac23, hn::SwapAdjacentBlocks(ac01)),
+          hn::OddEvenBlocks(bd23, hn::SwapAdjacentBlocks(bd01))};
+}
+
+/// The four numbers at first + stride * index[lane] for each lane.
+template <typename Index>
+HWY_INLINE Columns load_columns(const double *first, int stride, const Index *index)
+{
+  const D d;
+  const auto row = [&](int lane) {
+    const double *const at = first + std::ptrdiff_t(stride) * index[lane];
+    if constexpr (lanes == 8) {
+      const hn::Half<D> half;
+      return hn::Combine(d,
+                         hn::Load(half, first + std::ptrdiff_t(stride) * index[lane + lanes / 2]),
+                         hn::Load(half, at));
+    } else
+      return hn::Load(d, at);
+  };
+  return transposed(row(0), row(1), row(2), row(3));
+}
+
+/// Stores x, y, z, 0 of each lane as four numbers in turn.
+HWY_INLINE void store_rows(V x, V y, V z, double *rows)
+{
+  const D d;
+  // [x y | z 0] of lanes 0 and 4, 1 and 5, ...
+  const V zero = hn::Zero(d), xy_even = hn::InterleaveLower(d, x, y),
+          xy_odd = hn::InterleaveUpper(d, x, y), z_even = hn::InterleaveLower(d, z, zero),
+          z_odd = hn::InterleaveUpper(d, z, zero);
+  const V row[4] = {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even),
+                    hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd),
+                    hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even)),
+                    hn::OddEvenBlocks(z_odd, hn::SwapAdjacentBlocks(xy_odd))};
+  for (int r = 0; r < 4; ++r)
+    if constexpr (lanes == 8) {
+      const hn::Half<D> half;
+      hn::StoreU(hn::LowerHalf(half, row[r]), half, rows + 4 * r);
+      hn::StoreU(hn::UpperHalf(half, row[r]), half, rows + 4 * (r + 4));
+    } else
+      hn::StoreU(row[r], d, rows + 4 * r);
+}
+
+HWY_INLINE void add_record(const double *from, double *to)
+{
+  const hn::CappedTag<double, 4> d;
+  hn::Store(hn::Add(hn::Load(d, to), hn::LoadU(d, from)), d, to);
+}
+#endif
+
+/// Pairs of the block in range go to the buffer, squared distances to its `pair`.
+int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  const D d;
+  const hn::RebindToSigned<D> dl;
+  const hn::Rebind<std::int32_t, D> di;
+  const std::size_t room = k.begin[block.last] - k.begin[block.first] + 2 * lanes;
+  if (q.x.size() < room) {
+    q.other.resize(room);
+    for (auto *array : {&q.x, &q.y, &q.z, &q.density, &q.pair})
+      array->resize(room);
+  }
+  q.row_end.resize(block.last - block.first);
+  const V limit = hn::Set(d, k.cutoff2);
+  int n = 0;
+  for (int s = block.first; s < block.last; ++s) {
+    const V x = hn::Set(d, k.records[s].x), y = hn::Set(d, k.records[s].y),
+            z = hn::Set(d, k.records[s].z);
+    const int end = k.begin[s + 1];
+    for (int m = k.begin[s]; m < end; m += lanes) {
+      const Columns p = load_columns(&k.records[0].x, 4, k.neighbours + m);
+      const V dx = hn::Sub(p.a, x), dy = hn::Sub(p.b, y), dz = hn::Sub(p.c, z),
+              r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+      auto near = hn::Lt(r2, limit);
+      if (m + lanes > end)
+        near = hn::And(near, hn::FirstN(d, std::size_t(end - m)));
+      hn::StoreU(hn::Compress(dx, near), d, q.x.data() + n);
+      hn::StoreU(hn::Compress(dy, near), d, q.y.data() + n);
+      hn::StoreU(hn::Compress(dz, near), d, q.z.data() + n);
+      hn::StoreU(hn::Compress(r2, near), d, q.pair.data() + n);
+      const auto others = hn::PromoteTo(dl, hn::LoadU(di, k.neighbours + m));
+      hn::StoreU(hn::Compress(others, hn::RebindMask(dl, near)), dl, q.other.data() + n);
+      n += int(hn::CountTrue(d, near));
+    }
+    q.row_end[s - block.first] = n;
+  }
+  for (int m = n; m < n + lanes; ++m) // lanes without a pair, far out
+    q.pair[m] = k.cutoff2;
+  return n;
+}
+
+void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  const D d;
+  const hn::Rebind<std::int32_t, D> di;
+  const int n = find_in_range(k, block, q);
+  if (k.slot_of_image)
+    for (int m = 0; m < n; ++m)
+      if (q.other[m] >= k.n_atoms)
+        q.other[m] = k.slot_of_image[q.other[m] - k.n_atoms];
+  const V inverse_step = hn::Set(d, k.inverse_step), one = hn::Set(d, 1.), two = hn::Set(d, 2.),
+          three = hn::Set(d, 3.);
+  HWY_ALIGN std::int32_t piece[lanes];
+  for (int m = 0; m < n; m += lanes) {
+    const V r2 = hn::LoadU(d, q.pair.data() + m), inverse = hn::Div(one, hn::Sqrt(r2)),
+            place = hn::Mul(hn::Mul(r2, inverse), inverse_step);
+    const auto whole = hn::DemoteTo(di, place); // towards 0
+    hn::Store(whole, di, piece);
+    const V t = hn::Sub(place, hn::PromoteTo(d, whole));
+    const Columns f = load_columns(k.table[0].density, 8, piece),
+                  p = load_columns(k.table[0].pair, 8, piece);
+    const V value = hn::MulAdd(hn::MulAdd(hn::MulAdd(f.d, t, f.c), t, f.b), t, f.a);
+    const auto slope = [&](const Columns &c) {
+      return hn::MulAdd(hn::MulAdd(hn::Mul(c.d, three), t, hn::Mul(two, c.c)), t, c.b);
+    };
+    const V scale = hn::Neg(hn::Mul(inverse, inverse_step));
+    hn::StoreU(value, d, k.scratch + m);
+    hn::StoreU(hn::Mul(slope(f), scale), d, q.density.data() + m);
+    hn::StoreU(hn::Mul(slope(p), scale), d, q.pair.data() + m);
+  }
+  int m = 0;
+  for (int s = block.first; s < block.last; ++s) {
+    double sum = 0;
+    for (; m < q.row_end[s - block.first]; ++m) {
+      sum += k.scratch[m];
+      k.density[q.other[m]] += k.scratch[m];
+    }
+    k.density[s] += sum;
+  }
+}
+
+void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  const D d;
+  const int n = q.row_end.empty() ? 0 : q.row_end.back();
+  int m = 0;
+  // Into the last quarter of the scratch: rows overwrite it only when it has been read.
+  double *const slopes = k.scratch + 3 * n;
+  for (int s = block.first; s < block.last; ++s)
+    for (; m < q.row_end[s - block.first]; ++m)
+      slopes[m] = k.slope[s] + k.slope[q.other[m]];
+  for (m = 0; m < n; m += lanes) {
+    const V c = hn::MulAdd(hn::LoadU(d, slopes + m), hn::LoadU(d, q.density.data() + m),
+                           hn::LoadU(d, q.pair.data() + m));
+    store_rows(hn::Mul(c, hn::LoadU(d, q.x.data() + m)), hn::Mul(c, hn::LoadU(d, q.y.data() + m)),
+               hn::Mul(c, hn::LoadU(d, q.z.data() + m)), k.scratch + 4 * m);
+  }
+  m = 0;
+  for (int s = block.first; s < block.last; ++s) {
+    HWY_ALIGN double sum[4] = {};
+    for (; m < q.row_end[s - block.first]; ++m) {
+      add_record(k.scratch + 4 * m, &k.force[q.other[m]].x);
+      add_record(k.scratch + 4 * m, sum);
+    }
+    for (int c = 0; c < 4; ++c)
+      (&k.force[s].x)[c] -= sum[c];
+  }
+}
+
+KernelPasses choose_passes()
+{
+  return {&first_pass, &second_pass};
+}
+} // namespace ligament::md::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ligament::md
+{
+HWY_EXPORT(choose_passes);
+
+KernelPasses kernel_passes()
+{
+  return HWY_DYNAMIC_DISPATCH(choose_passes)();
+}
+} // namespace ligament::md
+#endif

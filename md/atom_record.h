@@ -1,0 +1,20 @@
+// A place of an atom, or a force on one, as kernels load it.
+#pragma once
+
+namespace ligament::md
+{
+/// Three components and one that fills the vector; in 2D z = 0.
+struct alignas(32) AtomRecord
+{
+  double x = 0, y = 0, z = 0, unused = 0; // m or N
+};
+
+inline double *component(AtomRecord &r)
+{
+  return &r.x;
+}
+inline const double *component(const AtomRecord &r)
+{
+  return &r.x;
+}
+} // namespace ligament::md

@@ -1,0 +1,124 @@
+// What observers ask of atoms: stresses, defects, and the state of the neighbour list.
+#include "core/check.h"
+#include "md/atom_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ligament::md
+{
+namespace
+{
+/// Nearest neighbours of an atom in the crystal.
+int n_nearest(CrystalKind kind)
+{
+  return kind == CrystalKind::triangular ? 6 : kind == CrystalKind::fcc ? 12 : 8;
+}
+} // namespace
+
+template <int dim>
+void AtomForce<dim>::stresses(const Particles &atoms, Components<n_strains<dim>> &stress) const
+{
+  update_list(atoms);
+  for (auto &component : stress)
+    component.assign(atoms.size(), 0.);
+  static constexpr int first[] = {0, 1, 2, 1, 0, 0}, second[] = {0, 1, 2, 2, 2, 1};
+  for_each_tension(atoms, [&](const Bond<dim> &b, double tension) {
+    for (int k = 0; k < n_strains<dim>; ++k) {
+      const int r = dim == 2 && k == 2 ? 0 : first[k], c = dim == 2 && k == 2 ? 1 : second[k];
+      const double half = tension / b.length * b.present[r] * b.present[c] / 2;
+      stress[k][b.i] += half / atoms.volume[b.i];
+      stress[k][b.j] += half / atoms.volume[b.j];
+    }
+  });
+}
+
+template <int dim>
+std::vector<std::vector<Vector<dim>>> AtomForce<dim>::neighbours(const Particles &atoms,
+                                                                 double reach) const
+{
+  update_list(atoms);
+  core::require(reach <= list_.cutoff() + list_.skin() / 2,
+                "neighbours farther than the potential sees are not known");
+  std::vector<std::vector<Vector<dim>>> found(atoms.size());
+  for_each_bond<dim>(list_, atoms, body_.period, false, [&](const Bond<dim> &b) {
+    if (b.length < reach) {
+      found[b.i].push_back(b.present);
+      found[b.j].push_back(-b.present);
+    }
+  });
+  return found;
+}
+
+template <int dim>
+std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &atoms) const
+{
+  const int n = n_nearest(crystal_.parameters().kind);
+  auto near = neighbours(atoms, std::min(2 * crystal_.spacing(), list_.cutoff()));
+  std::vector<double> symmetry(atoms.size(), 0.);
+  const double scale = 1 / (crystal_.spacing() * crystal_.spacing());
+  for (int i = 0; i < atoms.size(); ++i) {
+    auto &x = near[i];
+    std::sort(x.begin(), x.end(),
+              [](const auto &a, const auto &b) { return a.squaredNorm() < b.squaredNorm(); });
+    x.resize(std::min<std::size_t>(x.size(), n));
+    std::vector<double> sums;
+    for (std::size_t a = 0; a < x.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        sums.push_back((x[a] + x[b]).squaredNorm() * scale);
+    std::sort(sums.begin(), sums.end());
+    for (std::size_t k = 0; k < sums.size() && int(k) < n / 2; ++k)
+      symmetry[i] += sums[k];
+    symmetry[i] += double(n - int(x.size())); // each one that is missing counts 1
+  }
+  return symmetry;
+}
+
+template <int dim>
+std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
+{
+  const double d = crystal_.spacing();
+  const CrystalKind kind = crystal_.parameters().kind;
+  const double next = kind == CrystalKind::triangular ? std::sqrt(3.)
+                      : kind == CrystalKind::fcc      ? std::sqrt(2.)
+                                                      : std::sqrt(8 / 3.);
+  const double last = kind == CrystalKind::bcc ? std::sqrt(4 / 3.) : 1;
+  std::vector<int> numbers;
+  for (const auto &near : neighbours(atoms, (last + next) / 2 * d))
+    numbers.push_back(int(near.size()));
+  return numbers;
+}
+
+// The list decides about the order of sums: it is built anew where it was built.
+template <int dim>
+void AtomForce<dim>::save(core::State &state, const core::Names &names, const Particles &) const
+{
+  if (list_is_reference_)
+    return;
+  core::Table table(names.sorted());
+  names.save(table, "displacement", built_);
+  state["neighbour_list"] = std::move(table);
+}
+
+template <int dim>
+void AtomForce<dim>::load(const core::State &state, const core::Names &names,
+                          const Particles &atoms)
+{
+  list_is_reference_ = state.count("neighbour_list") == 0;
+  for (auto &component : built_)
+    component.assign(atoms.size(), 0.);
+  if (!list_is_reference_)
+    names.load(core::table(state, "neighbour_list"), "displacement", built_);
+  list_.build<dim>(atoms.reference, built_);
+}
+
+#define INSTANTIATE(dim)                                                                           \
+  template void AtomForce<dim>::stresses(const Particles &, Components<n_strains<dim>> &) const;   \
+  template std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &) const;           \
+  template std::vector<int> AtomForce<dim>::coordination(const Particles &) const;                 \
+  template void AtomForce<dim>::save(core::State &, const core::Names &, const Particles &) const; \
+  template void AtomForce<dim>::load(const core::State &, const core::Names &, const Particles &);
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
+} // namespace ligament::md

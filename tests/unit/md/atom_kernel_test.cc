@@ -1,0 +1,70 @@
+// The vector kernel against the plain oracle with every instruction set of the machine.
+#include "core/dispatch.h"
+#include "tests/unit/md/bodies.h"
+
+#include <hwy/highway.h>
+
+namespace ligament::md::testing
+{
+struct AtomKernelTest : ::testing::Test
+{
+  ~AtomKernelTest() override { hwy::SetSupportedTargetsForTest(0); }
+
+  template <int dim>
+  static void compare(Body<dim> body, double amplitude)
+  {
+    SCOPED_TRACE(body.crystal.potential().species(0).name);
+    body.disturb(amplitude * body.crystal.spacing());
+    auto expected = body.atoms;
+    body.oracle(body.crystal.potential()).compute(expected);
+    double scale = body.stiffness() * body.crystal.spacing();
+    for (const auto &component : expected.force) // atoms on top of each other push hard
+      for (const double f : component)
+        scale = std::max(scale, std::abs(f));
+    for (const std::int64_t target : {HWY_SCALAR, HWY_EMU128, HWY_AVX2, HWY_AVX3}) {
+      hwy::SetSupportedTargetsForTest(0);
+      if (!(hwy::SupportedTargets() & target))
+        continue;
+      hwy::SetSupportedTargetsForTest(target);
+      auto force = body.force();
+      force.compute(body.atoms, 0);
+      EXPECT_LT(difference(body.atoms.force, expected.force, scale), 1e-12);
+      const auto first = body.atoms.force;
+      force.compute(body.atoms, 0);
+      EXPECT_EQ(body.atoms.force, first); // to the last bit
+    }
+  }
+};
+
+TEST_F(AtomKernelTest, AgreesWithTheOracleOnAllInstructionSets)
+{
+  for (const double amplitude : {0.02, 0.15, 0.6}) { // a new list, atoms on top of each other
+    for (const Body<3> &body : bodies())
+      compare<3>(body, amplitude);
+    compare<2>(plane_body(), amplitude);
+    compare<2>(plane_body({9, 2}, {true, true}), amplitude);
+  }
+  // Many blocks of slots, of which the last one is not full.
+  compare<3>(make_body<3>(foiles_copper(), CrystalKind::fcc, {5, 4, 5.5}, {}, some_rotation<3>()),
+             0.05);
+}
+
+// Atoms far from each other, a pair, a single one.
+TEST_F(AtomKernelTest, HandlesLonelyAtoms)
+{
+  for (const int n : {1, 2, 3}) {
+    auto body = make_body<3>(foiles_copper(), CrystalKind::fcc, {0.9, 0.9, 0.9});
+    ASSERT_EQ(body.atoms.size(), 4);
+    for (int i = n; i < 4; ++i)
+      for (int c = 0; c < 3; ++c)
+        body.atoms.displacement[c][i] = 1e-8 * i * (c + 1);
+    auto force = body.force();
+    auto expected = body.atoms;
+    body.oracle(body.crystal.potential()).compute(expected);
+    force.compute(body.atoms, 0);
+    EXPECT_LT(
+        difference(body.atoms.force, expected.force, body.stiffness() * body.crystal.spacing()),
+        1e-12);
+  }
+}
+} // namespace ligament::md::testing

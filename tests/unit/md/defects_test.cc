@@ -1,0 +1,62 @@
+// Centro-symmetry and coordination tell atoms of the crystal from those at defects.
+#include "tests/unit/md/bodies.h"
+
+#include <algorithm>
+
+namespace ligament::md::testing
+{
+template <int dim>
+void expect_defects(Body<dim> body, int coordination)
+{
+  const auto force = body.force();
+  const double d = body.crystal.spacing();
+  // A homogeneous strain and a small motion are no defects.
+  Matrix<dim> gradient = Matrix<dim>::Zero();
+  gradient(0, 1) = 0.03;
+  gradient(0, 0) = -0.02;
+  Noise noise(3);
+  for (int i = 0; i < body.atoms.size(); ++i)
+    set(body.atoms.displacement, i,
+        Vector<dim>(gradient * get(body.atoms.reference, i) + 1e-3 * d * noise.matrix<dim, 1>()));
+  const auto symmetry = force.centro_symmetry(body.atoms);
+  const auto numbers = force.coordination(body.atoms);
+  int n_inside = 0;
+  for (int i = 0; i < body.atoms.size(); ++i) {
+    const Vector<dim> x = get(body.atoms.reference, i);
+    const double edge = std::min(x.minCoeff(), (body.top - x).minCoeff());
+    if (edge > 1.7 * d) {
+      ++n_inside;
+      EXPECT_LT(symmetry[i], 1e-3);
+      EXPECT_EQ(numbers[i], coordination);
+    } else if (edge < 0.3 * d) {
+      EXPECT_GT(symmetry[i], 0.4);
+      EXPECT_LT(numbers[i], coordination);
+    }
+  }
+  EXPECT_GT(n_inside, 0);
+}
+
+TEST(DefectsTest, SurfacesAreSeenAndStrainsAreNot)
+{
+  expect_defects<3>(make_body<3>(foiles_copper(), CrystalKind::fcc, {4, 4, 4}), 12);
+  expect_defects<3>(make_body<3>(mendelev_iron(), CrystalKind::bcc, {5, 5, 5}), 14);
+  expect_defects<2>(plane_body({8, 5}), 6);
+}
+
+// An atom that is not there is missed by its neighbours.
+TEST(DefectsTest, VacanciesAreSeen)
+{
+  const Crystal<3> crystal(foiles_copper(), {});
+  auto shape = box<3>(crystal, {4, 4, 4}, {true, true, true});
+  const double a = crystal.lattice_parameter();
+  shape.keep = [&](const Vector<3> &x) { return (x - a * Vector<3>(2, 2, 2)).norm() > 0.1 * a; };
+  const Body<3> body(foiles_copper(), {}, shape);
+  EXPECT_EQ(body.atoms.size(), 255);
+  const auto force = body.force();
+  const auto symmetry = force.centro_symmetry(body.atoms);
+  const auto numbers = force.coordination(body.atoms);
+  EXPECT_EQ(std::count_if(symmetry.begin(), symmetry.end(), [](double s) { return s > 0.5; }), 12);
+  EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 11), 12);
+  EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 12), 243);
+}
+} // namespace ligament::md::testing
