@@ -287,7 +287,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   if (loading == Loading::sequential && body.force()) // a body built anew does not know
     body.force()->break_one_by_one();
   solver.renew();
-  const double before = read_ledger(body, clock.now, damping).residual();
+  double before = read_ledger(body, clock.now, damping).residual();
   const auto velocities = solver.system().velocities();
   Eigen::VectorXd moved;
   // To hand on to where the stretch ends.
@@ -303,12 +303,23 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   // How far at once: less where no equilibrium was found so far away, or none that is stable.
   long reach = clock.n_steps;
   int n_halvings = 0;
+  double regime = body.regime_change;
   constexpr int most_halvings = 5;
-  for (bool is_first = true;; is_first = false) {
+  bool settles = true;
+  // Where the kinematics of the overlap have changed the body is no longer in balance.
+  const auto balance_again = [&] {
+    regime = body.regime_change;
+    before = read_ledger(body, clock.now, damping).residual();
+    settles = true;
+    solver.renew();
+    return solver.find_equilibrium(clock.now.time, moved, near);
+  };
+  while (true) {
     StaticStretch<dim> stretch(body, solver, clock, reach);
     End end = stretch.find_response();
     const auto stay = [&] { commit(body, clock, stretch.velocities(clock.now.time)); };
-    if (is_first) {
+    if (settles) {
+      settles = false;
       stay();
       body.settled += before - read_ledger(body, clock.now, damping).residual();
       if (n_broken(body) > broken_before) {
@@ -317,6 +328,12 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       }
       if ((stop = look())) {
         finish(PhaseEnd::stopped);
+        return stop;
+      }
+      if (body.regime_change != regime) {
+        if (end = balance_again(); end == End::converged)
+          continue;
+        failed(end);
         return stop;
       }
     }
@@ -357,6 +374,11 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     }
     n_halvings = 0;
     reach = std::min(clock.n_steps, clock.now.step + 4 * stretch.n_steps());
+    if (body.regime_change != regime)
+      if (const End end = balance_again(); end != End::converged) {
+        failed(end);
+        return stop;
+      }
   }
 }
 

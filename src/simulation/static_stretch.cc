@@ -238,6 +238,7 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
   constexpr double rows_of_whole = 50;
   const int n_rows = std::max(softens ? 1 : 2,
                               int(std::ceil(rows_of_whole * double(end_ - begin_) / double(end_))));
+  const double regime = body_.regime_change;
   double at = 0; // share of the growth
   const auto bent = [&](double share) {
     return share_ > 0 ? share * share / (share_ * share_) : 0;
@@ -264,6 +265,8 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
       return {};
     if (const auto stop = look())
       return stop;
+    if (body_.regime_change != regime) // the rest of the way is that of another body
+      return {};
   }
   return {};
 }

@@ -35,8 +35,8 @@ public:
   void go_back() { solver_.system().put_back(start_); }
   long n_steps() const { return end_ - begin_; }
 
-  /// Takes body and clock to the end, or to where something breaks before; looks at all states but
-  /// the last one.
+  /// Takes body and clock to the end, or to where something breaks or the kinematics of the overlap
+  /// change before; looks at all states but the last one.
   std::optional<Stop> walk(Clock &clock, const Commit &commit, const Look &look);
 
 private:
