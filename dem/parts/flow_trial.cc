@@ -67,10 +67,9 @@ auto InelasticStrains<dim>::try_response(const InelasticSweep<dim> &sweep, int i
     for (int b = 0; b < dim; ++b)
       of_bonds[a][b] = HWY_NAMESPACE::hn::Set(d, x(a, b) - in_cell(a, b));
   const Place place{i};
-  const HWY_NAMESPACE::Response<dim, D, Place> response(
-      d, sweep, place, HWY_NAMESPACE::hn::FirstN(d, 1),
-      HWY_NAMESPACE::OwnStress<dim, D>(d, sweep, place, of_bonds,
-                                       HWY_NAMESPACE::hn::Set(d, lambda_per_volume)));
+  const auto response =
+      HWY_NAMESPACE::respond<dim>(d, sweep, place, HWY_NAMESPACE::hn::FirstN(d, 1), of_bonds,
+                                  HWY_NAMESPACE::hn::Set(d, lambda_per_volume));
   Matrix e;
   for (int a = 0; a < dim; ++a)
     for (int b = 0; b < dim; ++b)
