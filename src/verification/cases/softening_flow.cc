@@ -25,11 +25,12 @@ struct Body
 const std::vector<Body> bodies = {{"square", 2, PackingKind::square},
                                   {"simple_cubic", 3, PackingKind::simple_cubic}};
 
-/// Two rows between smooth walls at the sides, whose ends move apart by `stroke` in `duration`.
+/// Two rows of whole cells between smooth walls at the sides, whose ends move apart by `stroke` in
+/// `duration`.
 Scene bar(const Body &body, double stroke, double duration)
 {
   Scene scene = unit_scene(body.dimension,
-                           body.dimension == 2 ? Point{4, height, 0} : Point{3, height, 3}, nu);
+                           body.dimension == 2 ? Point{4, height, 0} : Point{4, height, 4}, nu);
   scene.zone.packing = body.packing;
   FractureParameters &fracture = scene.material.fracture;
   fracture.criterion = Criterion::maximum_tension;
@@ -97,7 +98,7 @@ Errors pull_apart(const Scene &scene, double stroke, double duration, const Stre
 template <int dim>
 Errors relaxing_bar(const Body &body)
 {
-  constexpr double share = 0.6, stroke = 1.15 * reach, duration = 6000, time = duration / 12;
+  constexpr double share = 0.6, stroke = 1.15 * reach, duration = 20000, time = duration / 12;
   Scene scene = bar(body, stroke, duration);
   scene.material.viscosity.emplace();
   scene.material.viscosity->branches = {{share, time}};
@@ -133,7 +134,7 @@ Errors relaxing_bar(const Body &body)
 template <int dim>
 Errors yielding_bar(const Body &body)
 {
-  constexpr double stroke = 1.15 * reach, duration = 6000, yield = 0.3 * strength, hardening = 0.2;
+  constexpr double stroke = 1.15 * reach, duration = 20000, yield = 0.3 * strength, hardening = 0.2;
   Scene scene = bar(body, stroke, duration);
   scene.material.plasticity.emplace();
   scene.material.plasticity->law = PlasticityLaw::von_mises;
