@@ -133,7 +133,7 @@ private:
   Softening shape_;
   double mode_ratio_;
   std::map<Name, Face> faces_;
-  std::vector<int> at_front_; // ascending
+  std::vector<int> at_front_;       // ascending
   std::optional<double> opened_at_; // s
   bool has_jumped_ = false;
   core::ExactSum work_;
