@@ -117,8 +117,8 @@ struct Opened
     for (int i = 0; i < q.size(); ++i) {
       const Vector<dim> x = get(q.reference, i);
       Vector<dim> u = Vector<dim>::Zero();
-      u[1] = 0.006 * opened * x[1] +
-             2e-3 * packing.spacing * opened * std::sin(7 * x[0] + 5 * x[1]);
+      u[1] =
+          0.006 * opened * x[1] + 2e-3 * packing.spacing * opened * std::sin(7 * x[0] + 5 * x[1]);
       u[0] = 1e-3 * packing.spacing * step * std::cos(4 * x[1]);
       set(q.displacement, i, u);
       const double angle = 1e-3 * step * std::sin(3 * x[0]);
@@ -276,8 +276,8 @@ TEST(Falling, CracksRunNoFaster)
     ASSERT_GT(ran.fell.size(), 20u);
     for (const auto &[name, one] : ran.fell)
       for (const auto &[next, other] : ran.fell) {
-        const bool meet = name[0] == next[0] || name[0] == next[1] || name[1] == next[0] ||
-                          name[1] == next[1];
+        const bool meet =
+            name[0] == next[0] || name[0] == next[1] || name[1] == next[0] || name[1] == next[1];
         const FallInTime &first = one.fall, &second = other.fall;
         if (name == next || !meet || first.begin > second.begin)
           continue;
