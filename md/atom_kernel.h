@@ -17,7 +17,7 @@ struct alignas(64) PairPiece
 /// Pairs in range of the slots of a block, between the passes.
 struct PairBuffer
 {
-  std::vector<std::int64_t> other;   // slot of the other atom
+  std::vector<std::int32_t> other;   // slot of the other atom
   std::vector<double> x, y, z;       // m, from the slot's atom to the other
   std::vector<double> density, pair; // -f'/r and -phi'/r, per m^2 and N/m
   std::vector<int> row_end;          // per slot: where its pairs end

@@ -53,6 +53,25 @@ void add_record(const double *from, double *to)
   for (int c = 0; c < 4; ++c)
     to[c] += from[c];
 }
+
+/// Stores the lanes of a mask one behind the other.
+struct Packing
+{
+  hn::Mask<D> mask;
+
+  explicit Packing(hn::Mask<D> m) : mask(m) {}
+  void store(V v, double *to) const
+  {
+    const D d;
+    HWY_ALIGN double lane[lanes];
+    hn::Store(v, d, lane);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    for (int k = 0; k < lanes; ++k)
+      if (bits[0] >> k & 1)
+        *to++ = lane[k];
+  }
+};
 #else
 /// Vectors of [a b | c d] of lanes 0 and 4, 1 and 5, ... become columns.
 HWY_INLINE Columns transposed(V r0, V r1, V r2, V r3)
@@ -105,6 +124,43 @@ HWY_INLINE void store_rows(V x, V y, V z, double *rows)
       hn::StoreU(row[r], d, rows + 4 * r);
 }
 
+#if HWY_TARGET == HWY_AVX3
+struct Packing
+{
+  hn::Mask<D> mask;
+
+  HWY_INLINE explicit Packing(hn::Mask<D> m) : mask(m) {}
+  HWY_INLINE void store(V v, double *to) const
+  {
+    hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, v.raw)}, D(), to);
+  }
+};
+#else
+/// Lanes that each of the masks of four keeps, and then others.
+alignas(32) const std::int64_t kept_lanes[16][4] = {
+    {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3},
+    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
+    {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+
+// Highway's own Compress copies its table to the stack in every call (1.0.3 with gcc 12).
+struct Packing
+{
+  decltype(hn::IndicesFromVec(D(), hn::Zero(hn::RebindToSigned<D>()))) indices;
+
+  HWY_INLINE explicit Packing(hn::Mask<D> m) : indices(of(m)) {}
+  static HWY_INLINE decltype(indices) of(hn::Mask<D> mask)
+  {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(D(), mask, bits);
+    return hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept_lanes[bits[0]]));
+  }
+  HWY_INLINE void store(V v, double *to) const
+  {
+    hn::StoreU(hn::TableLookupLanes(v, indices), D(), to);
+  }
+};
+#endif
+
 HWY_INLINE void add_record(const double *from, double *to)
 {
   const hn::CappedTag<double, 4> d;
@@ -112,11 +168,11 @@ HWY_INLINE void add_record(const double *from, double *to)
 }
 #endif
 
-/// Pairs of the block in range go to the buffer, squared distances to its `pair`.
+/// Pairs of the block in range go to the buffer, squared distances to its `pair`, the numbers of
+/// the others to its `density`.
 int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
-  const hn::RebindToSigned<D> dl;
   const hn::Rebind<std::int32_t, D> di;
   const std::size_t room = k.begin[block.last] - k.begin[block.first] + 2 * lanes;
   if (q.x.size() < room) {
@@ -138,18 +194,20 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
       auto near = hn::Lt(r2, limit);
       if (m + lanes > end)
         near = hn::And(near, hn::FirstN(d, std::size_t(end - m)));
-      hn::StoreU(hn::Compress(dx, near), d, q.x.data() + n);
-      hn::StoreU(hn::Compress(dy, near), d, q.y.data() + n);
-      hn::StoreU(hn::Compress(dz, near), d, q.z.data() + n);
-      hn::StoreU(hn::Compress(r2, near), d, q.pair.data() + n);
-      const auto others = hn::PromoteTo(dl, hn::LoadU(di, k.neighbours + m));
-      hn::StoreU(hn::Compress(others, hn::RebindMask(dl, near)), dl, q.other.data() + n);
+      const Packing packing(near);
+      packing.store(dx, q.x.data() + n);
+      packing.store(dy, q.y.data() + n);
+      packing.store(dz, q.z.data() + n);
+      packing.store(r2, q.pair.data() + n);
+      packing.store(hn::PromoteTo(d, hn::LoadU(di, k.neighbours + m)), q.density.data() + n);
       n += int(hn::CountTrue(d, near));
     }
     q.row_end[s - block.first] = n;
   }
-  for (int m = n; m < n + lanes; ++m) // lanes without a pair, far out
+  for (int m = n; m < n + lanes; ++m) { // lanes without a pair, far out
     q.pair[m] = k.cutoff2;
+    q.density[m] = 0;
+  }
   return n;
 }
 
@@ -158,6 +216,8 @@ void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
   const D d;
   const hn::Rebind<std::int32_t, D> di;
   const int n = find_in_range(k, block, q);
+  for (int m = 0; m < n; m += lanes)
+    hn::StoreU(hn::DemoteTo(di, hn::LoadU(d, q.density.data() + m)), di, q.other.data() + m);
   if (k.slot_of_image)
     for (int m = 0; m < n; ++m)
       if (q.other[m] >= k.n_atoms)
