@@ -23,13 +23,14 @@ using namespace ligament;
 using namespace ligament::md;
 
 constexpr double dt = 2e-15; // s
-constexpr int warm_up = 250, steps = 100;
+constexpr int warm_up = 150, steps = 100;
 
 void print(const std::string &name, double value, const std::string &unit, double reference)
 {
   fmt::print("{{\"name\": \"{}\", \"value\": {:.4g}, \"unit\": \"{}\", \"reference\": {:.4g}, "
              "\"ratio\": {:.3f}}}\n",
              name, value, unit, reference, value / reference);
+  std::fflush(stdout);
 }
 
 /// 20 x 20 x 20 cells with velocities of 600 K, half of which goes into the potential.
@@ -47,7 +48,7 @@ struct Copper
     auto state = make_atoms(crystal, packing);
     for (int i = 0; i < state.size(); ++i)
       for (int c = 0; c < 3; ++c) // uniform of that variance
-        state.velocity[c][i] = std::sqrt(6 * boltzmann * temperature / state.mass[i]) *
+        state.velocity[c][i] = std::sqrt(3 * boltzmann * temperature / state.mass[i]) *
                                (2 * core::random_number(1, i, c) - 1);
     solver = std::make_unique<particles::ParticleSolver<3>>(std::move(state), std::move(force));
     solver->compute_forces(0);
