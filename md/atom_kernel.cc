@@ -65,7 +65,7 @@ void AtomKernel::prepare(const NeighbourList &list)
   int most = 0;
   for (const SlotBlock &block : blocks_)
     most = std::max(most, list.begin()[block.last] - list.begin()[block.first]);
-  scratch_.resize(4 * (most + padding));
+  scratch_.resize(5 * (most + 2 * padding) / 4 + 1);
   density_.resize(n);
   slope_.assign(n, 0.);
   force_.resize(n);
@@ -96,7 +96,7 @@ void AtomKernel::compute(const NeighbourList &list, Components<dim> &force)
                                density_.data(),
                                slope_.data(),
                                force_.data(),
-                               scratch_.data()};
+                               component(scratch_[0])};
   const KernelPasses passes = kernel_passes();
   for (int b = 0; b < int(blocks_.size()); ++b) {
     if (free_buffers_.empty()) {

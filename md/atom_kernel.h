@@ -17,8 +17,8 @@ struct alignas(64) PairPiece
 /// Pairs in range of the slots of a block, between the passes.
 struct PairBuffer
 {
-  std::vector<std::int64_t> other;   // slot of the other atom
-  std::vector<double> x, y, z;       // m, from the slot's atom to the other
+  std::vector<std::int32_t> place;   // record of the other atom
+  std::vector<std::int32_t> other;   // its slot, where there are images
   std::vector<double> density, pair; // -f'/r and -phi'/r, per m^2 and N/m
   std::vector<int> row_end;          // per slot: where its pairs end
 };
@@ -40,7 +40,7 @@ struct KernelArrays
   double cutoff2, inverse_step; // m^2, 1/m
   double *density, *slope;      // rho and F' of slots
   AtomRecord *force;            // of slots, N
-  double *scratch;              // per pair of a block: 4 numbers, and a vector of them
+  double *scratch;              // 5 numbers per pair of a block, and some vectors; aligned
 };
 
 /// The first pass: pairs of a block in range, their functions, and what they add to densities. The
@@ -82,7 +82,7 @@ private:
   std::vector<int> slot_of_image_;
   std::vector<PairBuffer> buffers_; // more than blocks wait between the passes
   std::vector<int> buffer_of_, free_buffers_;
-  std::vector<double> density_, slope_, scratch_;
-  std::vector<AtomRecord> force_;
+  std::vector<double> density_, slope_;
+  std::vector<AtomRecord> force_, scratch_;
 };
 } // namespace ligament::md

@@ -53,6 +53,25 @@ void add_record(const double *from, double *to)
   for (int c = 0; c < 4; ++c)
     to[c] += from[c];
 }
+
+/// Stores the lanes of a mask one behind the other.
+struct Packing
+{
+  hn::Mask<D> mask;
+
+  explicit Packing(hn::Mask<D> m) : mask(m) {}
+  void store(V v, double *to) const
+  {
+    const D d;
+    HWY_ALIGN double lane[lanes];
+    hn::Store(v, d, lane);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    for (int k = 0; k < lanes; ++k)
+      if (bits[0] >> k & 1)
+        *to++ = lane[k];
+  }
+};
 #else
 /// Vectors of [a b | c d] of lanes 0 and 4, 1 and 5, ... become columns.
 HWY_INLINE Columns transposed(V r0, V r1, V r2, V r3)
@@ -105,6 +124,43 @@ HWY_INLINE void store_rows(V x, V y, V z, double *rows)
       hn::StoreU(row[r], d, rows + 4 * r);
 }
 
+#if HWY_TARGET == HWY_AVX3
+struct Packing
+{
+  hn::Mask<D> mask;
+
+  HWY_INLINE explicit Packing(hn::Mask<D> m) : mask(m) {}
+  HWY_INLINE void store(V v, double *to) const
+  {
+    hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, v.raw)}, D(), to);
+  }
+};
+#else
+/// Lanes that each of the masks of four keeps, and then others.
+alignas(32) const std::int64_t kept_lanes[16][4] = {
+    {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3},
+    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
+    {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+
+// Highway's own Compress copies its table to the stack in every call (1.0.3 with gcc 12).
+struct Packing
+{
+  decltype(hn::IndicesFromVec(D(), hn::Zero(hn::RebindToSigned<D>()))) indices;
+
+  HWY_INLINE explicit Packing(hn::Mask<D> m) : indices(of(m)) {}
+  static HWY_INLINE decltype(indices) of(hn::Mask<D> mask)
+  {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(D(), mask, bits);
+    return hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept_lanes[bits[0]]));
+  }
+  HWY_INLINE void store(V v, double *to) const
+  {
+    hn::StoreU(hn::TableLookupLanes(v, indices), D(), to);
+  }
+};
+#endif
+
 HWY_INLINE void add_record(const double *from, double *to)
 {
   const hn::CappedTag<double, 4> d;
@@ -112,19 +168,21 @@ HWY_INLINE void add_record(const double *from, double *to)
 }
 #endif
 
-/// Pairs of the block in range go to the buffer, squared distances to its `pair`.
+/// Pairs of the block in range go to the buffer, squared distances to its `pair`, the numbers of
+/// the others to its `density`.
 int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
-  const hn::RebindToSigned<D> dl;
   const hn::Rebind<std::int32_t, D> di;
   const std::size_t room = k.begin[block.last] - k.begin[block.first] + 2 * lanes;
-  if (q.x.size() < room) {
+  if (q.density.size() < room) {
+    q.place.resize(room);
     q.other.resize(room);
-    for (auto *array : {&q.x, &q.y, &q.z, &q.density, &q.pair})
-      array->resize(room);
+    q.density.resize(room);
+    q.pair.resize(room);
   }
   q.row_end.resize(block.last - block.first);
+  double *const squares = q.pair.data(), *const places = q.density.data();
   const V limit = hn::Set(d, k.cutoff2);
   int n = 0;
   for (int s = block.first; s < block.last; ++s) {
@@ -138,19 +196,24 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
       auto near = hn::Lt(r2, limit);
       if (m + lanes > end)
         near = hn::And(near, hn::FirstN(d, std::size_t(end - m)));
-      hn::StoreU(hn::Compress(dx, near), d, q.x.data() + n);
-      hn::StoreU(hn::Compress(dy, near), d, q.y.data() + n);
-      hn::StoreU(hn::Compress(dz, near), d, q.z.data() + n);
-      hn::StoreU(hn::Compress(r2, near), d, q.pair.data() + n);
-      const auto others = hn::PromoteTo(dl, hn::LoadU(di, k.neighbours + m));
-      hn::StoreU(hn::Compress(others, hn::RebindMask(dl, near)), dl, q.other.data() + n);
+      const Packing packing(near);
+      packing.store(r2, squares + n);
+      packing.store(hn::PromoteTo(d, hn::LoadU(di, k.neighbours + m)), places + n);
       n += int(hn::CountTrue(d, near));
     }
     q.row_end[s - block.first] = n;
   }
-  for (int m = n; m < n + lanes; ++m) // lanes without a pair, far out
-    q.pair[m] = k.cutoff2;
+  for (int m = n; m < n + lanes; ++m) { // lanes without a pair, far out
+    squares[m] = k.cutoff2;
+    places[m] = 0;
+  }
   return n;
+}
+
+/// The slots of the others: their places, but for images.
+const std::int32_t *others(const KernelArrays &k, const PairBuffer &q)
+{
+  return k.slot_of_image ? q.other.data() : q.place.data();
 }
 
 void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
@@ -158,15 +221,16 @@ void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
   const D d;
   const hn::Rebind<std::int32_t, D> di;
   const int n = find_in_range(k, block, q);
-  if (k.slot_of_image)
-    for (int m = 0; m < n; ++m)
-      if (q.other[m] >= k.n_atoms)
-        q.other[m] = k.slot_of_image[q.other[m] - k.n_atoms];
+  double *const density = q.density.data(), *const pair = q.pair.data();
+  for (int m = 0; m < n + lanes; m += lanes)
+    hn::StoreU(hn::DemoteTo(di, hn::LoadU(d, density + m)), di, q.place.data() + m);
+  for (int m = 0; k.slot_of_image && m < n; ++m)
+    q.other[m] = q.place[m] < k.n_atoms ? q.place[m] : k.slot_of_image[q.place[m] - k.n_atoms];
   const V inverse_step = hn::Set(d, k.inverse_step), one = hn::Set(d, 1.), two = hn::Set(d, 2.),
           three = hn::Set(d, 3.);
   HWY_ALIGN std::int32_t piece[lanes];
   for (int m = 0; m < n; m += lanes) {
-    const V r2 = hn::LoadU(d, q.pair.data() + m), inverse = hn::Div(one, hn::Sqrt(r2)),
+    const V r2 = hn::LoadU(d, pair + m), inverse = hn::Div(one, hn::Sqrt(r2)),
             place = hn::Mul(hn::Mul(r2, inverse), inverse_step);
     const auto whole = hn::DemoteTo(di, place); // towards 0
     hn::Store(whole, di, piece);
@@ -179,42 +243,51 @@ void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
     };
     const V scale = hn::Neg(hn::Mul(inverse, inverse_step));
     hn::StoreU(value, d, k.scratch + m);
-    hn::StoreU(hn::Mul(slope(f), scale), d, q.density.data() + m);
-    hn::StoreU(hn::Mul(slope(p), scale), d, q.pair.data() + m);
+    hn::StoreU(hn::Mul(slope(f), scale), d, density + m);
+    hn::StoreU(hn::Mul(slope(p), scale), d, pair + m);
   }
+  const std::int32_t *const other = others(k, q);
   int m = 0;
   for (int s = block.first; s < block.last; ++s) {
     double sum = 0;
-    for (; m < q.row_end[s - block.first]; ++m) {
+    for (const int end = q.row_end[s - block.first]; m < end; ++m) {
       sum += k.scratch[m];
-      k.density[q.other[m]] += k.scratch[m];
+      k.density[other[m]] += k.scratch[m];
     }
     k.density[s] += sum;
   }
 }
 
+// Vectors between atoms are found again: to keep them would take more time than that.
 void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
-  const int n = q.row_end.empty() ? 0 : q.row_end.back();
+  const std::int32_t *const other = others(k, q), *const places = q.place.data();
+  const double *const density = q.density.data(), *const pair = q.pair.data();
+  const int n = q.row_end.back();
+  double *const slopes = k.scratch, *const rows = k.scratch + (n + lanes + 3) / 4 * 4; // aligned
+  for (int m = 0; m < n; ++m)
+    slopes[m] = k.slope[other[m]];
   int m = 0;
-  // Into the last quarter of the scratch: rows overwrite it only when it has been read.
-  double *const slopes = k.scratch + 3 * n;
-  for (int s = block.first; s < block.last; ++s)
-    for (; m < q.row_end[s - block.first]; ++m)
-      slopes[m] = k.slope[s] + k.slope[q.other[m]];
-  for (m = 0; m < n; m += lanes) {
-    const V c = hn::MulAdd(hn::LoadU(d, slopes + m), hn::LoadU(d, q.density.data() + m),
-                           hn::LoadU(d, q.pair.data() + m));
-    store_rows(hn::Mul(c, hn::LoadU(d, q.x.data() + m)), hn::Mul(c, hn::LoadU(d, q.y.data() + m)),
-               hn::Mul(c, hn::LoadU(d, q.z.data() + m)), k.scratch + 4 * m);
+  for (int s = block.first; s < block.last; ++s) {
+    const V x = hn::Set(d, k.records[s].x), y = hn::Set(d, k.records[s].y),
+            z = hn::Set(d, k.records[s].z), slope = hn::Set(d, k.slope[s]);
+    // What the last vector has of the next row is overwritten by that.
+    for (const int end = q.row_end[s - block.first]; m < end; m += lanes) {
+      const Columns p = load_columns(&k.records[0].x, 4, places + m);
+      const V c = hn::MulAdd(hn::Add(slope, hn::LoadU(d, slopes + m)), hn::LoadU(d, density + m),
+                             hn::LoadU(d, pair + m));
+      store_rows(hn::Mul(c, hn::Sub(p.a, x)), hn::Mul(c, hn::Sub(p.b, y)),
+                 hn::Mul(c, hn::Sub(p.c, z)), rows + 4 * m);
+    }
+    m = q.row_end[s - block.first];
   }
   m = 0;
   for (int s = block.first; s < block.last; ++s) {
     HWY_ALIGN double sum[4] = {};
-    for (; m < q.row_end[s - block.first]; ++m) {
-      add_record(k.scratch + 4 * m, &k.force[q.other[m]].x);
-      add_record(k.scratch + 4 * m, sum);
+    for (const int end = q.row_end[s - block.first]; m < end; ++m) {
+      add_record(rows + 4 * m, &k.force[other[m]].x);
+      add_record(rows + 4 * m, sum);
     }
     for (int c = 0; c < 4; ++c)
       (&k.force[s].x)[c] -= sum[c];

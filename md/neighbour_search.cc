@@ -4,6 +4,8 @@
 #include "md/neighbour_search.h"
 #include "core/dispatch.h"
 
+#include <cstdint>
+
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
 #include <hwy/highway.h>
@@ -17,7 +19,6 @@ int find(const PlaceArrays &p, int begin, int end, float x, float y, float z, fl
          int *found)
 {
   const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> di;
   const int lanes = int(hn::Lanes(d));
   const auto xs = hn::Set(d, x), ys = hn::Set(d, y), zs = hn::Set(d, z), limit = hn::Set(d, reach2);
   int n = 0;
@@ -28,10 +29,10 @@ int find(const PlaceArrays &p, int begin, int end, float x, float y, float z, fl
     auto near = hn::Lt(r2, limit);
     if (k + lanes > end)
       near = hn::And(near, hn::FirstN(d, std::size_t(end - k)));
-    // In registers: compressing into memory is slow on some processors.
-    const auto mask = hn::RebindMask(di, near);
-    hn::StoreU(hn::Compress(hn::Iota(di, k), mask), di, found + n);
-    n += int(hn::CountTrue(di, mask));
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, near, bytes);
+    for (unsigned bits = bytes[0] | unsigned(bytes[1]) << 8; bits; bits &= bits - 1)
+      found[n++] = k + __builtin_ctz(bits);
   }
   return n;
 }
