@@ -36,6 +36,8 @@ public:
         c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
         volumetric_(sweep.volumetric), inelastic_sweep_(sweep.inelastic)
   {
+    const auto &n = c_.normal;
+    third_ = n_dir == 3 && n[0][0] * n[2][0] + n[0][1] * n[2][1] < 0 ? -1 : 1;
   }
 
   HWY_INLINE void set_window(double *origin) { w_ = origin; }
@@ -343,8 +345,9 @@ private:
     if constexpr (inelastic) {
       if constexpr (k < 2)
         return load(d, at + basis(k) * stride);
-      else // the third normal is the sum of the others
-        return load(d, at + basis(0) * stride) + load(d, at + basis(1) * stride);
+      else
+        return mul_add(hn::Set(d, third_), load(d, at + basis(0) * stride),
+                       load(d, at + basis(1) * stride));
     } else
       return along<k, g_>(d, at);
   }
@@ -372,6 +375,7 @@ private:
   LatticeBonds law_;
   bool volumetric_;
   const InelasticSweep<2> *inelastic_sweep_;
+  double third_;        // the third normal is the second one plus or minus the first
   double *w_ = nullptr; // origin of the window
 };
 
