@@ -79,10 +79,11 @@ LatticeKernel<dim>::LatticeKernel(const std::vector<DirectionData<dim>> &directi
     c.twist = d.twist - d.bending;
     area_ = d.area;
   }
-  if (dim == 2 && n == 3) // the third normal is the sum of the others
-    core::require((directions[2].normal - (directions[0].normal + directions[1].normal)).norm() <
-                      1e-12,
+  if (dim == 2 && n == 3) { // the kernel combines the third normal of the others
+    const Vector<dim> a = directions[0].normal, b = directions[1].normal, e = directions[2].normal;
+    core::require(std::min((e - (b + a)).norm(), (e - (b - a)).norm()) < 1e-12,
                   "three directions in 2D must be those of a hexagonal lattice");
+  }
   if (dim == 3 && n == 6) { // the kernel turns three normals and combines the others
     const auto &m = directions;
     const Vector<dim> a = m[0].normal, b = m[1].normal, e = m[5].normal;

@@ -36,6 +36,8 @@ public:
         c_(sweep.constants), law_{c_.shear, c_.half, c_.shear * c_.half, c_.area_r * c_.half},
         volumetric_(sweep.volumetric), inelastic_sweep_(sweep.inelastic)
   {
+    const auto &n = c_.normal;
+    third_ = n_dir == 3 && n[0][0] * n[2][0] + n[0][1] * n[2][1] < 0 ? -1 : 1;
   }
 
   HWY_INLINE void set_window(double *origin) { w_ = origin; }
@@ -113,45 +115,46 @@ public:
       sum[1] = mul_add(n.y, both, sum[1]);
     };
     const auto h = load(d, at + h_ * stride); // cos - 1, sin
-    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir)))) {
-      const auto twice = h + h;
+    // Whole vectors without the masks, with the same bits.
+    if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir))))
       for_directions([&](auto direction) HWY_ATTR {
         constexpr int k = decltype(direction)::value;
         const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-        const auto around = twice + (load(d, f + h_ * stride) + load(d, b + h_ * stride));
+        const auto around = (load(d, f + h_ * stride) + h) + (load(d, b + h_ * stride) + h);
         add(law_.relative(displacement(d, f) - displacement(d, b), turned_normal<k>(d, around)), k);
       });
-    } else
+    else
       for_directions([&](auto direction) HWY_ATTR {
         constexpr int k = decltype(direction)::value;
         const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
-        const auto own = along<k, h_>(d, at);
-        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
-        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
-        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+        const auto around = masked(mask, load(d, f + h_ * stride) + h, k) +
+                            masked(mask, load(d, b + h_ * stride) + h, n_dir + k);
+        const auto apart = where_carries(mask, k, displacement(d, f), u) -
+                           where_carries(mask, n_dir + k, displacement(d, b), u);
+        add(law_.relative(apart, turned_normal<k>(d, around)), k);
       });
-    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
-    const V square = add_dot(sum[0], sum[0], dot(sum[1], sum[1]));
-    if (HWY_LIKELY(is_quiet<2>(d, *inelastic_sweep_, place,
-                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
-    {
-      answer_elastically(d, i, sum, h);
-      return;
-    }
-    V x[2][2]; // R^T sum times S q / r
     const V factor = hn::Set(d, law_.volumetric);
-    for (int b = 0; b < 2; ++b) {
-      x[0][b] =
-          hn::Mul(factor, hn::Add(sum[b].x, hn::MulAdd(h.x, sum[b].x, hn::Mul(h.y, sum[b].y))));
-      x[1][b] =
-          hn::Mul(factor, hn::Add(sum[b].y, hn::NegMulAdd(h.y, sum[b].x, hn::Mul(h.x, sum[b].y))));
+    const V middle = hn::Add(sum[0].x, sum[1].y), turn = hn::Sub(sum[0].y, sum[1].x);
+    const V theta = hn::Mul(factor, hn::Add(middle, hn::MulAdd(h.x, middle, hn::Mul(h.y, turn))));
+    const V moment = hn::Add(turn, hn::NegMulAdd(h.y, middle, hn::Mul(h.x, turn))); // a x Du
+    const V lambda_per_volume = hn::LoadU(d, a_.lambda_per_volume + i);
+    Answer<2, V> response(zero_tensor<2>(zero), hn::Mul(lambda_per_volume, theta), false);
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square =
+        hn::Mul(hn::Set(d, per_volume * per_volume), add_dot(sum[0], sum[0], dot(sum[1], sum[1])));
+    V x[2][2] = {{zero, zero}, {zero, zero}}; // R^T sum times S q / r
+    if (!is_quiet<2>(d, *inelastic_sweep_, place, square)) {
+      for (int b = 0; b < 2; ++b) {
+        const auto &own = sum[b];
+        x[0][b] = hn::Mul(factor, hn::Add(own.x, hn::MulAdd(h.x, own.x, hn::Mul(h.y, own.y))));
+        x[1][b] = hn::Mul(factor, hn::Add(own.y, hn::NegMulAdd(h.y, own.x, hn::Mul(h.x, own.y))));
+      }
+      const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
+      response = respond<2>(d, *inelastic_sweep_, place, fresh, x, theta, lambda_per_volume);
     }
-    const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
-    const auto response =
-        respond<2>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
-    V torque = hn::Mul(p, hn::Sub(x[0][1], x[1][0]));
+    V torque = hn::Neg(hn::Mul(vp, moment));
     const auto part = law_.part_along(vp, h);
     Pair<V> g[2] = {turned_normal<0>(d, part), turned_normal<1>(d, part)};
     if (response.is_strained) {
@@ -268,24 +271,6 @@ public:
   }
 
 private:
-  /// What Du (x) n of all bonds does where there is nothing else.
-  template <typename D, typename V = hn::Vec<D>>
-  HWY_INLINE void answer_elastically(D d, long i, const Pair<V> (&sum)[2], const Pair<V> &h) const
-  {
-    const V middle = hn::Add(sum[0].x, sum[1].y), turn = hn::Sub(sum[0].y, sum[1].x);
-    const V theta = hn::Add(middle, hn::MulAdd(h.x, middle, hn::Mul(h.y, turn)));
-    const V moment = hn::Add(turn, hn::NegMulAdd(h.y, middle, hn::Mul(h.x, turn)));
-    const V p = hn::Mul(
-        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
-    const V vp = law_.pressing(p);
-    const auto part = law_.part_along(vp, h);
-    double *const at = w_ + i;
-    hn::StoreU(p, d, a_.pressure + i);
-    hn::StoreU(hn::Neg(hn::Mul(vp, moment)), d, at + moment_ * stride);
-    store(d, turned_normal<0>(d, part), at + basis(0) * stride);
-    store(d, turned_normal<1>(d, part), at + basis(1) * stride);
-  }
-
   template <typename D>
   HWY_INLINE PlaneBending<hn::Vec<D>> bending(D d) const
   {
@@ -360,8 +345,9 @@ private:
     if constexpr (inelastic) {
       if constexpr (k < 2)
         return load(d, at + basis(k) * stride);
-      else // the third normal is the sum of the others
-        return load(d, at + basis(0) * stride) + load(d, at + basis(1) * stride);
+      else
+        return mul_add(hn::Set(d, third_), load(d, at + basis(0) * stride),
+                       load(d, at + basis(1) * stride));
     } else
       return along<k, g_>(d, at);
   }
@@ -369,6 +355,14 @@ private:
   static HWY_INLINE Pair<V> masked(const Mask &mask, const Pair<V> &v, int k)
   {
     return {mask(v.x, k), mask(v.y, k)};
+  }
+
+  /// a where bond k carries, b elsewhere.
+  template <typename Mask, typename V>
+  static HWY_INLINE Pair<V> where_carries(const Mask &mask, int k, const Pair<V> &a,
+                                          const Pair<V> &b)
+  {
+    return {mask.select(a.x, b.x, k), mask.select(a.y, b.y, k)};
   }
 
   // First streams: displacement, angle, h and g, sum of a x Du, pressure beside the lattice's; of
@@ -381,6 +375,7 @@ private:
   LatticeBonds law_;
   bool volumetric_;
   const InelasticSweep<2> *inelastic_sweep_;
+  double third_;        // the third normal is the second one plus or minus the first
   double *w_ = nullptr; // origin of the window
 };
 

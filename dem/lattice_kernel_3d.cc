@@ -165,12 +165,13 @@ public:
       sum[1] = mul_add(n.y, both, sum[1]);
       sum[2] = mul_add(n.z, both, sum[2]);
     };
+    // Whole vectors without the masks, with the same bits.
     if (HWY_LIKELY(hn::AllTrue(d, mask.all(2 * n_dir))))
       for_directions([&](auto direction) HWY_ATTR {
         constexpr int k = decltype(direction)::value;
         const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
         const auto own = along<k, h_>(d, at);
-        const auto around = (own + own) + (along<k, h_>(d, f) + along<k, h_>(d, b));
+        const auto around = (along<k, h_>(d, f) + own) + (along<k, h_>(d, b) + own);
         add(law_.relative(displacement(d, f) - displacement(d, b), around), k);
       });
     else
@@ -178,46 +179,54 @@ public:
         constexpr int k = decltype(direction)::value;
         const double *const f = at + offsets.forward[k], *const b = at + offsets.backward[k];
         const auto own = along<k, h_>(d, at);
-        auto forward = law_.relative(displacement(d, f) - u, own + along<k, h_>(d, f));
-        auto backward = law_.relative(u - displacement(d, b), along<k, h_>(d, b) + own);
-        add(masked(mask, forward, k) + masked(mask, backward, n_dir + k), k);
+        const auto around = masked(mask, along<k, h_>(d, f) + own, k) +
+                            masked(mask, along<k, h_>(d, b) + own, n_dir + k);
+        const auto apart = where_carries(mask, k, displacement(d, f), u) -
+                           where_carries(mask, n_dir + k, displacement(d, b), u);
+        add(law_.relative(apart, around), k);
       });
     const Change<V> change(quaternion(d, at));
-    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
-    const V square = add_dot(sum[0], sum[0], add_dot(sum[1], sum[1], dot(sum[2], sum[2])));
-    if (HWY_LIKELY(is_quiet<3>(d, *inelastic_sweep_, place,
-                               hn::Mul(hn::Set(d, per_volume * per_volume), square))))
-    {
-      answer_elastically(d, i, sum, change);
-      return;
-    }
-    V x[3][3]; // R^T sum times S q / r
+    V theta = hn::Add(sum[0].x, hn::Add(sum[1].y, sum[2].z));
+    theta = add_dot(change.x, sum[0], add_dot(change.y, sum[1], add_dot(change.z, sum[2], theta)));
     const V factor = hn::Set(d, law_.volumetric);
-    for (int b = 0; b < 3; ++b) {
-      const V3 own = factor * (sum[b] + change.of_inverse(sum[b]));
-      x[0][b] = own.x, x[1][b] = own.y, x[2][b] = own.z;
+    theta = hn::Mul(factor, theta);
+    V3 moment{hn::Sub(sum[1].z, sum[2].y), hn::Sub(sum[2].x, sum[0].z),
+              hn::Sub(sum[0].y, sum[1].x)}; // a x Du
+    moment = add_cross(change.x, sum[0],
+                       add_cross(change.y, sum[1], add_cross(change.z, sum[2], moment)));
+    const V lambda_per_volume = hn::LoadU(d, a_.lambda_per_volume + i);
+    Answer<3, V> response(zero_tensor<3>(zero), hn::Mul(lambda_per_volume, theta), false);
+    const double per_volume = law_.volumetric * inelastic_sweep_->per_whole_volume;
+    const V square = hn::Mul(hn::Set(d, per_volume * per_volume),
+                             add_dot(sum[0], sum[0], add_dot(sum[1], sum[1], dot(sum[2], sum[2]))));
+    V x[3][3]; // R^T sum times S q / r
+    for (auto &row : x)
+      for (V &number : row)
+        number = zero;
+    if (!is_quiet<3>(d, *inelastic_sweep_, place, square)) {
+      for (int b = 0; b < 3; ++b) {
+        const V3 own = factor * (sum[b] + change.of_inverse(sum[b]));
+        x[0][b] = own.x, x[1][b] = own.y, x[2][b] = own.z;
+      }
+      const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
+      response = respond<3>(d, *inelastic_sweep_, place, fresh, x, theta, lambda_per_volume);
     }
-    const auto fresh = hn::Not(hn::FirstN(d, std::size_t(std::max(done - i, 0L))));
-    const auto response =
-        respond<3>(d, *inelastic_sweep_, place, fresh, x, hn::LoadU(d, a_.lambda_per_volume + i));
     const V p = response.pressure, vp = law_.pressing(p);
     hn::StoreU(p, d, a_.pressure + i);
     const V shear_half = hn::Set(d, law_.shear_half);
     const auto &e = response.strain;
-    // Of the particle's own torque in its axes: Y_zy - Y_yz and so on of Y = 2G X e - p X.
-    const V modulus = hn::Set(d, law_.shear_half / law_.volumetric);
-    const auto y = [&](int a, int b) HWY_ATTR {
-      V own = hn::Neg(hn::Mul(p, x[a][b]));
-      if (response.is_strained)
-        own = hn::MulAdd(
-            modulus,
-            hn::MulAdd(x[a][0], e(0, b), hn::MulAdd(x[a][1], e(1, b), hn::Mul(x[a][2], e(2, b)))),
-            own);
-      return own;
-    };
-    const V3 torque{hn::Sub(y(2, 1), y(1, 2)), hn::Sub(y(0, 2), y(2, 0)),
-                    hn::Sub(y(1, 0), y(0, 1))};
-    store(d, torque + change.of(torque), at + moment_ * stride);
+    V3 torque = hn::Neg(vp) * moment;
+    if (response.is_strained) {
+      const V modulus = hn::Set(d, law_.shear_half / law_.volumetric); // 2G
+      const auto y = [&](int a, int b) HWY_ATTR {                      // X e
+        return hn::MulAdd(x[a][0], e(0, b),
+                          hn::MulAdd(x[a][1], e(1, b), hn::Mul(x[a][2], e(2, b))));
+      };
+      const V3 own = modulus * V3{hn::Sub(y(2, 1), y(1, 2)), hn::Sub(y(0, 2), y(2, 0)),
+                                  hn::Sub(y(1, 0), y(0, 1))};
+      torque = torque + (own + change.of(own));
+    }
+    store(d, torque, at + moment_ * stride);
     for (int m = 0; m < 3; ++m) {
       const auto n = normal(d, Basis<n_dir>::direction[m]);
       V3 g = law_.part(vp, n, load(d, at + (h_ + 3 * m) * stride));
@@ -337,30 +346,6 @@ public:
   }
 
 private:
-  /// What Du (x) n of all bonds does where there is nothing else.
-  template <typename D, typename V = hn::Vec<D>>
-  HWY_INLINE void answer_elastically(D d, long i, const Triple<V> (&sum)[3],
-                                     const Change<V> &change) const
-  {
-    V theta = hn::Add(sum[0].x, hn::Add(sum[1].y, sum[2].z));
-    theta = add_dot(change.x, sum[0], add_dot(change.y, sum[1], add_dot(change.z, sum[2], theta)));
-    Triple<V> moment{hn::Sub(sum[1].z, sum[2].y), hn::Sub(sum[2].x, sum[0].z),
-                     hn::Sub(sum[0].y, sum[1].x)};
-    moment = add_cross(change.x, sum[0],
-                       add_cross(change.y, sum[1], add_cross(change.z, sum[2], moment)));
-    const V p = hn::Mul(
-        hn::Mul(hn::Set(d, law_.volumetric), hn::LoadU(d, a_.lambda_per_volume + i)), theta);
-    const V vp = law_.pressing(p);
-    double *const at = w_ + i;
-    hn::StoreU(p, d, a_.pressure + i);
-    store(d, hn::Neg(vp) * moment, at + moment_ * stride);
-    for (int m = 0; m < 3; ++m)
-      store(
-          d,
-          law_.part(vp, normal(d, Basis<n_dir>::direction[m]), load(d, at + (h_ + 3 * m) * stride)),
-          at + (g_ + 3 * m) * stride);
-  }
-
   /// Of the face in direction k between two particles, bit `bit` of the mask.
   template <int k, typename D>
   HWY_INLINE hn::Mask<D> face_reaches(D d, const BondMask<D> &mask, int bit, const double *from,
@@ -433,6 +418,14 @@ private:
   static HWY_INLINE Triple<V> masked(const Mask &mask, const Triple<V> &v, int k)
   {
     return {mask(v.x, k), mask(v.y, k), mask(v.z, k)};
+  }
+
+  /// a where bond k carries, b elsewhere.
+  template <typename Mask, typename V>
+  static HWY_INLINE Triple<V> where_carries(const Mask &mask, int k, const Triple<V> &a,
+                                            const Triple<V> &b)
+  {
+    return {mask.select(a.x, b.x, k), mask.select(a.y, b.y, k), mask.select(a.z, b.z, k)};
   }
 
   // First streams: displacement, quaternion, h and g of the basis, sum of a x Du (inelastic: own

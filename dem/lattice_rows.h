@@ -45,6 +45,14 @@ struct BondMask
     const auto carries = hn::TestBit(bits, hn::Set(d, std::uint64_t(1) << k));
     return hn::IfThenElseZero(hn::RebindMask(D(), carries), v);
   }
+  /// a where bond k carries, b elsewhere.
+  template <typename V>
+  HWY_INLINE V select(V a, V b, int k) const
+  {
+    const hn::Rebind<std::uint64_t, D> d;
+    const auto carries = hn::TestBit(bits, hn::Set(d, std::uint64_t(1) << k));
+    return hn::IfThenElse(hn::RebindMask(D(), carries), a, b);
+  }
   /// Where the first n bonds all carry.
   HWY_INLINE hn::Mask<D> all(int n) const
   {

@@ -251,8 +251,11 @@ private:
       lambda_per_volume[l] = a.lambda_per_volume[place.of[l]];
     }
     const auto used = hn::Lt(hn::Iota(d, double(lane)), hn::Set(d, double(size)));
+    auto trace = x[0][0];
+    for (int a = 1; a < dim; ++a)
+      trace = hn::Add(trace, x[a][a]);
     const auto response = dem::HWY_NAMESPACE::respond<dim>(d, *sweep_.inelastic, place, used, x,
-                                                           hn::Load(d, lambda_per_volume));
+                                                           trace, hn::Load(d, lambda_per_volume));
     hn::Store(response.pressure, d, pressure);
     for (int l = 0; l < n_lanes && lane + l < size; ++l)
       a.pressure[place.of[l]] = pressure[l];

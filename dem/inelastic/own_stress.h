@@ -23,11 +23,13 @@ class OwnStress
   using Tensor = SymmetricTensor<dim, V>;
 
 public:
-  /// `x`: sum of S/r R^T Du (x) A of the lattice's bonds, m^dim; `lambda_per_volume`: lambda / V.
+  /// `x`: sum of S/r R^T Du (x) A of the lattice's bonds, m^dim; `trace`: its own;
+  /// `lambda_per_volume`: lambda / V.
   template <typename At>
   HWY_INLINE OwnStress(D d, const InelasticSweep<dim> &s, const At &at, const V (&x)[dim][dim],
-                       V lambda_per_volume)
-      : d_(d), lambda_per_volume_(lambda_per_volume), is_plane_strain_(s.is_plane_strain)
+                       V trace, V lambda_per_volume)
+      : d_(d), trace_(trace), lambda_per_volume_(lambda_per_volume),
+        is_plane_strain_(s.is_plane_strain)
   {
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
@@ -46,7 +48,7 @@ public:
   }
 
   /// lambda theta in Pa.
-  HWY_INLINE V elastic_pressure() const { return hn::Mul(lambda_per_volume_, trace()); }
+  HWY_INLINE V elastic_pressure() const { return hn::Mul(lambda_per_volume_, trace_); }
   /// lambda (theta - M:e) in Pa.
   HWY_INLINE V pressure(const Tensor &e) const
   {
@@ -60,7 +62,7 @@ public:
         flowed = hn::Add(e.c[a], flowed);
     if (dim == 2 && is_plane_strain_)
       flowed = hn::Add(e.c[2], flowed);
-    return hn::Mul(lambda_per_volume_, hn::NegMulAdd(volume_, flowed, trace()));
+    return hn::Mul(lambda_per_volume_, hn::NegMulAdd(volume_, flowed, trace_));
   }
 
   /// In Pa, at the pressure of these e.
@@ -120,6 +122,8 @@ public:
     constexpr double round_off = 1e-9;
     return hn::Gt(most, hn::Set(d_, round_off));
   }
+  /// Of open vectors: lanes without an open cell.
+  HWY_INLINE hn::Mask<D> is_whole() const { return hn::Le(open_volume_, hn::Zero(d_)); }
   bool is_plane_stress() const { return dim == 2 && !is_plane_strain_; }
   /// What e alone does.
   HWY_INLINE OwnStress without_motion() const
@@ -128,19 +132,13 @@ public:
     for (auto &row : still.x_)
       for (V &x : row)
         x = hn::Zero(d_);
+    still.trace_ = hn::Zero(d_);
     return still;
   }
 
 private:
   using Cell = OpenCell<dim>;
 
-  HWY_INLINE V trace() const
-  {
-    V sum = x_[0][0];
-    for (int a = 1; a < dim; ++a)
-      sum = hn::Add(sum, x_[a][a]);
-    return sum;
-  }
   /// 2G E
   HWY_INLINE Tensor sheared(V modulus) const
   {
@@ -210,8 +208,10 @@ private:
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
         x_[a][b] = hn::Add(x_[a][b], number[Cell::strain + dim * a + b]);
-    const V volume = number[Cell::volume];
-    volume_ = hn::IfThenElse(hn::Gt(volume, hn::Zero(d_)), volume, volume_);
+    for (int a = 0; a < dim; ++a)
+      trace_ = hn::Add(trace_, number[Cell::strain + dim * a + a]);
+    open_volume_ = number[Cell::volume];
+    volume_ = hn::IfThenElse(is_whole(), volume_, open_volume_);
     for (int row = 0; row < dim; ++row)
       for (int k = 0; k < n_in_plane<dim>; ++k)
         moment_[row][k] = number[Cell::moment + row * n_in_plane<dim> + k];
@@ -219,7 +219,8 @@ private:
 
   D d_;
   V x_[dim][dim];
-  V lambda_per_volume_, volume_, per_volume_;
+  V trace_, lambda_per_volume_, volume_, per_volume_;
+  V open_volume_; // of open vectors: m^3, 0 without an open cell
   V moment_[dim][n_in_plane<dim>];
   bool is_plane_strain_;
 };

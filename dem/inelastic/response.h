@@ -161,7 +161,7 @@ private:
     }
     for (int k = 0; k < Streams::n_streams; ++k)
       at_.prefetch(streams_.stream(k));
-    if constexpr (Law::is_radial && !open)
+    if constexpr (Law::is_radial)
       if (!own.is_plane_stress()) {
         flow_along(law, twice_shear, where, own);
         return;
@@ -179,34 +179,43 @@ private:
       at_.store(d_, h, where, history);
       pressure = own.pressure(strain);
       stress = own.stress(strain, pressure, twice_shear);
-      book(stress, increment, where, own);
+      book(twice_work(stress, increment), where, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
       at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
   }
 
-  /// The same where flow is a share of the deviator and takes as much of the stress, none of it of
-  /// the pressure.
+  /// The same where flow is a share of the deviator. In whole cells it takes as much of the stress,
+  /// whatever else the vector holds.
   template <typename Law>
   HWY_INLINE void flow_along(const Law &law, double twice_shear, hn::Mask<D> where, const Own &own)
   {
-    Tensor stress = own.stress(strain, pressure, twice_shear);
+    Tensor stress = own.stress(strain, pressure, twice_shear), increment;
     const Tensor s = deviator(d_, stress);
     const V square = double_dot(s);
     double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history), along;
-    const auto flows = law.find_flow(square, where, h, along);
-    if (!hn::AllFalse(d_, flows)) {
+    if (!hn::AllFalse(d_, law.find_flow(square, where, h, along))) {
       at_.store(d_, h, where, history);
       const V relaxed = hn::Mul(hn::Set(d_, twice_shear), along);
       V work = hn::NegMulAdd(relaxed, square, square); // with the stress after, and before
       work = hn::Add(work, knows_before_ ? double_dot(s, load(Streams::stress)) : work);
+      work = hn::Mul(along, work);
       for (int c = 0; c < n_tensor<dim>; ++c) {
-        strain.c[c] = hn::MulAdd(along, s.c[c], strain.c[c]);
+        increment.c[c] = hn::Mul(along, s.c[c]);
+        strain.c[c] = hn::Add(strain.c[c], increment.c[c]);
         stress.c[c] = hn::NegMulAdd(relaxed, s.c[c], stress.c[c]);
         at_.store(d_, strain.c[c], where, streams_.stream(Streams::strain + c));
       }
-      book(hn::Mul(along, work), where, own);
+      pressure = own.pressure(strain);
+      if constexpr (open) {
+        const auto whole = own.is_whole();
+        const Tensor other = own.stress(strain, pressure, twice_shear);
+        work = hn::IfThenElse(whole, work, twice_work(other, increment));
+        for (int c = 0; c < n_tensor<dim>; ++c)
+          stress.c[c] = hn::IfThenElse(whole, stress.c[c], other.c[c]);
+      }
+      book(work, where, own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
       at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
@@ -253,7 +262,7 @@ private:
         plastic.c[c] = hn::Add(plastic.c[c], increment.c[c]);
       }
       stress = find_stress();
-      book(stress, increment, flows, own);
+      book(twice_work(stress, increment), flows, own);
     }
     const Tensor before = knows_before_ ? load(Streams::stress) : stress;
     viscous.store(where, before, stress);
@@ -273,21 +282,21 @@ private:
     at_.store(d_, hn::MulAdd(own.volume(), kept, at_.load(d_, s_.energy)), where, s_.energy);
   }
 
-  /// Eq. (D23).
-  HWY_INLINE void book(const Tensor &stress, const Tensor &increment, hn::Mask<D> where,
-                       const Own &own) const
+  /// Of an increment with the stresses after it and before, J/m^3.
+  HWY_INLINE V twice_work(const Tensor &stress, const Tensor &increment) const
   {
     const Tensor before = knows_before_ ? load(Streams::stress) : stress;
     Tensor sum;
     for (int c = 0; c < n_tensor<dim>; ++c)
       sum.c[c] = hn::Add(stress.c[c], before.c[c]);
-    book(double_dot(sum, increment), where, own);
+    return double_dot(sum, increment);
   }
-  HWY_INLINE void book(V twice_work, hn::Mask<D> where, const Own &own) const
+  /// Eq. (D23).
+  HWY_INLINE void book(V twice, hn::Mask<D> where, const Own &own) const
   {
     double *const taken = streams_.stream(Streams::taken);
     const V half_volume = hn::Mul(hn::Set(d_, 0.5), own.volume());
-    at_.store(d_, hn::MulAdd(half_volume, twice_work, at_.load(d_, taken)), where, taken);
+    at_.store(d_, hn::MulAdd(half_volume, twice, at_.load(d_, taken)), where, taken);
   }
 
   /// 2G of the lanes.
@@ -342,12 +351,13 @@ HWY_INLINE bool is_quiet(D d, const InelasticSweep<dim> &s, const At &at, V squa
 /// Of any particles.
 template <int dim, typename D, typename At, typename V = hn::Vec<D>>
 HWY_NOINLINE void respond_apart(D d, const InelasticSweep<dim> &s, const At &at, hn::Mask<D> fresh,
-                                const V (&x)[dim][dim], V lambda_per_volume, Answer<dim, V> &answer)
+                                const V (&x)[dim][dim], V trace, V lambda_per_volume,
+                                Answer<dim, V> &answer)
 {
   const FlowLaw *const law = plain_law(s, at);
   const auto respond_with = [&](auto open, auto plain) HWY_ATTR {
     answer = Response<dim, D, At, open(), plain()>(
-        d, s, at, fresh, law, OwnStress<dim, D, open()>(d, s, at, x, lambda_per_volume));
+        d, s, at, fresh, law, OwnStress<dim, D, open()>(d, s, at, x, trace, lambda_per_volume));
   };
   if (!at.any_open(s.open))
     respond_with(std::false_type(), std::false_type());
@@ -360,13 +370,14 @@ HWY_NOINLINE void respond_apart(D d, const InelasticSweep<dim> &s, const At &at,
 /// What particles with these X (OwnStress) answer; they flow where `fresh`.
 template <int dim, typename D, typename At, typename V = hn::Vec<D>>
 HWY_INLINE Answer<dim, V> respond(D d, const InelasticSweep<dim> &s, const At &at,
-                                  hn::Mask<D> fresh, const V (&x)[dim][dim], V lambda_per_volume)
+                                  hn::Mask<D> fresh, const V (&x)[dim][dim], V trace,
+                                  V lambda_per_volume)
 {
   if constexpr (At::n > 1) {
     const FlowLaw *const law = plain_law(s, at);
     if (HWY_LIKELY(law && !at.any_open(s.open)))
       return Response<dim, D, At, false, true>(
-          d, s, at, fresh, law, OwnStress<dim, D, false>(d, s, at, x, lambda_per_volume));
+          d, s, at, fresh, law, OwnStress<dim, D, false>(d, s, at, x, trace, lambda_per_volume));
   }
   // Copies, lest all else is kept in memory, too.
   V copy[dim][dim];
@@ -374,7 +385,7 @@ HWY_INLINE Answer<dim, V> respond(D d, const InelasticSweep<dim> &s, const At &a
     for (int b = 0; b < dim; ++b)
       copy[a][b] = x[a][b];
   Answer<dim, V> answer(zero_tensor<dim>(hn::Zero(d)), hn::Zero(d), false);
-  respond_apart<dim>(d, s, at, fresh, copy, lambda_per_volume, answer);
+  respond_apart<dim>(d, s, at, fresh, copy, trace, lambda_per_volume, answer);
   return answer;
 }
 } // namespace ligament::dem::HWY_NAMESPACE
