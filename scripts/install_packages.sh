@@ -1,11 +1,12 @@
 #!/bin/sh
-# Installs the Debian packages that building Ligament needs; does nothing when all are there.
+# Installs the Debian packages that building Ligament needs, and further ones that are named; does
+# nothing when all are there.
 set -eu
 
 packages="git ca-certificates g++ cmake ninja-build libdeal.ii-dev libtrilinos-amesos-dev
   libtrilinos-ml-dev libsuitesparse-dev libeigen3-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhwy-dev zlib1g-dev libcairo2-dev
   fonts-dejavu-core libgtest-dev
-  voro++-dev libboost-dev libassimp-dev lammps-data"
+  voro++-dev libboost-dev libassimp-dev $*"
 
 if ! command -v apt-get >/dev/null 2>&1; then
   echo "error: apt-get not found. Ligament builds on Debian 12; elsewhere provide:" >&2

@@ -102,6 +102,20 @@ void check_company(const Scene &scene, const MaterialParameters &m, const std::s
                         word_of(m.fracture.criterion)),
             "they begin to soften under the largest principal stress",
             "choose \"maximum_tension\", or leave out \"energy\" so that they break at once");
+  if (scene.time.loading != Loading::dynamic)
+    for (std::size_t k = 0; k < scene.inclusions.size(); ++k) {
+      const MaterialParameters &other = scene.inclusions[k].material;
+      const std::string inclusion = fmt::format("/inclusions/{}", k);
+      if (f.sound({inclusion, "/material"}) &&
+          (other.youngs_modulus != scene.material.youngs_modulus ||
+           other.poissons_ratio != scene.material.poissons_ratio))
+        f.error(energy,
+                fmt::format("faces soften beside {} of other elastic constants, and \"loading\" is "
+                            "\"{}\"",
+                            inclusion, word_of(scene.time.loading)),
+                "equilibria with faces between the two that open are not tried yet",
+                "choose \"dynamic\", or give all materials the same elastic constants");
+    }
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     if (scene.loads[k].pressure)
       f.error(fmt::format("/loads/{}/pressure", k),
