@@ -69,6 +69,7 @@ auto InelasticStrains<dim>::try_response(const InelasticSweep<dim> &sweep, int i
   const Place place{i};
   const auto response =
       HWY_NAMESPACE::respond<dim>(d, sweep, place, HWY_NAMESPACE::hn::FirstN(d, 1), of_bonds,
+                                  HWY_NAMESPACE::hn::Set(d, (x - in_cell).trace()),
                                   HWY_NAMESPACE::hn::Set(d, lambda_per_volume));
   Matrix e;
   for (int a = 0; a < dim; ++a)
