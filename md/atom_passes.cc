@@ -227,10 +227,11 @@ void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
   for (int m = 0; k.slot_of_image && m < n; ++m)
     q.other[m] = q.place[m] < k.n_atoms ? q.place[m] : k.slot_of_image[q.place[m] - k.n_atoms];
   const V inverse_step = hn::Set(d, k.inverse_step), one = hn::Set(d, 1.), two = hn::Set(d, 2.),
-          three = hn::Set(d, 3.);
+          three = hn::Set(d, 3.), least = hn::Set(d, 1e-12 / (k.inverse_step * k.inverse_step));
   HWY_ALIGN std::int32_t piece[lanes];
   for (int m = 0; m < n; m += lanes) {
-    const V r2 = hn::LoadU(d, pair + m), inverse = hn::Div(one, hn::Sqrt(r2)),
+    // Atoms at the same place have no direction: their force is 0.
+    const V r2 = hn::Max(hn::LoadU(d, pair + m), least), inverse = hn::Div(one, hn::Sqrt(r2)),
             place = hn::Mul(hn::Mul(r2, inverse), inverse_step);
     const auto whole = hn::DemoteTo(di, place); // towards 0
     hn::Store(whole, di, piece);

@@ -69,7 +69,7 @@ bool NeighbourList::update(const Components<dim> &reference, const Components<di
     build<dim>(reference, displacement);
     return true;
   }
-  double farthest = 0;
+  bool is_near = true;
   for (int s = 0; s < n_atoms(); ++s) {
     AtomRecord now;
     double way2 = 0;
@@ -80,9 +80,9 @@ bool NeighbourList::update(const Components<dim> &reference, const Components<di
       way2 += (x - component(built_[s])[c]) * (x - component(built_[s])[c]);
     }
     records_[s] = now;
-    farthest = std::max(farthest, way2);
+    is_near = is_near && way2 <= skin_ * skin_ / 4; // not so of what is no number
   }
-  if (!(farthest <= skin_ * skin_ / 4)) {
+  if (!is_near) {
     build<dim>(reference, displacement);
     return true;
   }

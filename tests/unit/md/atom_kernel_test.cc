@@ -49,6 +49,18 @@ TEST_F(AtomKernelTest, AgreesWithTheOracleOnAllInstructionSets)
              0.05);
 }
 
+TEST_F(AtomKernelTest, BearsAtomsAtTheSamePlace)
+{
+  auto body = make_body<3>(foiles_copper(), CrystalKind::fcc, {2, 2, 2});
+  set(body.atoms.displacement, 1,
+      Vector<3>(get(body.atoms.reference, 0) - get(body.atoms.reference, 1)));
+  auto force = body.force();
+  force.compute(body.atoms, 0);
+  for (const auto &component : body.atoms.force)
+    for (const double f : component)
+      EXPECT_TRUE(std::isfinite(f));
+}
+
 // Atoms far from each other, a pair, a single one.
 TEST_F(AtomKernelTest, HandlesLonelyAtoms)
 {

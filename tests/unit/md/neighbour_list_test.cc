@@ -122,5 +122,9 @@ TEST(NeighbourListTest, PlacesThatAreNoNumbersStopTheRun)
   }
   NeighbourList list(1, 0.1, Vector<2>(0, 0));
   EXPECT_THROW(list.update<2>(x, u), core::GuardStop);
+  u[0][1] = u[1][1] = 0;
+  list.build<2>(x, u);
+  u[1][0] = std::nan("");
+  EXPECT_THROW(list.update<2>(x, u), core::GuardStop);
 }
 } // namespace ligament::md::testing
