@@ -49,7 +49,8 @@ Spline::Spline(double step, const std::vector<double> &y, double first_slope, do
 
 int Spline::interval(double x) const
 {
-  return int(std::clamp(x / step_, 0., double(pieces_.size()) - 1));
+  const double place = x / step_;
+  return place > 0 ? int(std::min(place, double(pieces_.size()) - 1)) : 0; // also of no number
 }
 
 Jet Spline::operator()(double x) const

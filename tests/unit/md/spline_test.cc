@@ -49,6 +49,8 @@ TEST(SplineTest, GoesOnAlongItsTangents)
   EXPECT_EQ(s(3).curvature, 0);
   EXPECT_NEAR(s(-0.5).value, -0.5, 1e-12);
   EXPECT_NEAR(s(-0.5).slope, 1, 1e-12);
+  EXPECT_TRUE(std::isnan(s(std::nan("")).value));
+  EXPECT_TRUE(std::isnan(s.change(std::nan(""), 1)));
 }
 
 TEST(SplineTest, ChangesAreThoseOfValuesAndKeepTheirDigits)
