@@ -215,7 +215,7 @@ typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::forces() const
   for (const auto &block : blocks_) {
     const auto &basis = *block.basis;
     const Field homogeneous = block.s * basis.strain.transpose();
-    scatter(block, block.h + homogeneous * basis.homogeneous.transpose(), sum);
+    scatter<dim, ns>(block, block.h + homogeneous * basis.homogeneous.transpose(), sum);
   }
   restrict_to_states(sum);
   return sum;
@@ -235,7 +235,7 @@ typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::apply(const Fie
     const Field part = gather(block, y) * basis.homogeneous;
     const StateMatrix<ns> s = block.volume * block.volume * symmetric_part<ns>(part * basis.strain);
     const Field rest = s * basis.strain.transpose() - scale * scale * part;
-    scatter(block, rest * basis.homogeneous.transpose(), sum);
+    scatter<dim, ns>(block, rest * basis.homogeneous.transpose(), sum);
   }
   restrict_to_states(sum);
   return sum;

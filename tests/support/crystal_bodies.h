@@ -22,7 +22,7 @@ struct CrystalParameters
   double cell_size = dim == 2 ? 4.1 : 2.6;
   int overlap_cells = 4;
   int transition_cells = 2;
-  Vector<dim> size, zone_size; // centred at the origin
+  Vector<dim> size, zone_size; // centred at the origin; not coupled where equal
   coupling::FineScaleSplitParameters split;
   double step_fraction = 0.9;
 
@@ -90,7 +90,9 @@ CoupledBodies<dim> make_crystal(const CrystalParameters<dim> &p)
   overlap.spacing = 1;
   overlap.transition_cells = p.transition_cells;
   auto &box = overlap.zone.boxes.emplace_back();
-  box.upper = p.zone_size / 2;
+  for (int c = 0; c < dim; ++c)
+    box.upper[c] =
+        p.zone_size[c] < p.size[c] ? p.zone_size[c] / 2 : std::numeric_limits<double>::infinity();
   box.lower = -box.upper;
   fem::MeshParameters<dim> mesh;
   mesh.upper = p.size / 2;

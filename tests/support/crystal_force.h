@@ -19,7 +19,7 @@ struct CrystalFaults
 {
   bool embeds_at_atoms = false; // the bonds' share of the embedding stands at x_i, not at bonds
   bool hides_reference = false; // no forces in the reference
-  bool hides_range = false;     // answers the spacing
+  bool hides_range = false;     // answers 1.3 spacings
   bool closes_by_faces = false; // neighbours are those of the first shell
   bool hides_prestress = false; // terms are said to be blind to rotation; the load is there
 };
@@ -48,14 +48,14 @@ public:
     find_neighbours(p);
     find_bulk(p);
     densities_ = densities(Components<dim>{});
-    for (std::size_t i = 0; i < bonds_.size() && is_harmonic; ++i)
+    if (!is_harmonic)
+      return;
+    for (std::size_t i = 0; i < bonds_.size(); ++i)
       for (std::size_t b = 0; b < bonds_[i].size(); ++b) {
         const double r = bonds_[i][b].norm();
         stiffnesses_.push_back(stiffness(r, densities_[i], densities_[neighbours_[i][b]]));
         slopes_.push_back(potential_.density(r).slope);
       }
-    if (!is_harmonic)
-      return;
     find_forces(Components<dim>{}, first_forces_);
   }
 
@@ -164,7 +164,10 @@ public:
       std::fill(component.begin(), component.end(), 0.);
   }
 
-  double range() const override { return faults_.hides_range ? spacing_ : potential_.range(); }
+  double range() const override
+  {
+    return faults_.hides_range ? 1.3 * spacing_ : potential_.range();
+  }
   bool is_prestressed() const override { return !faults_.hides_prestress; }
   void reference_forces(const Particles &p, Components<dim> &force) const override
   {
