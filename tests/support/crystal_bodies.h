@@ -189,4 +189,20 @@ double gradient_residual(CoupledBodies<dim> &body)
   }
   return largest / force_scale(body);
 }
+/// Largest force on an atom that does not move with the mesh, in the reference, over C11 d^(dim-1).
+template <int dim>
+double free_force(CoupledBodies<dim> &body)
+{
+  move_by_gradient<dim>(body, Eigen::Matrix<double, dim, dim>::Zero());
+  auto bodies = body.bodies();
+  body.split->compute_forces(bodies, {});
+  const auto &overlap = *body.split->overlap();
+  double largest = 0;
+  for (int i = 0; i < body.zone->state.size(); ++i) {
+    const int m = overlap.member_of_particle[i];
+    if (m < 0 || !overlap.members[m].pad)
+      largest = std::max(largest, get(body.zone->state.force, i).norm());
+  }
+  return largest / body.far->body().stiffness(0, 0);
+}
 } // namespace ligament::tests

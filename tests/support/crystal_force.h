@@ -219,22 +219,6 @@ public:
     }
   }
 
-  /// Largest force on an atom in the reference that sees all its neighbours, as they do theirs.
-  double largest_bulk_force(const Particles &p) const
-  {
-    Components<dim> force;
-    reference_forces(p, force);
-    double largest = 0;
-    for (int i = 0; i < p.size(); ++i) {
-      bool is_bulk = true;
-      for (const int j : neighbours_[i])
-        is_bulk = is_bulk && bonds_[j].size() == bonds_[bulk_].size();
-      if (is_bulk && bonds_[i].size() == bonds_[bulk_].size())
-        largest = std::max(largest, get(force, i).norm());
-    }
-    return largest;
-  }
-
   /// m omega^2 in N/m of waves exp(i k.X) of the crystal without end: the matrix of all components.
   Matrix wave_stiffness(const Vector<dim> &k) const
   {

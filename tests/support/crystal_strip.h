@@ -49,60 +49,67 @@ fem::Mesh<dim> strip_mesh(int across, int layers, int size, double lower)
   return mesh;
 }
 
-/// Energy that comes back into a crystal of a packet of waves along the last axis with this length
-/// in cells and polarisation, over that of the packet.
+/// Hexagonal rows along x or FCC layers [001], rows [110], `length` m of them below the overlap. No
+/// bond bears forces in the reference, as at an equilibrium of the free end.
 template <int dim>
-double reflected_share(double cells_per_wave, int polarisation, int overlap_cells = 4)
+struct CrystalStrip
 {
-  constexpr int across = 3;
-  const int size = 4;
-  const double wave = cells_per_wave * size, width = 1.5 * wave; // of the packet: exp(-(y/width)^2)
-  const double zone = 8 * width, overlap_length = overlap_cells * size;
-  CrystalParameters<dim> p;
-  p.split.fine_damper = 8;
-  // Layers at distance 1/2 or sqrt(3)/2, whole cells of the lattice sideways.
-  particles::Particles<dim> atoms;
-  std::vector<Vector<dim>> places;
+  static constexpr int across = 3, size = 4; // cells of the strip sideways, their edge
+
+  CoupledBodies<dim> body;
+  double mesh_begin = 0; // m, where the overlap begins
+
+  /// length, far_length in m; the fine damper is c_f.
+  CrystalStrip(CrystalParameters<dim> p, double length, double far_length, double fine_damper);
+
+  const CrystalForce<dim> &force() const
+  {
+    return static_cast<const CrystalForce<dim> &>(*body.zone->force);
+  }
+};
+
+template <int dim>
+CrystalStrip<dim>::CrystalStrip(CrystalParameters<dim> p, double length, double far_length,
+                                double fine_damper)
+{
+  p.split.fine_damper = fine_damper;
+  const double overlap_length = p.overlap_cells * size;
   const double layer = dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5);
-  const int n_layers = int((zone + overlap_length) / layer), n = across * size;
+  const int n_layers = int((length + overlap_length) / layer), n = across * size;
+  std::vector<Vector<dim>> places;
   for (int l = 0; l < n_layers; ++l)
     for (int k = 0; k < (dim == 2 ? n : n * n); ++k) {
+      const double shift = 0.2 + 0.5 * (l % 2);
       Vector<dim> x;
       if constexpr (dim == 2)
-        x << k + 0.5 * (l % 2), l * layer;
+        x << k + shift, l * layer;
       else
-        x << k % n + 0.5 * (l % 2), k / n + 0.5 * (l % 2), l * layer; // rows [110]
-      x.template head<dim - 1>().array() += 0.2;
+        x << k % n + shift, k / n + shift, l * layer;
       places.push_back(x);
     }
+  particles::Particles<dim> atoms;
   atoms.resize(int(places.size()));
   for (int i = 0; i < atoms.size(); ++i) {
     set(atoms.reference, i, places[i]);
     atoms.volume[i] = atoms.mass[i] = std::abs(crystal_basis<dim>(0).determinant());
   }
   const double edge = n_layers * layer - 0.3; // the mesh at no fraction of the lattice
+  mesh_begin = edge - overlap_length;
   Vector<dim> period = Vector<dim>::Constant(n);
   period[dim - 1] = 0;
-  auto force = std::make_unique<CrystalForce<dim>>(atoms, 1, EmbeddingPotential(dim, 1, p.reach), 1,
-                                                   true, CrystalFaults(), period);
+  auto force = std::make_unique<CrystalForce<dim>>(
+      atoms, 1, EmbeddingPotential(dim, 1, p.reach, p.strain, p.is_normal), 1, true, p.faults,
+      period);
   force->forget_reference();
   const auto constants = force->elastic_constants();
-  // Along the last axis of the crystal as it lies here.
-  double modulus = constants.stiffness(polarisation, polarisation);
-  if (polarisation < dim - 1) {
-    const int shear = voigt_index<dim>(polarisation, dim - 1);
-    modulus = constants.stiffness(shear, shear);
-  }
-  const double speed = std::sqrt(modulus);
-  CoupledBodies<dim> body;
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(atoms), std::move(force));
   fem::Body<dim> material;
   material.stiffness = constants.stiffness;
+  material.stress = constants.stress;
   material.density = 1;
-  const int far_layers = int((8 * width + overlap_length) / size);
   body.far = std::make_unique<fem::FemSolver<dim>>(
-      strip_mesh<dim>(across, far_layers, size, edge - overlap_length), material,
-      std::vector<core::BoundaryLoad<dim>>());
+      strip_mesh<dim>(across, int((far_length + overlap_length) / size), size, mesh_begin),
+      material, std::vector<core::BoundaryLoad<dim>>());
   coupling::OverlapParameters<dim> overlap;
   overlap.length = overlap_length;
   overlap.spacing = 1;
@@ -113,10 +120,27 @@ double reflected_share(double cells_per_wave, int polarisation, int overlap_cell
   box.upper[dim - 1] = edge;
   for (int c = 0; c < dim - 1; ++c)
     overlap.period[c] = n;
-  body.dt = 0.9 * body.zone->force->stable_step(body.zone->state);
+  body.dt = p.step_fraction * body.zone->force->stable_step(body.zone->state);
   auto bodies = body.bodies();
   body.split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap, p.split, body.dt,
                                                                *body.timers);
+}
+
+/// Energy that comes back into a crystal of a packet of waves along the last axis with this length
+/// in cells and polarisation, over that of the packet.
+template <int dim>
+double reflected_share(double cells_per_wave, int polarisation, int overlap_cells = 4)
+{
+  CrystalParameters<dim> p;
+  p.overlap_cells = overlap_cells;
+  const double wave = cells_per_wave * CrystalStrip<dim>::size,
+               width = 1.5 * wave; // of the packet: exp(-(y/width)^2)
+  CrystalStrip<dim> strip(p, 8 * width, 8 * width, 8);
+  auto &body = strip.body;
+  auto bodies = body.bodies();
+  const auto &stiffness = body.far->body().stiffness;
+  const int mode = voigt_index<dim>(polarisation, dim - 1);
+  const double speed = std::sqrt(stiffness(mode, mode));
 
   // Upwards, velocities half a step behind.
   auto &zone_state = body.zone->state;
@@ -138,7 +162,7 @@ double reflected_share(double cells_per_wave, int polarisation, int overlap_cell
   const auto kinetic = [&] {
     double sum = 0;
     for (int i = 0; i < zone_state.size(); ++i)
-      if (zone_state.reference[dim - 1][i] < edge - overlap_length)
+      if (zone_state.reference[dim - 1][i] < strip.mesh_begin)
         sum += zone_state.mass[i] * get(zone_state.velocity, i).squaredNorm();
     return sum;
   };
@@ -146,7 +170,7 @@ double reflected_share(double cells_per_wave, int polarisation, int overlap_cell
   coupling::StepTime time;
   time.dt = body.dt;
   // Until the packet has left, and what comes back has not reached the other end.
-  const double left = (zone + overlap_length - start + 3 * width) / speed;
+  const double left = (strip.mesh_begin + overlap_cells * strip.size - start + 3 * width) / speed;
   while (time.time < left)
     advance(body, time);
   double sum = 0;
