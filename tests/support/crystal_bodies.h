@@ -25,6 +25,7 @@ struct CrystalParameters
   Vector<dim> size, zone_size; // centred at the origin; not coupled where equal
   coupling::FineScaleSplitParameters split;
   double step_fraction = 0.9;
+  bool holds_sides = false; // of the mesh
 
   CrystalParameters()
   {
@@ -111,8 +112,13 @@ CoupledBodies<dim> make_crystal(const CrystalParameters<dim> &p)
   material.stiffness = constants.stiffness;
   material.stress = constants.stress;
   material.density = constants.density;
-  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material,
-                                                   std::vector<core::BoundaryLoad<dim>>());
+  std::vector<core::BoundaryLoad<dim>> loads;
+  for (int side = 0; side < 2 * dim && p.holds_sides; ++side) {
+    auto &hold = loads.emplace_back();
+    hold.boundary = side;
+    hold.value.fill(0.);
+  }
+  body.far = std::make_unique<fem::FemSolver<dim>>(fem::make_mesh(mesh), material, loads);
   body.dt_zone = body.zone->force->stable_step(body.zone->state);
   body.dt = p.step_fraction * body.dt_zone;
   auto bodies = body.bodies();
