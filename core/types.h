@@ -22,6 +22,13 @@ inline constexpr int n_particle_dofs = dim + n_spins<dim>;
 template <int dim>
 inline constexpr int n_strains = dim *(dim + 1) / 2;
 
+/// Where the pair (i, j) stands in this order.
+template <int dim>
+constexpr int voigt_index(int i, int j)
+{
+  return i == j ? i : dim == 2 ? 2 : 6 - i - j;
+}
+
 template <int n>
 using Vec = Eigen::Matrix<double, n, 1>;
 template <int dim>

@@ -46,7 +46,8 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                               "keep the overlap away from corners, holes and loads",
                               fit.residual));
   }
-  coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
+  dead_load_ = operators.dead_load;
+  coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_, dead_load_);
   linear_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
 
   Eigen::SparseMatrix<double> mass = take_over_cells(overlap_, far);
@@ -91,10 +92,15 @@ template <int dim>
 void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &bodies)
 {
   if (regime == Regime::corotated)
-    coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_);
-  else
+    coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_, dead_load_);
+  else {
+    if (bodies.zone->force->is_prestressed())
+      throw core::InputError(
+          "/coupling/regime: bonds bear forces in the reference, which the "
+          "nonlinear regime doesn't know yet; choose \"linear\" or \"corotated\"");
     coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
         overlap_, parts_, bodies.zone->state, *bodies.zone->force, bodies.far->body(), correction_);
+  }
   regime_ = regime;
 }
 

@@ -127,6 +127,7 @@ private:
   SplitReport report_;
 
   Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
+  Nodal<dim> dead_load_;                               // g; empty: no bond bears forces at first
   RigidFrames<dim> parts_;
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference

@@ -75,7 +75,7 @@ double Overlap<dim>::distance_to_edge(const Vector<dim> &x) const
 template <int dim>
 double Overlap<dim>::position(const Vector<dim> &x) const
 {
-  const double s = (distance_to_edge(x) - depth) / (parameters.length - depth - parameters.spacing);
+  const double s = (distance_to_edge(x) - depth) / (parameters.length - depth - margin);
   return std::clamp(s, 0., 1.);
 }
 
@@ -146,6 +146,7 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     m.cell = cell; // of the mesh until then
   }
   core::require(!members.empty(), "no particle lies in the mesh: the zones do not overlap");
+  margin = force.range() > 0 ? force.range() : parameters.spacing;
   const std::vector<char> open = find_edge(particles, force);
   for (std::size_t k = 0; k < members.size(); ++k)
     members[k].open = open[k];
@@ -168,49 +169,64 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
     else if (!parameters.has_pads)
       depth = std::min(depth, distance - parameters.spacing / 2);
   }
-  core::require(
-      parameters.length > depth + 3 * parameters.spacing,
-      fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
-                  "need {:.3g} m of it; raise /coupling/overlap_cells or /far_field/cell_size",
-                  parameters.length, depth + 3 * parameters.spacing));
+  require_width(force.range());
 }
 
-// Open are the members whose cell the faces do not close (a neighbour is missing at the edge of the
-// packing; faces on the specimen's surface do close); the edge are these and their neighbours. The
-// edge lies in the mesh, so nobody else is asked: packings close all other cells.
+// Weights need room to rise between the pads and the margin: two spacings where particles see
+// their neighbours only, two cells where pads and margin are as thick as the force reaches.
+template <int dim>
+void Overlap<dim>::require_width(double range) const
+{
+  double cell = std::numeric_limits<double>::max(); // smallest edge
+  for (const Member &m : members)
+    cell = std::min(cell, mesh.cell_size[m.cell].minCoeff());
+  const double least = depth + margin + 2 * (range > 0 ? cell : parameters.spacing);
+  if (parameters.length > least)
+    return;
+  const std::string reach =
+      range > 0 ? fmt::format(", the range of the force {:.3g} m and the weights two cells", range)
+                : "";
+  throw core::InputError(
+      fmt::format("the overlap is {:.3g} m wide, but the particles that close the packing "
+                  "need {:.3g} m of it{}, {:.3g} m in all: raise /coupling/overlap_cells to {} or "
+                  "/far_field/cell_size",
+                  parameters.length, depth, reach, least, int(std::floor(least / cell)) + 1));
+}
+
+// The edge are the open members and their neighbours. It lies in the mesh, so nobody else is asked:
+// nothing is missing elsewhere.
 template <int dim>
 std::vector<char> Overlap<dim>::find_edge(const particles::Particles<dim> &particles,
                                           const particles::ParticleForce<dim> &force)
 {
-  const std::vector<int> asked = member_particles();
-  std::vector<Vector<dim>> closure(members.size(), Vector<dim>::Zero());
-  std::vector<double> surface(members.size(), 0.);
+  const std::vector<int> open = force.open_particles(particles, member_particles());
   std::vector<char> is_open(members.size(), 0);
-  force.for_each_face(
-      particles,
-      [&](const particles::FaceView<dim> &face) {
-        const int k = member_of_particle[face.i];
-        closure[k] += face.area * face.normal;
-        surface[k] += face.area;
-      },
-      &asked);
-  // A cell that lacks a sliver of a face is open: its strain is wrong by the sliver's share.
-  for (std::size_t k = 0; k < members.size(); ++k)
-    if (closure[k].norm() > 1e-12 * surface[k]) {
-      is_open[k] = 1;
-      edge.push_back(members[k].particle);
-    }
-  const std::vector<int> open = edge;
-  force.for_each_face(
-      particles,
-      [&](const particles::FaceView<dim> &face) {
-        if (face.j >= 0)
-          edge.push_back(face.j);
-      },
-      &open);
+  for (const int i : open)
+    is_open[member_of_particle[i]] = 1;
+  require_closed_surface(particles, force.range(), open);
+  edge = open;
+  force.for_each_neighbour(
+      particles, [&](const particles::Neighbour &n) { edge.push_back(n.j); }, &open);
   std::sort(edge.begin(), edge.end());
   edge.erase(std::unique(edge.begin(), edge.end()), edge.end());
   return is_open;
+}
+
+// What a force with a range misses farther from the coupled edge than it reaches lies beyond a
+// surface of the body. Such surfaces have a stress of their own, of which the mesh knows nothing.
+template <int dim>
+void Overlap<dim>::require_closed_surface(const particles::Particles<dim> &particles, double range,
+                                          const std::vector<int> &open) const
+{
+  if (range == 0)
+    return;
+  for (const int i : open)
+    core::require(
+        distance_to_edge(get(particles.reference, i)) <= range + parameters.spacing,
+        fmt::format("the overlap reaches a free surface of the body at particle {}, where "
+                    "a force with a range can't end yet; keep coupled sides of the zone "
+                    "inside the specimen",
+                    i));
 }
 
 // Layer 0: cells that reach into the packing's side of the edge. Each further layer: the cells

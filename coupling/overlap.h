@@ -38,7 +38,7 @@ struct OverlapParameters
 /// and weights").
 ///
 /// A point is a distance away from the edge of the packing (core::BoxUnion::distance); s rises from
-/// 0 at `depth`, behind which only pad particles lie, to 1 one spacing before the mesh ends. The
+/// 0 at `depth`, behind which only pad particles lie, to 1 at a `margin` before the mesh ends. The
 /// share of the discrete model is a = 3 s^2 - 2 s^3, or another function of s.
 template <int dim>
 class Overlap
@@ -63,7 +63,7 @@ public:
   {
     int particle;
     bool pad;                                          // moves with the mesh
-    bool open;                                         // lacks faces at the edge of the packing
+    bool open;                                         // lacks neighbours beyond the packing
     double weight;                                     // a at its centre
     double position;                                   // s at its centre
     int cell;                                          // index into `cells`
@@ -88,9 +88,10 @@ public:
   std::vector<int> near_nodes;         // mesh node of every near node; hanging nodes are none
   std::vector<char> is_overlap_node;   // per near node: node of a cell of layer 0
   std::vector<int> member_of_particle; // index into members, or -1
-  std::vector<int> edge; // particles whose cells are open, and their neighbours: pads, if there are
-  double depth = 0;      // m
-  double cell_size = 0;  // m, smallest edge of the overlap's cells
+  std::vector<int> edge;               // open particles and their neighbours: pads, if there are
+  double depth = 0;                    // m
+  double margin = 0;    // m: range of the force, or one spacing where it reaches neighbours only
+  double cell_size = 0; // m, smallest edge of the overlap's cells
   const fem::Mesh<dim> &mesh;
   const OverlapParameters<dim> parameters;
 
@@ -122,6 +123,9 @@ private:
                               const particles::ParticleForce<dim> &force);
   void find_members(const particles::Particles<dim> &particles,
                     const particles::ParticleForce<dim> &force);
+  void require_width(double range) const;
+  void require_closed_surface(const particles::Particles<dim> &particles, double range,
+                              const std::vector<int> &open) const;
   void find_cells();
   /// Their shape functions, once the cells are known.
   void place_members(const particles::Particles<dim> &particles);

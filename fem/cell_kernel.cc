@@ -239,7 +239,7 @@ void subtract_singles_3d(const CellKernel<3>::SingleBatch *batches, std::size_t 
 } // namespace
 
 template <int dim>
-CellKernel<dim>::CellKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, double thickness,
+CellKernel<dim>::CellKernel(const Mesh<dim> &mesh, const Body<dim> &body,
                             const std::vector<char> &is_own)
 {
   std::vector<std::vector<int>> cells_of_group;
@@ -259,9 +259,9 @@ CellKernel<dim>::CellKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, doub
   }
 
   for (std::size_t group = 0; group < size_.size(); ++group)
-    add_group(mesh, cell_stiffness<dim>(size_[group], c, thickness), cells_of_group[group]);
+    add_group(mesh, cell_stiffness<dim>(size_[group], body), cells_of_group[group]);
   if (!mesh.general.empty())
-    add_general_cells(mesh, c, thickness, is_own);
+    add_general_cells(mesh, body, is_own);
 }
 
 template <int dim>
@@ -309,8 +309,8 @@ void CellKernel<dim>::add_group(const Mesh<dim> &mesh, const CellMatrix<dim> &k,
 }
 
 template <int dim>
-void CellKernel<dim>::add_general_cells(const Mesh<dim> &mesh, const Stiffness<dim> &c,
-                                        double thickness, const std::vector<char> &is_own)
+void CellKernel<dim>::add_general_cells(const Mesh<dim> &mesh, const Body<dim> &body,
+                                        const std::vector<char> &is_own)
 {
   CellClasses<dim> classes;
   std::vector<std::vector<int>> cells_of_class;
@@ -321,8 +321,8 @@ void CellKernel<dim>::add_general_cells(const Mesh<dim> &mesh, const Stiffness<d
       cells_of_class[number].push_back(cell);
     }
   for (const std::vector<int> &cells : cells_of_class) {
-    const CellMatrix<dim> k = cell_stiffness(mesh, cells[0], c, thickness);
-    const Vec<n_cell_nodes<dim>> mass = thickness * volume_shares(mesh, cells[0]);
+    const CellMatrix<dim> k = cell_stiffness(mesh, cells[0], body);
+    const Vec<n_cell_nodes<dim>> mass = body.thickness * volume_shares(mesh, cells[0]);
     CellMatrix<dim> scaled;
     for (int i = 0; i < n_dofs; ++i)
       for (int j = 0; j < n_dofs; ++j)

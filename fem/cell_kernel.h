@@ -16,9 +16,8 @@ public:
   static constexpr int n_dofs = dim * n_cell_nodes<dim>;
   static constexpr int n_rows = n_cell_nodes<dim> / 2; // node rows along x of a cell
 
-  /// `is_own[cell]` says which cells take part; thickness in m (2D).
-  CellKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, double thickness,
-             const std::vector<char> &is_own);
+  /// `is_own[cell]` says which cells take part.
+  CellKernel(const Mesh<dim> &mesh, const Body<dim> &body, const std::vector<char> &is_own);
 
   /// force -= K u, hanging nodes not yet condensed; in N. Sums are made in the same order on every
   /// processor.
@@ -54,7 +53,7 @@ public:
 private:
   /// Appends the group with its runs and batches.
   void add_group(const Mesh<dim> &mesh, const CellMatrix<dim> &k, const std::vector<int> &cells);
-  void add_general_cells(const Mesh<dim> &mesh, const Stiffness<dim> &c, double thickness,
+  void add_general_cells(const Mesh<dim> &mesh, const Body<dim> &body,
                          const std::vector<char> &is_own);
   void add_single(const std::array<int, n_cell_nodes<dim>> &nodes, const CellMatrix<dim> &k);
 

@@ -193,11 +193,23 @@ CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Stiffness<
 }
 
 template <int dim>
-CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Stiffness<dim> &c,
-                               double thickness)
+CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Body<dim> &body)
 {
-  return mesh.is_box(cell) ? cell_stiffness<dim>(mesh.cell_size[cell], c, thickness)
-                           : cell_stiffness<dim>(cell_corners(mesh, cell), c, thickness);
+  CellMatrix<dim> k = cell_stiffness<dim>(corners, body.stiffness, body.thickness);
+  if (body.stress.isZero(0))
+    return k;
+  for (const Vector<dim> &s : unit_gauss_points<dim>())
+    k += stress_stiffness<dim>(shape_gradients_at<dim>(corners, s), body.stress,
+                               cell_jacobian<dim>(corners, s).determinant() * body.thickness /
+                                   n_cell_nodes<dim>);
+  return k;
+}
+
+template <int dim>
+CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Body<dim> &body)
+{
+  return mesh.is_box(cell) ? cell_stiffness<dim>(mesh.cell_size[cell], body)
+                           : cell_stiffness<dim>(cell_corners(mesh, cell), body);
 }
 
 template <int dim>
@@ -271,7 +283,8 @@ Vector<dim> face_normal(const CellVectors<dim> &corners, int face)
   template double cell_volume(const Mesh<dim> &, int);                                             \
   template CellMatrix<dim> cell_stiffness<dim>(const CellVectors<dim> &, const Stiffness<dim> &,   \
                                                double);                                            \
-  template CellMatrix<dim> cell_stiffness(const Mesh<dim> &, int, const Stiffness<dim> &, double); \
+  template CellMatrix<dim> cell_stiffness<dim>(const CellVectors<dim> &, const Body<dim> &);       \
+  template CellMatrix<dim> cell_stiffness(const Mesh<dim> &, int, const Body<dim> &);              \
   template core::FaceCorners<dim> face_corners<dim>(const CellVectors<dim> &, int);                \
   template Vec<n_cell_nodes<dim>> face_shares<dim>(const CellVectors<dim> &, int);                 \
   template Vector<dim> face_normal<dim>(const CellVectors<dim> &, int);

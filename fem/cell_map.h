@@ -65,10 +65,12 @@ double cell_volume(const Mesh<dim> &mesh, int cell);
 template <int dim>
 CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Stiffness<dim> &c,
                                double thickness);
+/// The same of a body, with what the stress of its reference adds (theory.md eq. (C23)).
+template <int dim>
+CellMatrix<dim> cell_stiffness(const CellVectors<dim> &corners, const Body<dim> &body);
 /// Of a cell of the mesh.
 template <int dim>
-CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Stiffness<dim> &c,
-                               double thickness);
+CellMatrix<dim> cell_stiffness(const Mesh<dim> &mesh, int cell, const Body<dim> &body);
 
 /// Local numbers of the nodes of a face, in lexicographic order.
 template <int dim>

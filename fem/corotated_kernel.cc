@@ -8,8 +8,8 @@
 namespace ligament::fem
 {
 template <int dim>
-CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c,
-                                      double thickness, const std::vector<char> &is_own)
+CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body,
+                                      const std::vector<char> &is_own)
 {
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
     if (!is_own[cell] || !mesh.is_box(cell))
@@ -19,8 +19,8 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim
       return ((g.size - h).array().abs() <= 1e-12 * h.array()).all();
     });
     if (group == groups_.end())
-      group = groups_.insert(groups_.end(),
-                             {h, CellShape<dim>(h), cell_stiffness<dim>(h, c, thickness), {}});
+      group =
+          groups_.insert(groups_.end(), {h, CellShape<dim>(h), cell_stiffness<dim>(h, body), {}});
     group->cells.push_back(mesh.cells[cell]);
   }
   if (mesh.general.empty())
@@ -33,10 +33,8 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim
     const CellVectors<dim> corners = cell_corners(mesh, cell);
     const int group = n_box_groups + classes.number(corners);
     if (group == int(groups_.size()))
-      groups_.push_back({mesh.cell_size[cell],
-                         CellShape<dim>(corners),
-                         cell_stiffness<dim>(corners, c, thickness),
-                         {}});
+      groups_.push_back(
+          {mesh.cell_size[cell], CellShape<dim>(corners), cell_stiffness<dim>(corners, body), {}});
     groups_[group].cells.push_back(mesh.cells[cell]);
   }
 }

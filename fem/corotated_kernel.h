@@ -9,9 +9,8 @@ template <int dim>
 class CorotatedKernel
 {
 public:
-  /// `is_own[cell]` says which cells take part; thickness in m (2D).
-  CorotatedKernel(const Mesh<dim> &mesh, const Stiffness<dim> &c, double thickness,
-                  const std::vector<char> &is_own);
+  /// `is_own[cell]` says which cells take part.
+  CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body, const std::vector<char> &is_own);
 
   /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J.
   double subtract_forces(const Components<dim> &displacement, Components<dim> &force) const;

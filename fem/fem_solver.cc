@@ -69,8 +69,7 @@ void FemSolver<dim>::find_held_components()
 template <int dim>
 void FemSolver<dim>::update_own_cells()
 {
-  kernel_ =
-      std::make_unique<CellKernel<dim>>(mesh_, body_.stiffness, body_.thickness, is_own_cell_);
+  kernel_ = std::make_unique<CellKernel<dim>>(mesh_, body_, is_own_cell_);
   set_corotated(corotated_ != nullptr);
 
   mass_.assign(mesh_.n_nodes(), 0.);
@@ -244,9 +243,6 @@ int FemSolver<dim>::n_held_nodes(int load) const
 template <int dim>
 void FemSolver<dim>::find_dashpots()
 {
-  const double c_p = std::sqrt(body_.stiffness(0, 0) / body_.density);
-  const double c_s =
-      std::sqrt(body_.stiffness(n_strains<dim> - 1, n_strains<dim> - 1) / body_.density);
   typename core::Dashpots<dim>::Places dashpots;
   for (const auto &load : loads_) {
     if (!load.absorbing)
@@ -254,6 +250,7 @@ void FemSolver<dim>::find_dashpots()
     core::require(load.boundary < inner_surface<dim>,
                   "only sides of the specimen's bounding box absorb waves; give another side");
     const int axis = load.boundary / 2;
+    const Vector<dim> speed = normal_wave_speeds(body_, axis);
     const auto area = side_areas(load.boundary);
     if (std::none_of(area.begin(), area.end(), [](double a) { return a > 0; }))
       continue;
@@ -268,13 +265,12 @@ void FemSolver<dim>::find_dashpots()
                     "its layer; keep the zone away from it or lower /coupling/transition_cells");
       for (int c = 0; c < dim; ++c)
         if (!held_[c][i] && mass_[i] > 0) {
-          const double speed = c == axis ? c_p : c_s;
           auto &here = dashpots[{i, c}];
           if (area[i] > 0)
-            here.push_back({core::Dashpot::Kind::node, area[i] * body_.density * speed,
-                            volume[i] / area[i] / speed});
+            here.push_back({core::Dashpot::Kind::node, area[i] * body_.density * speed[c],
+                            volume[i] / area[i] / speed[c]});
           if (depth > 0)
-            here.push_back(core::layer_dashpot(mass_[i], depth, load.absorbing_layer, c_p));
+            here.push_back(core::layer_dashpot(mass_[i], depth, load.absorbing_layer, speed[axis]));
         }
     }
   }
@@ -310,8 +306,7 @@ void FemSolver<dim>::set_corotated(bool corotated)
 {
   corotated_.reset();
   if (corotated)
-    corotated_ = std::make_unique<CorotatedKernel<dim>>(mesh_, body_.stiffness, body_.thickness,
-                                                        is_own_cell_);
+    corotated_ = std::make_unique<CorotatedKernel<dim>>(mesh_, body_, is_own_cell_);
 }
 
 template <int dim>

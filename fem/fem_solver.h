@@ -17,15 +17,6 @@ class CellKernel;
 template <int dim>
 class CorotatedKernel;
 
-/// Isotropic body of the mesh: stiffness equal to that of the discrete law.
-template <int dim>
-struct Body
-{
-  Stiffness<dim> stiffness; // Pa
-  double density;           // kg/m^3
-  double thickness = 1;     // m, 2D
-};
-
 /// Names of the nodes of a mesh of a specimen (m), by their places alone: what zone the mesh leaves
 /// out does not change them. Throws core::InputError where two nodes are nearer than a millionth of
 /// the specimen.

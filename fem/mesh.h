@@ -4,6 +4,7 @@
 
 #include "core/box_union.h"
 #include "core/solid.h"
+#include "fem/body.h"
 
 #include <array>
 #include <memory>
@@ -14,9 +15,9 @@ namespace ligament::fem
 template <int dim>
 inline constexpr int n_cell_nodes = 1 << dim;
 
-/// A hanging node follows its masters: u = sum weight * u(master). Masters are never hanging. Beyond
-/// joined sides the jump across each axis comes in addition, times the periods between the node and
-/// its masters (fem/join_sides.h).
+/// A hanging node follows its masters: u = sum weight * u(master). Masters are never hanging.
+/// Beyond joined sides the jump across each axis comes in addition, times the periods between the
+/// node and its masters (fem/join_sides.h).
 struct HangingNode
 {
   int node;
@@ -145,4 +146,14 @@ inline constexpr int n_cell_modes = dim == 2 ? 4 : 12;
 /// Bends without shear and at any Poisson's ratio; uniform strain is exact.
 template <int dim>
 CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c, double thickness);
+
+/// The same of a body, with what the stress of its reference adds (theory.md eq. (C23)).
+template <int dim>
+CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Body<dim> &body);
+
+/// dV grad N_a . stress grad N_b, times the unit matrix: what the stress of the reference adds to
+/// the stiffness of a cell around a point, dV in m^3.
+template <int dim>
+CellMatrix<dim> stress_stiffness(const CellVectors<dim> &gradients, const Strain<dim> &stress,
+                                 double volume);
 } // namespace ligament::fem

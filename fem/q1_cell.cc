@@ -102,6 +102,40 @@ CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Stiffness<dim> &c,
   return (condensed + condensed.transpose()) / 2;
 }
 
+template <int dim>
+CellMatrix<dim> cell_stiffness(const Vector<dim> &size, const Body<dim> &body)
+{
+  CellMatrix<dim> k = cell_stiffness<dim>(size, body.stiffness, body.thickness);
+  if (body.stress.isZero(0))
+    return k;
+  for (int q = 0; q < n_cell_nodes<dim>; ++q) {
+    Vector<dim> p;
+    for (int d = 0; d < dim; ++d)
+      p[d] = size[d] / 2 * (1 + (q >> d & 1 ? 1 : -1) / std::sqrt(3.));
+    k += stress_stiffness<dim>(shape_gradients<dim>(Vector<dim>::Zero(), size, p), body.stress,
+                               size.prod() * body.thickness / n_cell_nodes<dim>);
+  }
+  return k;
+}
+
+template <int dim>
+CellMatrix<dim> stress_stiffness(const CellVectors<dim> &gradients, const Strain<dim> &stress,
+                                 double volume)
+{
+  Eigen::Matrix<double, dim, dim> tensor;
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j)
+      tensor(i, j) = stress[voigt_index<dim>(i, j)];
+  const Eigen::Matrix<double, n_cell_nodes<dim>, n_cell_nodes<dim>> pairs =
+      volume * gradients.transpose() * tensor * gradients;
+  CellMatrix<dim> k = CellMatrix<dim>::Zero();
+  for (int a = 0; a < n_cell_nodes<dim>; ++a)
+    for (int b = 0; b < n_cell_nodes<dim>; ++b)
+      for (int c = 0; c < dim; ++c)
+        k(dim * a + c, dim * b + c) = pairs(a, b);
+  return k;
+}
+
 template Vec<4> shape_values<2>(const Vector<2> &, const Vector<2> &, const Vector<2> &);
 template Vec<8> shape_values<3>(const Vector<3> &, const Vector<3> &, const Vector<3> &);
 template Eigen::Matrix<double, 2, 4> shape_gradients<2>(const Vector<2> &, const Vector<2> &,
@@ -114,4 +148,8 @@ template Eigen::Matrix<double, 3, 4> mode_strains<2>(const Vector<2> &);
 template Eigen::Matrix<double, 6, 12> mode_strains<3>(const Vector<3> &);
 template CellMatrix<2> cell_stiffness<2>(const Vector<2> &, const Stiffness<2> &, double);
 template CellMatrix<3> cell_stiffness<3>(const Vector<3> &, const Stiffness<3> &, double);
+template CellMatrix<2> cell_stiffness<2>(const Vector<2> &, const Body<2> &);
+template CellMatrix<3> cell_stiffness<3>(const Vector<3> &, const Body<3> &);
+template CellMatrix<2> stress_stiffness<2>(const CellVectors<2> &, const Strain<2> &, double);
+template CellMatrix<3> stress_stiffness<3>(const CellVectors<3> &, const Strain<3> &, double);
 } // namespace ligament::fem

@@ -6,6 +6,7 @@
 #include "particles/rest_blocks.h"
 
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace ligament::particles
@@ -22,13 +23,22 @@ struct QuadraticTerm
     wall,      // between member 0 and a prescribed boundary
     contact,   // between members 0 and 1, which touch
     softening, // between members 0 and 1: what a bond has lost that opens further
-    volumetric // of member 0, which its neighbours (the other members) enter
+    volumetric // of member 0, which its neighbours (the other members) enter; embedding, too
   };
   Kind kind = Kind::bond;
-  Vector<dim> location; // m: centroid of the face, or centre of member 0
+  Vector<dim> location; // m: centroid of the face, middle of the bond, or centre of member 0
   std::vector<int> members;
-  Eigen::MatrixXd rows;      // n_rows x (members.size() * n_particle_dofs<dim>)
-  Eigen::VectorXd stiffness; // n_rows
+  /// n_rows x (members.size() * n_particle_dofs<dim>); a force without rotations may leave their
+  /// columns out, dim per member.
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd stiffness; // n_rows, of either sign
+};
+
+/// j acts on i: across a face of their cells, or within the range of the force.
+struct Neighbour
+{
+  int i, j;
+  bool bonded; // else they only touch
 };
 
 /// A face of a particle's cell as the closure test sees it: j is the neighbour, or -1 on the
@@ -47,12 +57,18 @@ struct FaceView
 template <int dim>
 struct ElasticConstants
 {
-  double youngs_modulus;    // Pa
-  double poissons_ratio;    // -
-  double density;           // kg/m^3
-  Stiffness<dim> stiffness; // Pa, Voigt, for the plane mode of the packing in 2D
-  double wave_speed_p;      // m/s, in the body (plane mode in 2D)
-  double wave_speed_s;      // m/s
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+  double youngs_modulus = none; // Pa, of an isotropic body
+  double poissons_ratio = none; // -, of an isotropic body
+  double density = 0;           // kg/m^3
+  /// C in Pa, Voigt, of any symmetry, for the plane mode of the packing in 2D.
+  Stiffness<dim> stiffness = Stiffness<dim>::Zero();
+  double wave_speed_p = 0; // m/s, in the body (plane mode in 2D); of an anisotropic one the fastest
+  double wave_speed_s = 0; // m/s, the slowest
+  /// Stress of the reference in Pa, Voigt: a displacement gradient H has the energy
+  /// 1/2 sym H : C : sym H + 1/2 (H stress) : H per volume (theory.md eq. (C23)).
+  Strain<dim> stress = Strain<dim>::Zero();
 };
 
 /// Some terms of a force, each with a share of its energy, on particles of their own numbering.
@@ -72,8 +88,8 @@ public:
 template <int dim>
 struct CoupledEdge
 {
-  std::vector<int> pads; // particles whose faces never break
-  std::vector<int> open; // of them those whose cells lack faces
+  std::vector<int> pads;    // particles whose faces never break
+  std::vector<int> open;    // of them those whose cells lack faces
   std::vector<int> members; // particles where the models overlap: they stay elastic
   /// Gradient of the mesh's displacement at the centre of open[k], at present.
   std::function<Eigen::Matrix<double, dim, dim>(int k)> gradient;
@@ -104,6 +120,16 @@ public:
   virtual double stable_step(const Particles<dim> &particles) const = 0;
 
   virtual ElasticConstants<dim> elastic_constants() const = 0;
+
+  /// m: particles farther apart than this don't enter each other's terms. 0: those do whose cells
+  /// share a face.
+  virtual double range() const { return 0; }
+
+  /// Bonds bear forces in the reference, which cancel inside the body: terms feel rotations one by
+  /// one, and what is left where the packing ends are reference_forces().
+  virtual bool is_prestressed() const { return false; }
+  /// Overwrites: forces on all particles in the reference, in N. Only asked where bonds bear any.
+  virtual void reference_forces(const Particles<dim> &particles, Components<dim> &force) const;
 
   /// Scales the energy from now on: each particle's volumetric part by its weight (one per owned
   /// particle, above 0, at most 1), each pair by the mean of its two. Masses are the caller's.
@@ -169,10 +195,25 @@ public:
                                                   const TermShare &share) const;
 
   /// Every face of the cells of these particles (ascending; null: all), once per side (i, j), then
-  /// those on the surface (j = -1); in an order that does not depend on who is asked for.
-  virtual void for_each_face(const Particles<dim> &particles,
-                             const std::function<void(const FaceView<dim> &)> &visit,
-                             const std::vector<int> *of = nullptr) const = 0;
+  /// those on the surface (j = -1); in an order that does not depend on who is asked for. None
+  /// where particles have no cells.
+  virtual void for_each_face(const Particles<dim> & /*particles*/,
+                             const std::function<void(const FaceView<dim> &)> & /*visit*/,
+                             const std::vector<int> * /*of*/ = nullptr) const
+  {
+  }
+
+  /// Every neighbour j of these particles i (ascending; null: all); in an order that does not
+  /// depend on who is asked for. By default those across faces.
+  virtual void for_each_neighbour(const Particles<dim> &particles,
+                                  const std::function<void(const Neighbour &)> &visit,
+                                  const std::vector<int> *of = nullptr) const;
+
+  /// Those of these particles (ascending) that lack neighbours which the material beyond the
+  /// packing would give them. By default those whose cells the faces, those on the surface among
+  /// them, do not close.
+  virtual std::vector<int> open_particles(const Particles<dim> &particles,
+                                          const std::vector<int> &of) const;
 };
 
 template <int dim>

@@ -22,10 +22,7 @@ template <int dim>
 void ParticleSolver<dim>::let_rest(const RestLimits &limits)
 {
   const auto for_each_pair = [&](const typename RestBlocks<dim>::VisitPair &visit) {
-    force->for_each_face(state, [&](const FaceView<dim> &face) {
-      if (face.j >= 0)
-        visit(face.i, face.j);
-    });
+    force->for_each_neighbour(state, [&](const Neighbour &n) { visit(n.i, n.j); });
   };
   rest_ = std::make_unique<RestBlocks<dim>>(state, for_each_pair, limits);
   force->set_rest(rest_.get());

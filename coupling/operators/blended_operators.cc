@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "coupling/algebra/nodal_matrix.h"
+#include "coupling/operators/dead_load.h"
 #include "fem/cell_map.h"
 #include "fem/cell_modes.h"
 
@@ -71,7 +72,7 @@ template <int dim>
 fem::CellMatrix<dim> whole_cell_stiffness(const fem::CondensedCell<dim> &shape,
                                           const Vector<dim> &size, const fem::Body<dim> &body)
 {
-  const auto k = fem::cell_stiffness<dim>(size, body.stiffness, body.thickness);
+  const auto k = fem::cell_stiffness<dim>(size, body);
   if (!shape.hangs())
     return k;
   fem::CellMatrix<dim> shares;
@@ -92,10 +93,11 @@ public:
       : stiffness(overlap.n_nodes()), coarse_mass_(coarse_mass), overlap_(overlap),
         particles_(particles), body_(body), n_(overlap.n_nodes())
   {
-    residual = Eigen::MatrixXd::Zero(dim * n_, n_strains<dim>);
+    const int n_states = force.is_prestressed() ? dim * dim : n_strains<dim>;
+    residual = Eigen::MatrixXd::Zero(dim * n_, n_states);
     mass_bound = Eigen::VectorXd::Zero(n_);
-    for (int k = 0; k < n_strains<dim>; ++k)
-      strain_[k] = unit_strain<dim>(k);
+    for (int k = 0; k < n_states; ++k)
+      states_.push_back(unit_gradient<dim>(k, n_states));
     motions_ = interpolate_motions(overlap, particles, force);
   }
 
@@ -114,9 +116,9 @@ private:
   const particles::Particles<dim> &particles_;
   const fem::Body<dim> &body_;
   const int n_;
-  std::array<Eigen::Matrix<double, dim, dim>, n_strains<dim>> strain_;
-  std::vector<InterpolatedMotion<dim>> motions_; // of the members
-  std::vector<int> nodes_;                       // of the present term
+  std::vector<Eigen::Matrix<double, dim, dim>> states_; // columns of the residual
+  std::vector<InterpolatedMotion<dim>> motions_;        // of the members
+  std::vector<int> nodes_;                              // of the present term
 };
 
 template <int dim>
@@ -145,9 +147,9 @@ void Assembly<dim>::add_cells()
     }
     stiffness.add({cell.nodes.begin(), cell.nodes.end()}, k);
     Eigen::Matrix<double, dim * nc, 1> u;
-    for (int s = 0; s < n_strains<dim>; ++s) {
+    for (std::size_t s = 0; s < states_.size(); ++s) {
       for (int a = 0; a < nc; ++a)
-        u.template segment<dim>(a * dim) = strain_[s] * cell.shape.place.col(a);
+        u.template segment<dim>(a * dim) = states_[s] * cell.shape.place.col(a);
       const Eigen::Matrix<double, dim * nc, 1> f = k * u;
       for (int a = 0; a < nc; ++a)
         for (int i = 0; i < dim; ++i)
@@ -173,22 +175,23 @@ void Assembly<dim>::add_masses()
 template <int dim>
 void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
 {
-  constexpr int nd = n_particle_dofs<dim>;
+  const int nd = int(term.rows.cols() / term.members.size());
+  const bool turns = nd > dim;
   const bool touches = std::any_of(term.members.begin(), term.members.end(),
                                    [&](int i) { return overlap_.member_of_particle[i] >= 0; });
   if (!touches)
     return;
   require(term.kind != particles::QuadraticTerm<dim>::Kind::wall, loaded_side);
 
-  // Forces per unit strain on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads;
+  // Forces per unit state on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads;
   // less the share subtracted, by the interpolated motion.
   // Translations do nothing: the first member stands still.
-  Eigen::MatrixXd gradient(term.rows.rows(), n_strains<dim>); // stiffness * row . q
-  for (int s = 0; s < n_strains<dim>; ++s) {
+  Eigen::MatrixXd gradient(term.rows.rows(), states_.size()); // stiffness * row . q
+  for (std::size_t s = 0; s < states_.size(); ++s) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(term.rows.cols());
     for (std::size_t i = 0; i < term.members.size(); ++i)
       q.segment<dim>(i * nd) =
-          strain_[s] * overlap_.offset(get(particles_.reference, term.members[0]),
+          states_[s] * overlap_.offset(get(particles_.reference, term.members[0]),
                                        get(particles_.reference, term.members[i]));
     gradient.col(s) = term.stiffness.cwiseProduct(term.rows * q);
   }
@@ -201,20 +204,21 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     const Eigen::MatrixXd force =
         term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
     const Eigen::MatrixXd torque =
-        term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
+        turns ? (term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient).eval()
+              : Eigen::MatrixXd();
     const auto add = [&](double factor, int node, double value, const Vector<dim> &gradient,
-                         bool turns) {
+                         bool with_torque) {
       const auto spin = half_curl<dim>(gradient);
       for (int c = 0; c < dim; ++c) {
         residual.row(c * n_ + node) -= factor * value * force.row(c);
-        if (turns)
+        if (with_torque)
           residual.row(c * n_ + node) -= factor * spin.col(c).transpose() * torque;
       }
     };
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-      add(1, m.nodes[a], m.value[a], m.gradient.col(a), m.pad);
+      add(1, m.nodes[a], m.value[a], m.gradient.col(a), turns && m.pad);
     for (const NodeShare<dim> &s : motions_[index])
-      add(-share, s.node, s.value, s.gradient, true);
+      add(-share, s.node, s.value, s.gradient, turns);
   }
   if (share == 0)
     return;
@@ -230,9 +234,12 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     for (const NodeShare<dim> &s : motions_[overlap_.member_of_particle[term.members[i]]]) {
       const int column =
           dim * int(std::find(nodes_.begin(), nodes_.end(), s.node) - nodes_.begin());
-      rows.middleCols(column, dim) +=
-          s.value * term.rows.middleCols(i * nd, dim) +
-          term.rows.middleCols(i * nd + dim, n_spins<dim>) * half_curl<dim>(s.gradient);
+      if (turns)
+        rows.middleCols(column, dim) +=
+            s.value * term.rows.middleCols(i * nd, dim) +
+            term.rows.middleCols(i * nd + dim, n_spins<dim>) * half_curl<dim>(s.gradient);
+      else
+        rows.middleCols(column, dim) += s.value * term.rows.middleCols(i * nd, dim);
     }
   stiffness.add(nodes_, (rows.transpose() * term.stiffness.asDiagonal() * rows).eval(), -share);
 }
@@ -256,11 +263,8 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
   using Face = particles::FaceView<dim>;
   const std::vector<int> members = overlap.member_particles();
   std::vector<int> near_members = members; // and their neighbours
-  const auto add_neighbour = [&](const Face &face) {
-    if (face.j >= 0)
-      near_members.push_back(face.j);
-  };
-  force.for_each_face(particles, add_neighbour, &members);
+  const auto add_neighbour = [&](const particles::Neighbour &n) { near_members.push_back(n.j); };
+  force.for_each_neighbour(particles, add_neighbour, &members);
   std::sort(near_members.begin(), near_members.end());
   near_members.erase(std::unique(near_members.begin(), near_members.end()), near_members.end());
 
@@ -358,12 +362,16 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
   const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
   if (cell.layer > 0)
     return whole_cell_stiffness(cell.shape, size, body);
+  const bool is_stressed = !body.stress.isZero(0);
   fem::CellMatrix<dim> k;
   k.setZero();
   for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
     w *= (1 - overlap.weight(x)) * body.thickness;
-    const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
+    const auto gradients = overlap.shape_gradients(cell, x);
+    const auto b = fem::strain_matrix<dim>(gradients);
     k += w * b.transpose() * body.stiffness * b;
+    if (is_stressed)
+      k += fem::stress_stiffness<dim>(gradients, body.stress, w);
   });
   return k - relief_by_modes(overlap, cell, body);
 }
@@ -381,6 +389,16 @@ Eigen::Matrix<double, dim, dim> unit_strain(int k)
     e(i, j) = e(j, i) = 0.5;
   }
   return e;
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, dim> unit_gradient(int k, int n_states)
+{
+  if (n_states == n_strains<dim>)
+    return unit_strain<dim>(k);
+  Eigen::Matrix<double, dim, dim> h = Eigen::Matrix<double, dim, dim>::Zero();
+  h(k / dim, k % dim) = 1;
+  return h;
 }
 
 template <int dim>
@@ -405,6 +423,8 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   result.mass_bound = assembly.mass_bound;
   result.residual = assembly.residual;
   result.free_normals = find_free_normals(overlap, particles, force);
+  if (force.is_prestressed())
+    result.dead_load = make_dead_load(overlap, particles, force);
   return result;
 }
 
@@ -475,4 +495,6 @@ template fem::CellMatrix<3> blended_cell_stiffness(const Overlap<3> &, const Ove
                                                    const fem::Body<3> &);
 template Eigen::Matrix<double, 2, 2> unit_strain<2>(int);
 template Eigen::Matrix<double, 3, 3> unit_strain<3>(int);
+template Eigen::Matrix<double, 2, 2> unit_gradient<2>(int, int);
+template Eigen::Matrix<double, 3, 3> unit_gradient<3>(int, int);
 } // namespace ligament::coupling

@@ -26,8 +26,12 @@ struct BlendedOperators
   /// count 1/3^dim of their row sum, less in cells with hanging corners. Keeps the gap filter below
   /// the mass (theory.md, "Dampers").
   Eigen::VectorXd mass_bound;
-  /// Force on the near nodes under each unit strain, spins at rest, N; one column per strain.
+  /// Force on the near nodes under each unit strain, spins at rest, N; one column per strain. Under
+  /// each unit gradient where bonds bear forces in the reference.
   Eigen::MatrixXd residual;
+  /// g = Phi^T f(X): what these forces leave at the near nodes, N (theory.md eq. (C26)); empty: no
+  /// bond bears any.
+  Nodal<dim> dead_load;
   /// Per near node the outward normals of the free surfaces that its residual feels.
   std::vector<std::vector<Vector<dim>>> free_normals;
 };
@@ -61,4 +65,9 @@ Eigen::SparseMatrix<double> take_over_cells(const Overlap<dim> &overlap, fem::Fe
 /// Displacement gradient of unit strain k in Voigt order (engineering shear 1: symmetric halves).
 template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k);
+
+/// Displacement gradient k of `n_states`: the unit strains, or where there are dim^2 the unit
+/// gradients, row by row.
+template <int dim>
+Eigen::Matrix<double, dim, dim> unit_gradient(int k, int n_states);
 } // namespace ligament::coupling

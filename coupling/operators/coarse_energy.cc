@@ -4,10 +4,23 @@
 
 namespace ligament::coupling
 {
+namespace
+{
+/// force -= g; returns g.u.
+template <int dim>
+double subtract_load(const Nodal<dim> &load, const Nodal<dim> &u, Nodal<dim> &force)
+{
+  if (load.rows() == 0)
+    return 0;
+  force -= load;
+  return load.cwiseProduct(u).sum();
+}
+} // namespace
+
 template <int dim>
 double LinearCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const
 {
-  return 0.5 * stiffness_.subtract_product(u, force);
+  return 0.5 * stiffness_.subtract_product(u, force) + subtract_load<dim>(dead_load_, u, force);
 }
 
 template <int dim>
@@ -23,7 +36,8 @@ double CorotatedCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<di
       turned.row(i) =
           (u.row(i) - frames[p].translation.transpose()) * r + parts_.position.row(i) * change;
   }
-  const double energy = 0.5 * stiffness_.subtract_product(turned, f);
+  const double energy =
+      0.5 * stiffness_.subtract_product(turned, f) + subtract_load<dim>(dead_load_, turned, f);
   for (std::size_t p = 0; p < frames.size(); ++p) {
     const auto &rotation = frames[p].rotation;
     Spin<dim> torque = Spin<dim>::Zero();

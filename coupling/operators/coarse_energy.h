@@ -21,29 +21,34 @@ public:
   virtual double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const = 0;
 };
 
-/// 1/2 U.K U (theory.md eq. (C2)).
+/// 1/2 U.K U + g.U (theory.md eqs. (C2), (C26)).
 template <int dim>
 class LinearCoarseEnergy : public CoarseEnergy<dim>
 {
 public:
-  explicit LinearCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness) : stiffness_(stiffness)
+  /// dead_load: g in N, or empty.
+  explicit LinearCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness,
+                              const Nodal<dim> &dead_load = {})
+      : stiffness_(stiffness), dead_load_(dead_load)
   {
   }
   double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
 
 private:
   BlockMatrix<dim> stiffness_;
+  Nodal<dim> dead_load_;
 };
 
-/// 1/2 U_R.K U_R, U_R the displacement in axes that turn with each connected part of the near mesh
-/// (theory.md eq. (C13)).
+/// 1/2 U_R.K U_R + g.U_R, U_R the displacement in axes that turn with each connected part of the
+/// near mesh (theory.md eq. (C13)).
 template <int dim>
 class CorotatedCoarseEnergy : public CoarseEnergy<dim>
 {
 public:
-  /// `parts` must live as long.
-  CorotatedCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness, const RigidFrames<dim> &parts)
-      : stiffness_(stiffness), parts_(parts)
+  /// dead_load: g in N, or empty. `parts` must live as long.
+  CorotatedCoarseEnergy(const Eigen::SparseMatrix<double> &stiffness, const RigidFrames<dim> &parts,
+                        const Nodal<dim> &dead_load = {})
+      : stiffness_(stiffness), parts_(parts), dead_load_(dead_load)
   {
   }
   double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
@@ -51,6 +56,7 @@ public:
 private:
   BlockMatrix<dim> stiffness_;
   const RigidFrames<dim> &parts_;
+  Nodal<dim> dead_load_;
 };
 
 /// Cells that turn one by one, minus the discrete energy itself on the interpolated motion, with

@@ -32,6 +32,9 @@ std::vector<double> mean_weights(const Overlap<dim> &overlap,
   std::vector<double> weights(n, 1.);
   for (const auto &m : overlap.members) {
     const int i = m.particle;
+    core::require(volume[i] > 0, "/coupling/scheme: the particles' energies are shared by their "
+                                 "cells, which this force doesn't have; choose "
+                                 "\"fine_scale_split\"");
     const double missing = particles.volume[i] - volume[i];
     if (missing > 1e-8 * particles.volume[i] && open[i].norm() > 0) {
       const Vector<dim> lever = overlap.parameters.spacing / 2 * open[i].normalized();

@@ -41,13 +41,11 @@ std::vector<InterpolatedMotion<dim>> interpolate_motions(const Overlap<dim> &ove
   const int n_members = int(overlap.members.size());
   std::vector<std::vector<int>> neighbours(n_members);
   const std::vector<int> members = overlap.member_particles();
-  force.for_each_face(
+  force.for_each_neighbour(
       particles,
-      [&](const particles::FaceView<dim> &face) {
-        if (face.j < 0 || !face.bonded)
-          return;
-        const int i = overlap.member_of_particle[face.i], j = overlap.member_of_particle[face.j];
-        if (j >= 0)
+      [&](const particles::Neighbour &n) {
+        const int i = overlap.member_of_particle[n.i], j = overlap.member_of_particle[n.j];
+        if (n.bonded && j >= 0)
           neighbours[i].push_back(j);
       },
       &members);

@@ -11,29 +11,29 @@ namespace ligament::coupling
 {
 namespace
 {
-template <int dim>
-std::shared_ptr<const PatchBasis<dim>> make_basis(const Eigen::MatrixXd &place)
+template <int dim, int ns>
+std::shared_ptr<const PatchBasis> make_basis(const Eigen::MatrixXd &place)
 {
-  constexpr int n_rigid = dim + n_spins<dim>;
+  constexpr int n_rigid = dim + n_spins<dim> + n_strains<dim> - ns;
   const int n = int(place.cols());
   const Vector<dim> centre = place.rowwise().mean();
   Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(dim * n, n_rigid);
-  Eigen::MatrixXd affine(dim * n, n_strains<dim>);
+  Eigen::MatrixXd affine(dim * n, ns);
   for (int i = 0; i < n; ++i) {
     const Vector<dim> x = place.col(i) - centre;
     for (int c = 0; c < dim; ++c)
       rigid(i * dim + c, c) = 1;
-    if constexpr (dim == 2)
+    if constexpr (n_rigid == 3 && dim == 2)
       rigid.block(i * 2, 2, 2, 1) << -x[1], x[0];
-    else
+    else if constexpr (n_rigid == 6)
       rigid.block(i * 3, 3, 3, 3) << 0, x[2], -x[1], -x[2], 0, x[0], x[1], -x[0], 0;
-    for (int k = 0; k < n_strains<dim>; ++k)
-      affine.block(i * dim, k, dim, 1) = unit_strain<dim>(k) * x;
+    for (int k = 0; k < ns; ++k)
+      affine.block(i * dim, k, dim, 1) = unit_gradient<dim>(k, ns) * x;
   }
   affine -= rigid * (rigid.transpose() * rigid).ldlt().solve(rigid.transpose() * affine);
-  Eigen::MatrixXd both(dim * n, n_rigid + n_strains<dim>);
+  Eigen::MatrixXd both(dim * n, n_rigid + ns);
   both << rigid, affine;
-  auto basis = std::make_shared<PatchBasis<dim>>();
+  auto basis = std::make_shared<PatchBasis>();
   basis->place = place;
   basis->homogeneous = Eigen::HouseholderQR<Eigen::MatrixXd>(both).householderQ() *
                        Eigen::MatrixXd::Identity(dim * n, both.cols());
@@ -42,16 +42,16 @@ std::shared_ptr<const PatchBasis<dim>> make_basis(const Eigen::MatrixXd &place)
 }
 } // namespace
 
-template <int dim>
-Eigen::MatrixXd PatchBlock<dim>::correction() const
+template <int dim, int ns>
+Eigen::MatrixXd PatchBlock<dim, ns>::correction() const
 {
   const Eigen::MatrixXd affine = basis->homogeneous * basis->strain;
   const Eigen::MatrixXd mixed = (affine * h).transpose();
   return affine * s * affine.transpose() + mixed + mixed.transpose();
 }
 
-template <int dim>
-std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, double thickness)
+template <int dim, int ns>
+std::vector<PatchBlock<dim, ns>> make_patch_blocks(const Overlap<dim> &overlap, double thickness)
 {
   constexpr int nc = fem::n_cell_nodes<dim>;
   // A node is inside the overlap when it is corner of cells all around and only overlap cells
@@ -67,11 +67,11 @@ std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, doub
       leaves[cell.nodes[a]] |= cell.layer > 0;
     }
   }
-  std::vector<std::shared_ptr<const PatchBasis<dim>>> shapes;
-  std::vector<PatchBlock<dim>> blocks;
+  std::vector<std::shared_ptr<const PatchBasis>> shapes;
+  std::vector<PatchBlock<dim, ns>> blocks;
   for (int middle = 0; middle < overlap.n_nodes(); ++middle)
     if (!leaves[middle] && n_corners[middle] == nc) {
-      PatchBlock<dim> block;
+      PatchBlock<dim, ns> block;
       block.volume = 0;
       block.length = std::numeric_limits<double>::max();
       Eigen::MatrixXd place(dim, nc * int(star[middle].size()));
@@ -91,15 +91,20 @@ std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, doub
       const auto known = std::find_if(shapes.begin(), shapes.end(), [&](const auto &shape) {
         return shape->place.cols() == place.cols() && shape->place == place;
       });
-      block.basis = known == shapes.end() ? shapes.emplace_back(make_basis<dim>(place)) : *known;
-      block.h = StrainForces<dim>::Zero(n_strains<dim>, place.size());
+      block.basis =
+          known == shapes.end() ? shapes.emplace_back(make_basis<dim, ns>(place)) : *known;
+      block.h = StateForces<ns>::Zero(ns, place.size());
       blocks.push_back(std::move(block));
     }
   return blocks;
 }
 
-template struct PatchBlock<2>;
-template struct PatchBlock<3>;
-template std::vector<PatchBlock<2>> make_patch_blocks(const Overlap<2> &, double);
-template std::vector<PatchBlock<3>> make_patch_blocks(const Overlap<3> &, double);
+#define LIGAMENT_INSTANTIATE(dim, ns)                                                              \
+  template struct PatchBlock<dim, ns>;                                                             \
+  template std::vector<PatchBlock<dim, ns>> make_patch_blocks(const Overlap<dim> &, double);
+LIGAMENT_INSTANTIATE(2, 3)
+LIGAMENT_INSTANTIATE(2, 4)
+LIGAMENT_INSTANTIATE(3, 6)
+LIGAMENT_INSTANTIATE(3, 9)
+#undef LIGAMENT_INSTANTIATE
 } // namespace ligament::coupling

@@ -10,24 +10,24 @@ namespace ligament::coupling
 {
 namespace
 {
-template <int dim>
-StrainForces<dim> gather(const PatchBlock<dim> &block, const StrainForces<dim> &field)
+template <int dim, int ns>
+StateForces<ns> gather(const PatchBlock<dim, ns> &block, const StateForces<ns> &field)
 {
-  StrainForces<dim> local(n_strains<dim>, dim * block.nodes.size());
+  StateForces<ns> local(ns, dim * block.nodes.size());
   for (std::size_t i = 0; i < block.nodes.size(); ++i)
     local.template middleCols<dim>(dim * i) = field.template middleCols<dim>(dim * block.nodes[i]);
   return local;
 }
 
-template <int dim>
-void scatter(const PatchBlock<dim> &block, const StrainForces<dim> &local, StrainForces<dim> &field)
+template <int dim, int ns>
+void scatter(const PatchBlock<dim, ns> &block, const StateForces<ns> &local, StateForces<ns> &field)
 {
   for (std::size_t i = 0; i < block.nodes.size(); ++i)
     field.template middleCols<dim>(dim * block.nodes[i]) += local.template middleCols<dim>(dim * i);
 }
 
-template <int dim>
-Stiffness<dim> symmetric_part(const Stiffness<dim> &m)
+template <int ns>
+StateMatrix<ns> symmetric_part(const StateMatrix<ns> &m)
 {
   return (m + m.transpose()) / 2;
 }
@@ -59,16 +59,16 @@ double dot(const Eigen::Ref<const Eigen::MatrixXd> &a, const Eigen::Ref<const Ei
 }
 } // namespace
 
-template <int dim>
-PatchEquations<dim>::PatchEquations(std::vector<PatchBlock<dim>> &blocks,
-                                    const std::vector<Eigen::MatrixXd> &states,
-                                    const Overlap<dim> &overlap)
+template <int dim, int ns>
+PatchEquations<dim, ns>::PatchEquations(std::vector<PatchBlock<dim, ns>> &blocks,
+                                        const std::vector<Eigen::MatrixXd> &states,
+                                        const Overlap<dim> &overlap)
     : blocks_(blocks)
 {
   for (const auto &s : states)
-    projectors_.push_back(s.cols() == ns  ? Stiffness<dim>(Stiffness<dim>::Identity())
-                          : s.size() == 0 ? Stiffness<dim>(Stiffness<dim>::Zero())
-                                          : Stiffness<dim>(s * s.transpose()));
+    projectors_.push_back(s.cols() == ns  ? StateMatrix<ns>(StateMatrix<ns>::Identity())
+                          : s.size() == 0 ? StateMatrix<ns>(StateMatrix<ns>::Zero())
+                                          : StateMatrix<ns>(s * s.transpose()));
   diagonal_ = Eigen::VectorXd::Zero(states.size());
   for (const auto &block : blocks_)
     for (const int node : block.nodes)
@@ -76,16 +76,16 @@ PatchEquations<dim>::PatchEquations(std::vector<PatchBlock<dim>> &blocks,
   make_coarse_space(overlap);
 }
 
-template <int dim>
-void PatchEquations<dim>::restrict_to_states(Field &field) const
+template <int dim, int ns>
+void PatchEquations<dim, ns>::restrict_to_states(Field &field) const
 {
   for (std::size_t node = 0; node < projectors_.size(); ++node)
     field.template middleCols<dim>(dim * node) =
         (projectors_[node] * field.template middleCols<dim>(dim * node)).eval();
 }
 
-template <int dim>
-void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
+template <int dim, int ns>
+void PatchEquations<dim, ns>::make_coarse_space(const Overlap<dim> &overlap)
 {
   const int n = overlap.n_nodes();
   hats_.assign(n, {});
@@ -100,8 +100,8 @@ void PatchEquations<dim>::make_coarse_space(const Overlap<dim> &overlap)
 
 // Hats on a grid four times coarser than the cells, coarser still where they would be too many:
 // they hold the slow modes, those that are nearly affine over many blocks.
-template <int dim>
-void PatchEquations<dim>::make_hats(const Overlap<dim> &overlap)
+template <int dim, int ns>
+void PatchEquations<dim, ns>::make_hats(const Overlap<dim> &overlap)
 {
   const int n = overlap.n_nodes();
   Vector<dim> low = overlap.mesh.nodes[overlap.near_nodes[0]];
@@ -134,8 +134,8 @@ void PatchEquations<dim>::make_hats(const Overlap<dim> &overlap)
   }
 }
 
-template <int dim>
-void PatchEquations<dim>::factorize_coarse_space()
+template <int dim, int ns>
+void PatchEquations<dim, ns>::factorize_coarse_space()
 {
   const int n = int(hats_.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -159,9 +159,9 @@ void PatchEquations<dim>::factorize_coarse_space()
                 "the patch fit's coarse equations are not positive definite");
 }
 
-template <int dim>
-void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
-                                           std::vector<Eigen::Triplet<double>> &entries) const
+template <int dim, int ns>
+void PatchEquations<dim, ns>::add_coarse_share(const PatchBlock<dim, ns> &block,
+                                               std::vector<Eigen::Triplet<double>> &entries) const
 {
   std::vector<int> used;
   for (const int node : block.nodes)
@@ -175,7 +175,7 @@ void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
   for (std::size_t i = 0; i < block.nodes.size(); ++i)
     for (const auto &[j, value] : hats_[block.nodes[i]]) {
       const int first = int(std::find(used.begin(), used.end(), j) - used.begin()) * dim * ns;
-      const Stiffness<dim> states = value * projectors_[block.nodes[i]];
+      const StateMatrix<ns> states = value * projectors_[block.nodes[i]];
       for (int c = 0; c < dim; ++c)
         for (int m = 0; m < nq; ++m)
           parts.template block<ns, ns>(m * ns, first + c * ns) += q(i * dim + c, m) * states;
@@ -183,7 +183,7 @@ void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
   Eigen::MatrixXd moduli(ns * ns, n_columns);
   for (int k = 0; k < n_columns; ++k) {
     const Eigen::Map<const Eigen::MatrixXd> part(parts.col(k).data(), ns, nq);
-    const Stiffness<dim> s = symmetric_part<dim>(part * block.basis->strain);
+    const StateMatrix<ns> s = symmetric_part<ns>(part * block.basis->strain);
     moduli.col(k) = Eigen::Map<const Eigen::VectorXd>(s.data(), ns * ns);
   }
   const double scale = block.volume / block.length;
@@ -196,34 +196,34 @@ void PatchEquations<dim>::add_coarse_share(const PatchBlock<dim> &block,
 }
 
 // G^T y added to the unknowns.
-template <int dim>
-void PatchEquations<dim>::add_transposed(const Field &y)
+template <int dim, int ns>
+void PatchEquations<dim, ns>::add_transposed(const Field &y)
 {
   for (auto &block : blocks_) {
     const auto &q = block.basis->homogeneous;
     const Field local = gather(block, y), part = local * q;
-    block.s += block.volume * block.volume * symmetric_part<dim>(part * block.basis->strain);
+    block.s += block.volume * block.volume * symmetric_part<ns>(part * block.basis->strain);
     block.h += std::pow(block.volume / block.length, 2) * (local - part * q.transpose());
   }
 }
 
 // G x.
-template <int dim>
-typename PatchEquations<dim>::Field PatchEquations<dim>::forces() const
+template <int dim, int ns>
+typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::forces() const
 {
   Field sum = Field::Zero(ns, dim * projectors_.size());
   for (const auto &block : blocks_) {
     const auto &basis = *block.basis;
     const Field homogeneous = block.s * basis.strain.transpose();
-    scatter<dim>(block, block.h + homogeneous * basis.homogeneous.transpose(), sum);
+    scatter<dim, ns>(block, block.h + homogeneous * basis.homogeneous.transpose(), sum);
   }
   restrict_to_states(sum);
   return sum;
 }
 
 // G G^T y.
-template <int dim>
-typename PatchEquations<dim>::Field PatchEquations<dim>::apply(const Field &y) const
+template <int dim, int ns>
+typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::apply(const Field &y) const
 {
   Field sum(ns, y.cols());
   for (int node = 0; node < diagonal_.size(); ++node)
@@ -233,17 +233,17 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::apply(const Field &y) c
     const auto &basis = *block.basis;
     const double scale = block.volume / block.length;
     const Field part = gather(block, y) * basis.homogeneous;
-    const Stiffness<dim> s = block.volume * block.volume * symmetric_part<dim>(part * basis.strain);
+    const StateMatrix<ns> s = block.volume * block.volume * symmetric_part<ns>(part * basis.strain);
     const Field rest = s * basis.strain.transpose() - scale * scale * part;
-    scatter<dim>(block, rest * basis.homogeneous.transpose(), sum);
+    scatter<dim, ns>(block, rest * basis.homogeneous.transpose(), sum);
   }
   restrict_to_states(sum);
   return sum;
 }
 
 // Diagonal plus coarse level.
-template <int dim>
-typename PatchEquations<dim>::Field PatchEquations<dim>::precondition(const Field &r) const
+template <int dim, int ns>
+typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::precondition(const Field &r) const
 {
   Eigen::VectorXd coarse = Eigen::VectorXd::Zero(n_hats_ * dim * ns);
   for (std::size_t node = 0; node < hats_.size(); ++node)
@@ -269,9 +269,9 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::precondition(const Fiel
   return z;
 }
 
-template <int dim>
-typename PatchEquations<dim>::Field PatchEquations<dim>::conjugate_gradients(const Field &right,
-                                                                             double tolerance) const
+template <int dim, int ns>
+typename PatchEquations<dim, ns>::Field
+PatchEquations<dim, ns>::conjugate_gradients(const Field &right, double tolerance) const
 {
   constexpr int patience = 50; // iterations without progress: round-off reached
   Field y = Field::Zero(ns, right.cols()), r = right;
@@ -298,15 +298,15 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::conjugate_gradients(con
   return best_y;
 }
 
-template <int dim>
-typename PatchEquations<dim>::Field PatchEquations<dim>::solve(const Field &right)
+template <int dim, int ns>
+typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::solve(const Field &right)
 {
   // The normal equations lose digits that refinement on x itself brings back, up to what the sums
   // of the right side have lost themselves.
   Field rest = right;
   const double goal = 1e-13 * right.norm();
   while (rest.norm() > goal) {
-    const std::vector<PatchBlock<dim>> before = blocks_;
+    const std::vector<PatchBlock<dim, ns>> before = blocks_;
     add_transposed(conjugate_gradients(rest, 1e-6));
     const Field next = right - forces();
     if (next.norm() > 0.5 * rest.norm()) {
@@ -318,6 +318,8 @@ typename PatchEquations<dim>::Field PatchEquations<dim>::solve(const Field &righ
   return rest;
 }
 
-template class PatchEquations<2>;
-template class PatchEquations<3>;
+template class PatchEquations<2, n_strains<2>>;
+template class PatchEquations<2, 4>;
+template class PatchEquations<3, n_strains<3>>;
+template class PatchEquations<3, 9>;
 } // namespace ligament::coupling

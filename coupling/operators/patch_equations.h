@@ -10,14 +10,19 @@
 
 namespace ligament::coupling
 {
-/// Forces on nodes under unit strains, N: one row per strain; columns node by node, component by
+// ns: number of unit states that are fitted, the strains or all displacement gradients
+// (unit_gradient).
+
+/// Forces on nodes under unit states, N: one row per state; columns node by node, component by
 /// component.
-template <int dim>
-using StrainForces = Eigen::Matrix<double, n_strains<dim>, Eigen::Dynamic>;
+template <int ns>
+using StateForces = Eigen::Matrix<double, ns, Eigen::Dynamic>;
+template <int ns>
+using StateMatrix = Eigen::Matrix<double, ns, ns>;
 
 /// Motions of the nodes of a block, shared by blocks of equal shape; rows are node by node,
-/// component by component.
-template <int dim>
+/// component by component. Where all gradients are fitted, rotations are among the affine motions
+/// and translations alone are rigid.
 struct PatchBasis
 {
   Eigen::MatrixXd place;       // m, one column per node, against the node in the middle
@@ -26,16 +31,16 @@ struct PatchBasis
 };
 
 /// The overlap cells that follow one node and their part of the correction Z. Its forces under the
-/// unit strains are P_a S + P_n H.
-template <int dim>
+/// unit states are P_a S + P_n H.
+template <int dim, int ns>
 struct PatchBlock
 {
   std::vector<int> nodes; // near nodes
   double volume;          // m^3
   double length;          // m, h_b: smallest edge of the cells
-  std::shared_ptr<const PatchBasis<dim>> basis;
-  Stiffness<dim> s = Stiffness<dim>::Zero(); // S, N m
-  StrainForces<dim> h;                       // (P_n H)^T, N
+  std::shared_ptr<const PatchBasis> basis;
+  StateMatrix<ns> s = StateMatrix<ns>::Zero(); // S, N m
+  StateForces<ns> h;                           // (P_n H)^T, N
 
   /// Its part of Z, N/m.
   Eigen::MatrixXd correction() const;
@@ -43,20 +48,20 @@ struct PatchBlock
 
 /// One block around every node inside the overlap: a star of 2^dim cells, and of more beside
 /// hanging nodes.
-template <int dim>
-std::vector<PatchBlock<dim>> make_patch_blocks(const Overlap<dim> &overlap, double thickness);
+template <int dim, int ns>
+std::vector<PatchBlock<dim, ns>> make_patch_blocks(const Overlap<dim> &overlap, double thickness);
 
 /// G x = R with x the S/V_b and H/(V_b/h_b) of all blocks, only at the states that each node
 /// admits.
-template <int dim>
+template <int dim, int ns>
 class PatchEquations
 {
 public:
-  using Field = StrainForces<dim>;
+  using Field = StateForces<ns>;
 
-  /// `states`: per near node its admissible strains, orthonormal columns; none outside the overlap.
-  PatchEquations(std::vector<PatchBlock<dim>> &blocks, const std::vector<Eigen::MatrixXd> &states,
-                 const Overlap<dim> &overlap);
+  /// `states`: per near node its admissible states, orthonormal columns; none outside the overlap.
+  PatchEquations(std::vector<PatchBlock<dim, ns>> &blocks,
+                 const std::vector<Eigen::MatrixXd> &states, const Overlap<dim> &overlap);
 
   /// Leaves only the admissible states.
   void restrict_to_states(Field &field) const;
@@ -66,12 +71,10 @@ public:
   Field solve(const Field &right);
 
 private:
-  static constexpr int ns = n_strains<dim>;
-
   void make_coarse_space(const Overlap<dim> &overlap);
   void make_hats(const Overlap<dim> &overlap);
   void factorize_coarse_space();
-  void add_coarse_share(const PatchBlock<dim> &block,
+  void add_coarse_share(const PatchBlock<dim, ns> &block,
                         std::vector<Eigen::Triplet<double>> &entries) const;
   void add_transposed(const Field &y);
   Field forces() const;
@@ -79,9 +82,9 @@ private:
   Field precondition(const Field &r) const;
   Field conjugate_gradients(const Field &right, double tolerance) const;
 
-  std::vector<PatchBlock<dim>> &blocks_;
-  std::vector<Stiffness<dim>> projectors_; // per near node, on its states
-  Eigen::VectorXd diagonal_;               // per near node: sum of (V_b/h_b)^2
+  std::vector<PatchBlock<dim, ns>> &blocks_;
+  std::vector<StateMatrix<ns>> projectors_; // per near node, on its states
+  Eigen::VectorXd diagonal_;                // per near node: sum of (V_b/h_b)^2
   // Second level: every node for itself, or hats over the overlap; per node the numbers and values
   // of those that reach it.
   std::vector<std::vector<std::pair<int, double>>> hats_;

@@ -35,27 +35,38 @@ Eigen::MatrixXd admissible_strains(const std::vector<Vector<dim>> &normals,
   return svd.matrixV().rightCols(ns - rank);
 }
 
-template <int dim>
-PatchFit fit_patch(const Overlap<dim> &overlap, const BlendedOperators<dim> &operators,
-                   const fem::Body<dim> &body)
+namespace
+{
+template <int dim, int ns>
+PatchFit fit_states(const Overlap<dim> &overlap, const BlendedOperators<dim> &operators,
+                    const fem::Body<dim> &body)
 {
   const int n = overlap.n_nodes();
   const double force_scale =
       body.stiffness(0, 0) * body.thickness * std::pow(overlap.cell_size, dim - 1);
 
   std::vector<Eigen::MatrixXd> states(n);
-  StrainForces<dim> right(n_strains<dim>, dim * n);
+  StateForces<ns> right(ns, dim * n);
   for (int node = 0; node < n; ++node) {
-    if (overlap.is_overlap_node[node])
-      states[node] = admissible_strains<dim>(operators.free_normals[node], body.stiffness);
+    const auto &normals = operators.free_normals[node];
+    if (overlap.is_overlap_node[node]) {
+      if constexpr (ns == n_strains<dim>)
+        states[node] = admissible_strains<dim>(normals, body.stiffness);
+      else {
+        core::require(normals.empty(), "the overlap ends at a free surface, where a force whose "
+                                       "bonds bear forces in the reference can't end yet; keep "
+                                       "coupled sides of the zone inside the specimen");
+        states[node].setIdentity(ns, ns);
+      }
+    }
     for (int c = 0; c < dim; ++c)
       right.col(node * dim + c) = operators.residual.row(c * n + node).transpose();
   }
-  auto blocks = make_patch_blocks(overlap, body.thickness);
+  auto blocks = make_patch_blocks<dim, ns>(overlap, body.thickness);
   core::require(!blocks.empty(),
                 "the overlap is less than two cells wide: the patch fit needs two; "
                 "raise /coupling/overlap_cells");
-  PatchEquations<dim> equations(blocks, states, overlap);
+  PatchEquations<dim, ns> equations(blocks, states, overlap);
   equations.restrict_to_states(right);
 
   PatchFit fit;
@@ -70,6 +81,16 @@ PatchFit fit_patch(const Overlap<dim> &overlap, const BlendedOperators<dim> &ope
   }
   fit.correction = correction.to_sparse();
   return fit;
+}
+} // namespace
+
+template <int dim>
+PatchFit fit_patch(const Overlap<dim> &overlap, const BlendedOperators<dim> &operators,
+                   const fem::Body<dim> &body)
+{
+  if (operators.residual.cols() == n_strains<dim>)
+    return fit_states<dim, n_strains<dim>>(overlap, operators, body);
+  return fit_states<dim, dim * dim>(overlap, operators, body);
 }
 
 template PatchFit fit_patch(const Overlap<2> &, const BlendedOperators<2> &, const fem::Body<2> &);

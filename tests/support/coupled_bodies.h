@@ -102,9 +102,11 @@ CoupledBodies<dim> make_coupled_bodies(const CoupledBodiesParameters<dim> &p)
       std::move(packing), p.material, std::vector<core::BoundaryLoad<dim>>());
   if (p.replace_law)
     law = p.replace_law(state, std::move(law));
+  const auto constants = law->elastic_constants();
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(law));
   fem::Body<dim> material;
-  material.stiffness = p.material.template elastic_constants<dim>().stiffness;
+  material.stiffness = constants.stiffness;
+  material.stress = constants.stress;
   material.density = p.material.density;
   fem::Mesh<dim> far = fem::make_mesh(mesh);
   if (p.change_mesh)

@@ -207,7 +207,7 @@ template <int dim>
 void check_kernel(const Mesh<dim> &mesh, bool has_groups, bool has_singles)
 {
   const auto b = body<dim>();
-  const CellKernel<dim> kernel(mesh, b.stiffness, b.thickness,
+  const CellKernel<dim> kernel(mesh, b,
                                std::vector<char>(mesh.n_cells(), 1));
   EXPECT_EQ(kernel.n_groups() > 0, has_groups);
   EXPECT_EQ(kernel.n_single_cells() > 0, has_singles);
@@ -223,7 +223,7 @@ void check_kernel(const Mesh<dim> &mesh, bool has_groups, bool has_singles)
     for (int a = 0; a < n_cell_nodes<dim>; ++a)
       own.template segment<dim>(dim * a) = get(u, mesh.cells[cell][a]);
     const Vec<dim * n_cell_nodes<dim>> f =
-        cell_stiffness(mesh, cell, b.stiffness, b.thickness) * own;
+        cell_stiffness(mesh, cell, b) * own;
     for (int a = 0; a < n_cell_nodes<dim>; ++a)
       add<dim>(expected, mesh.cells[cell][a], Vector<dim>(-f.template segment<dim>(dim * a)));
   }
