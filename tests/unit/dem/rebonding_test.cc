@@ -432,10 +432,12 @@ TYPED_TEST(Rebonded, AsksForTheStrainOfBothSides)
       }
     EXPECT_EQ(int(force.rebonded().all().size()), n_expected) << strain;
     n_some += n_expected > 0 && n_expected < n_faces;
-    if (strain == 0)
+    if (strain == 0) {
       EXPECT_EQ(n_expected, n_faces);
-    if (strain == 0.1)
+    }
+    if (strain == 0.1) {
       EXPECT_EQ(n_expected, 0);
+    }
   }
   EXPECT_GT(n_some, 0);
   law.rebonding = {{0.5, 0, 1}}; // more than presses
