@@ -60,7 +60,6 @@ std::vector<Case> all_cases()
   add(law_cases());
   add(flow_strip_cases());
   add(flow_cone_cases());
-  add(flow_band_cases());
   add(flow_balance_cases());
   add(law_viscous_cases());
   add(softening_cases());

@@ -9,8 +9,6 @@ namespace ligament::program
 std::vector<Case> flow_strip_cases();
 /// Drucker and Prager's cone under confinement, and at its apex.
 std::vector<Case> flow_cone_cases();
-/// A cone whose cohesion falls: the energy of its bands.
-std::vector<Case> flow_band_cases();
 /// Bodies in free flight that flow.
 std::vector<Case> flow_balance_cases();
 } // namespace ligament::program

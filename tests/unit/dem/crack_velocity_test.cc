@@ -2,6 +2,7 @@
 // fast a crack runs.
 #include "tests/unit/dem/cases.h"
 #include "tests/unit/dem/run.h"
+#include "tests/unit/dem/softening_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -19,28 +20,6 @@ TYPED_TEST_SUITE(Falling, Dimensions);
 using Criterion = FractureLaw::Criterion;
 
 constexpr double youngs_modulus = 3e10, strength = 3e6, density = 2500;
-
-/// Two bonded cubes or squares, one above the other, free sideways.
-template <int dim>
-packings::Packing<dim> column()
-{
-  Packing<dim> p;
-  const double d = p.spacing = 0.01;
-  p.thickness = dim == 2 ? 0.3 : 1;
-  for (int c = 0; c < dim; ++c)
-    p.centre[c] = {0, c == 1 ? d : 0};
-  p.volume.assign(2, std::pow(d, dim) * p.thickness);
-  p.global_id = {0, 1};
-  const double area = std::pow(d, dim - 1) * p.thickness;
-  const Vector<dim> up = d / 2 * Vector<dim>::Unit(1);
-  p.faces.push_back({0, 1, Vector<dim>::Unit(1), area, d / 2, d / 2, up, -up, -1, false});
-  for (int i = 0; i < 2; ++i)
-    for (int c = 0; c < dim; ++c)
-      for (int end = 0; end < 2; ++end)
-        if (const Vector<dim> n = (end ? 1 : -1) * Vector<dim>::Unit(c); c != 1 || end == i)
-          p.boundary_faces.push_back({i, n, area, d / 2, d / 2 * n, 2 * c + end});
-  return p;
-}
 
 /// The force that a face bears over time is the straight line from where it began.
 TYPED_TEST(Falling, ForceFallsInTimeAndNothingIsLeft)
