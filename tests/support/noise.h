@@ -35,7 +35,7 @@ double drift_of_noise(CoupledBodies<dim> body, double speed, int n_steps)
       if (time.step % sample == 0) {
         const auto e = body.split->energy(bodies, time);
         mean += e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far +
-                e.blended + e.impulses;
+                e.blended + e.impulses - body.far->external_work();
         ++n;
       }
       body.split->kick(bodies, time);
