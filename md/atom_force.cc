@@ -12,10 +12,14 @@ namespace
 {
 template <int dim>
 AtomBody<dim> make_body(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
-                        const std::vector<int> &species)
+                        const AtomForceOptions &options)
 {
-  AtomBody<dim> body{crystal.potential(), species, packing.period, {}};
-  if (species.empty())
+  // Atoms that were farther apart than this and meet have come round the tip.
+  const double reach = 1.5 * (crystal.potential().cutoff() + options.skin);
+  AtomBody<dim> body{crystal.potential(), options.species, packing.period, {}, {}};
+  if (!packing.cuts.empty())
+    body.screen = CrackScreen<dim>(packing.cuts, packing.centre, packing.period, reach);
+  if (options.species.empty())
     body.species.assign(packing.size(), crystal.parameters().species);
   core::require(int(body.species.size()) == packing.size(),
                 "the species of atoms are not as many as the atoms");
@@ -33,13 +37,16 @@ double sum(const std::vector<double> &values)
 
 template <int dim>
 AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
-                          const AtomForceOptions &options)
-    : crystal_(crystal), body_(make_body(crystal, packing, options.species)),
+                          const AtomForceOptions &options,
+                          const std::vector<core::BoundaryLoad<dim>> &loads)
+    : crystal_(crystal), body_(make_body(crystal, packing, options)),
       reference_(packing.centre), kernel_(body_.potential),
+      loads_(packing, crystal.elastic_constants().stiffness(0, 0) / crystal.spacing(), loads),
       list_(body_.potential.cutoff(), options.skin, packing.period)
 {
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);
+  body_.screen.apply(list_);
   reference_density_ = densities(atoms);
   reference_energy_ = sum(energies(atoms));
 }
@@ -58,19 +65,21 @@ template <int dim>
 void AtomForce<dim>::update_list(const Particles &atoms) const
 {
   if (list_.update<dim>(atoms.reference, atoms.displacement)) {
+    body_.screen.apply(list_);
     list_is_reference_ = false;
     built_ = atoms.displacement;
   }
 }
 
 template <int dim>
-void AtomForce<dim>::compute(Particles &atoms, double)
+void AtomForce<dim>::compute(Particles &atoms, double time)
 {
   update_list(atoms);
   if (kernel_.can_compute() && body_.weight.empty())
     kernel_.compute<dim>(list_, atoms.force);
   else
     compute_plainly(atoms);
+  loads_.add_forces(atoms, time);
 }
 
 template <int dim>
@@ -140,15 +149,20 @@ template <int dim>
 double AtomForce<dim>::potential_energy(const Particles &atoms) const
 {
   update_list(atoms);
-  if (list_is_reference_)
-    return sum(energy_changes(atoms));
-  return sum(energies(atoms)) - reference_energy_;
+  const double bonds = list_is_reference_ ? sum(energy_changes(atoms))
+                                          : sum(energies(atoms)) - reference_energy_;
+  return bonds + loads_.energy(atoms);
 }
 
 template <int dim>
 double AtomForce<dim>::stable_step(const Particles &atoms) const
 {
-  return md::stable_step(AtomTangent<dim>(body_, atoms), atoms);
+  const double plain = md::stable_step(AtomTangent<dim>(body_, atoms), atoms);
+  double rate = 0; // 1/s^2, by which springs of supports may raise squared frequencies
+  for (const auto &component : loads_.stiffnesses())
+    for (std::size_t i = 0; i < component.size(); ++i)
+      rate = std::max(rate, component[i] * atoms.inverse_mass(int(i)));
+  return rate > 0 ? 2 / std::sqrt(4 / (plain * plain) + rate) : plain;
 }
 
 template <int dim>
@@ -159,34 +173,6 @@ void AtomForce<dim>::set_energy_weights(const std::vector<double> &weights)
                 "energy weights are set once, for all atoms, before these move");
   body_.weight = weights;
   reference_energy_ = sum(energies(at_rest()));
-}
-
-template <int dim>
-void AtomForce<dim>::add_tangent(
-    const Particles &atoms, const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
-    const std::vector<int> *of) const
-{
-  AtomTangent<dim>(body_, atoms).add_terms(add, of);
-}
-
-template <int dim>
-void AtomForce<dim>::for_each_face(
-    const Particles &atoms, const std::function<void(const particles::FaceView<dim> &)> &visit,
-    const std::vector<int> *of) const
-{
-  double lengths = 0;
-  for (const Vector<dim> &bond : crystal_.half_bonds())
-    if (bond.norm() < crystal_.potential().cutoff())
-      lengths += 2 * bond.norm();
-  const double area = 2 * dim * crystal_.volume() / lengths;
-  const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
-  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
-    const Vector<dim> normal = b.reference.normalized(), half = b.reference / 2;
-    if (is_asked(b.i))
-      visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, true});
-    if (is_asked(b.j))
-      visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, true});
-  });
 }
 
 template class AtomForce<2>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "md/atom_kernel.h"
+#include "md/atom_loads.h"
 #include "md/atom_tangent.h"
 #include "md/crystal.h"
 #include "packings/packing.h"
@@ -16,6 +17,7 @@ struct AtomForceOptions
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
 };
 
+
 /// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as
 /// long as no atom has moved by half of the skin they are sums of differences, with all their
 /// digits.
@@ -25,9 +27,11 @@ class AtomForce : public particles::ParticleForce<dim>
 public:
   using Particles = particles::Particles<dim>;
 
-  /// The packing is one of the crystal (cut_crystal()), perhaps with atoms of other species.
+  /// The packing is one of the crystal (cut_crystal()), perhaps with atoms of other species; its
+  /// cuts part atoms. Loads act on its boundary faces.
   AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
-            const AtomForceOptions &options = {});
+            const AtomForceOptions &options = {},
+            const std::vector<core::BoundaryLoad<dim>> &loads = {});
 
   bool has_rotations() const override { return false; }
   void compute(Particles &atoms, double time) override;
@@ -38,6 +42,16 @@ public:
   {
     return crystal_.elastic_constants();
   }
+  double range() const override { return body_.potential.cutoff(); }
+  bool is_prestressed() const override { return true; }
+  void reference_forces(const Particles &atoms, Components<dim> &force) const override;
+  /// Pairs within the cut-off in the reference that no crack parts.
+  void for_each_neighbour(const Particles &atoms,
+                          const std::function<void(const particles::Neighbour &)> &visit,
+                          const std::vector<int> *of = nullptr) const override;
+  /// Those with fewer neighbours than the crystal gives them.
+  std::vector<int> open_particles(const Particles &atoms,
+                                  const std::vector<int> &of) const override;
   void set_energy_weights(const std::vector<double> &weights) override;
   void add_tangent(const Particles &atoms,
                    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
@@ -55,6 +69,9 @@ public:
   /// Of the atoms' bonds, each half, over the reference volume: (M7). For small strains Cauchy's
   /// stress, in general Kirchhoff's.
   void stresses(const Particles &atoms, Components<n_strains<dim>> &stress) const override;
+  Vector<dim> reaction(int load) const override { return loads_.reaction(load); }
+  double external_work() const override { return loads_.external_work(); }
+  void reset_work() override { loads_.reset_work(); }
   /// Pairs that the list has at present.
   long n_bonds() const override { return list_.n_pairs(); }
 
@@ -94,6 +111,7 @@ private:
   AtomBody<dim> body_;
   Components<dim> reference_; // m
   AtomKernel kernel_;
+  AtomLoads<dim> loads_;
   std::vector<double> reference_density_;
   double reference_energy_ = 0; // J
   // Looking at a state may bring the list up to date.

@@ -34,6 +34,26 @@ void AtomForce<dim>::stresses(const Particles &atoms, Components<n_strains<dim>>
 }
 
 template <int dim>
+void AtomForce<dim>::for_each_face(
+    const Particles &atoms, const std::function<void(const particles::FaceView<dim> &)> &visit,
+    const std::vector<int> *of) const
+{
+  double lengths = 0;
+  for (const Vector<dim> &bond : crystal_.half_bonds())
+    if (bond.norm() < crystal_.potential().cutoff())
+      lengths += 2 * bond.norm();
+  const double area = 2 * dim * crystal_.volume() / lengths;
+  const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
+  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
+    const Vector<dim> normal = b.reference.normalized(), half = b.reference / 2;
+    if (is_asked(b.i))
+      visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, true});
+    if (is_asked(b.j))
+      visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, true});
+  });
+}
+
+template <int dim>
 std::vector<std::vector<Vector<dim>>> AtomForce<dim>::neighbours(const Particles &atoms,
                                                                  double reach) const
 {
@@ -93,6 +113,7 @@ std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
 template <int dim>
 void AtomForce<dim>::save(core::State &state, const core::Names &names, const Particles &) const
 {
+  loads_.save(state, names);
   if (list_is_reference_)
     return;
   core::Table table(names.sorted());
@@ -110,12 +131,17 @@ void AtomForce<dim>::load(const core::State &state, const core::Names &names,
   if (!list_is_reference_)
     names.load(core::table(state, "neighbour_list"), "displacement", built_);
   list_.build<dim>(atoms.reference, built_);
+  body_.screen.apply(list_);
+  loads_.load(state, names, atoms);
 }
 
 #define INSTANTIATE(dim)                                                                           \
   template void AtomForce<dim>::stresses(const Particles &, Components<n_strains<dim>> &) const;   \
   template std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &) const;           \
   template std::vector<int> AtomForce<dim>::coordination(const Particles &) const;                 \
+  template void AtomForce<dim>::for_each_face(                                                     \
+      const Particles &, const std::function<void(const particles::FaceView<dim> &)> &,            \
+      const std::vector<int> *) const;                                                             \
   template void AtomForce<dim>::save(core::State &, const core::Names &, const Particles &) const; \
   template void AtomForce<dim>::load(const core::State &, const core::Names &, const Particles &);
 INSTANTIATE(2)

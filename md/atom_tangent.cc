@@ -49,6 +49,7 @@ AtomTangent<dim>::AtomTangent(const AtomBody<dim> &body, const particles::Partic
       density_(atoms.size(), 0.)
 {
   list_.build<dim>(at_rest_.reference, at_rest_.displacement);
+  body.screen.apply(list_);
   const auto add = [&](const Bond<dim> &b) {
     const BondJets jets = body.potential.bond(body.species[b.i], body.species[b.j], b.length);
     density_[b.i] += jets.density_at_i.value;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "md/bond_view.h"
+#include "md/crack_screen.h"
 #include "md/potential.h"
 #include "particles/particle_force.h"
 
@@ -17,6 +18,7 @@ struct AtomBody
   std::vector<int> species;   // of each atom
   Vector<dim> period;         // m; 0: none
   std::vector<double> weight; // of each atom's energy; empty: 1
+  CrackScreen<dim> screen;    // pairs that cracks have parted
 
   double weight_of(int i) const { return weight.empty() ? 1 : weight[i]; }
   double weight_of(int i, int j) const { return (weight_of(i) + weight_of(j)) / 2; }

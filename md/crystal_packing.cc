@@ -61,6 +61,47 @@ std::pair<Index<dim>, Index<dim>> index_range(const Matrix<dim> &inverse,
 }
 
 template <int dim>
+double side_area(const CrystalShape<dim> &shape, int axis, double thickness)
+{
+  double area = dim == 2 ? thickness : 1;
+  for (int c = 0; c < dim; ++c)
+    if (c != axis)
+      area *= shape.upper[c] - shape.lower[c];
+  return area;
+}
+
+/// How far x lies inside side number `side` of the box (core/types.h).
+template <int dim>
+double depth_below(const CrystalShape<dim> &shape, int side, const Vector<dim> &x)
+{
+  const int axis = side / 2;
+  return side % 2 ? shape.upper[axis] - x[axis] : x[axis] - shape.lower[axis];
+}
+
+/// Of a side: how many sites of the lattice lie in the layer that loads act on, kept or not.
+template <int dim>
+using SiteCounts = std::array<long, 2 * dim>;
+
+template <int dim>
+void add_outer_faces(const CrystalShape<dim> &shape, double depth, const SiteCounts<dim> &n_sites,
+                     packings::Packing<dim> &packing)
+{
+  for (int side = 0; side < 2 * dim; ++side) {
+    const int axis = side / 2;
+    const bool is_outer = side % 2 ? shape.upper[axis] >= shape.specimen_upper[axis]
+                                   : shape.lower[axis] <= shape.specimen_lower[axis];
+    if (!is_outer || shape.periodic[axis])
+      continue;
+    const Vector<dim> normal = (side % 2 ? 1 : -1) * Vector<dim>::Unit(axis);
+    const double area = side_area<dim>(shape, axis, packing.thickness) / double(n_sites[side]);
+    for (int i = 0; i < packing.size(); ++i)
+      if (const double q = depth_below<dim>(shape, side, get(packing.centre, i)); q < depth)
+        packing.boundary_faces.push_back(
+            {i, normal, area, std::max(q, 0.), Vector<dim>(q * normal), side});
+  }
+}
+
+template <int dim>
 void check_periods(const Matrix<dim> &inverse, const CrystalShape<dim> &shape)
 {
   for (int c = 0; c < dim; ++c) {
@@ -88,10 +129,14 @@ packings::Packing<dim> cut_crystal(const Crystal<dim> &crystal, const CrystalSha
       x += basis.col(c) * k[c];
     return x;
   };
+  const double loaded_depth = crystal.potential().cutoff();
+  SiteCounts<dim> n_sites = {};
   const auto is_in = [&](const Vector<dim> &x) {
     for (int c = 0; c < dim; ++c)
       if (!(x[c] >= shape.lower[c] - sliver && x[c] < shape.upper[c] - sliver))
         return false;
+    for (int side = 0; side < 2 * dim; ++side)
+      n_sites[side] += depth_below<dim>(shape, side, x) < loaded_depth;
     return !shape.keep || shape.keep(x);
   };
   const auto [from, to] = index_range<dim>(inverse, shape);
@@ -129,6 +174,7 @@ packings::Packing<dim> cut_crystal(const Crystal<dim> &crystal, const CrystalSha
       packing.row_begin.push_back(i);
   }
   packing.row_begin.push_back(n);
+  add_outer_faces<dim>(shape, loaded_depth, n_sites, packing);
   return packing;
 }
 

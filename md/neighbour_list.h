@@ -26,6 +26,10 @@ public:
   template <int dim>
   void build(const Components<dim> &reference, const Components<dim> &displacement);
 
+  /// Takes out the pairs for which parts(i, j, periods) holds, as for_each_pair() names them.
+  template <typename Parts>
+  void remove_pairs(Parts &&parts);
+
   double cutoff() const { return cutoff_; }
   double skin() const { return skin_; }
   int n_atoms() const { return int(order_.size()); }
@@ -60,6 +64,8 @@ private:
   };
   struct Cells;
 
+  /// From slot s to a neighbour of it.
+  Triple periods_to(int s, int neighbour) const;
   void set_image_records();
   void build_from(const std::vector<AtomRecord> &places);
   /// Their slots are numbers of atoms at first.
@@ -76,19 +82,37 @@ private:
   std::vector<AtomRecord> records_, built_; // now, and when the list was built
 };
 
+inline std::array<int, 3> NeighbourList::periods_to(int s, int neighbour) const
+{
+  const int t = slot_of(neighbour);
+  Triple periods = {};
+  for (int c = 0; c < 3; ++c)
+    periods[c] = wrap_[t][c] - wrap_[s][c];
+  if (neighbour >= n_atoms())
+    for (int c = 0; c < 3; ++c)
+      periods[c] += images_[neighbour - n_atoms()].periods[c];
+  return periods;
+}
+
 template <typename Visit>
 void NeighbourList::for_each_pair(Visit &&visit) const
 {
   for (int s = 0; s < n_atoms(); ++s)
-    for (int k = begin_[s]; k < begin_[s + 1]; ++k) {
-      const int t = slot_of(neighbour_[k]);
-      Triple periods = {};
-      for (int c = 0; c < 3; ++c)
-        periods[c] = wrap_[t][c] - wrap_[s][c];
-      if (neighbour_[k] >= n_atoms())
-        for (int c = 0; c < 3; ++c)
-          periods[c] += images_[neighbour_[k] - n_atoms()].periods[c];
-      visit(order_[s], order_[t], periods);
-    }
+    for (int k = begin_[s]; k < begin_[s + 1]; ++k)
+      visit(order_[s], order_[slot_of(neighbour_[k])], periods_to(s, neighbour_[k]));
+}
+
+template <typename Parts>
+void NeighbourList::remove_pairs(Parts &&parts)
+{
+  int kept = 0, first = 0;
+  for (int s = 0; s < n_atoms(); ++s) {
+    const int last = begin_[s + 1];
+    for (int k = first; k < last; ++k)
+      if (!parts(order_[s], order_[slot_of(neighbour_[k])], periods_to(s, neighbour_[k])))
+        neighbour_[kept++] = neighbour_[k];
+    first = last;
+    begin_[s + 1] = kept;
+  }
 }
 } // namespace ligament::md
