@@ -7,13 +7,13 @@
 
 namespace ligament::core
 {
-/// Exponents of kg, m, s and rad. Angles are kept apart so that a length is no angle.
-using UnitExponents = std::array<double, 4>;
+/// Exponents of kg, m, s, rad and K. Angles are kept apart so that a length is no angle.
+using UnitExponents = std::array<double, 5>;
 
 struct Quantity
 {
   double value = 0; // in SI units
-  UnitExponents exponents = {0, 0, 0, 0};
+  UnitExponents exponents = {0, 0, 0, 0, 0};
 };
 
 /// A unit product: names with SI prefixes and powers, joined by * or a blank and / (which divides

@@ -95,6 +95,8 @@ public:
 
   /// Overlap and far field may turn and stretch: set_regime() knows more than the linear regime.
   virtual bool can_turn() const { return true; }
+  /// And the nonlinear one.
+  virtual bool can_strain() const { return can_turn(); }
   /// The regime in which they move from now on, never back to an earlier one; core::InputError when
   /// the discrete law cannot follow. Without more knowledge the far field's cells turn.
   virtual void set_regime(Regime regime, Bodies<dim> &bodies);

@@ -63,6 +63,8 @@ public:
   /// core::InputError when the discrete law cannot follow, and when asked to become linear again.
   void set_regime(Regime regime, Bodies<dim> &bodies) override;
   Regime regime() const { return regime_; }
+  /// Not where bonds bear forces in the reference.
+  bool can_strain() const override { return dead_load_.size() == 0; }
   /// Of the near cells, in the present state.
   NearMotion largest_motion() const override { return parts_.largest_motion(near_.displacement()); }
 

@@ -161,8 +161,9 @@ foreach(folder core particles packings dem md)
   endforeach()
 endforeach()
 
-# The program knows no law: one file makes the force of a zone, no other sees what it is.
-set(names_the_law src/simulation/make_force.cc)
+# The program knows no law: a file for each kind of particles makes the force of a zone, no other
+# sees what it is.
+set(names_the_law src/simulation/make_force.cc src/simulation/make_atoms.cc)
 foreach(folder simulation output drawing analysis)
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/${folder}/*.h ${ROOT}/src/${folder}/*.cc)
   list(REMOVE_ITEM files ${names_the_law})

@@ -92,7 +92,7 @@ struct Parameter
   Target target;
   std::string text; // what it means, one line
   std::string unit_name;
-  UnitExponents unit = {0, 0, 0, 0};
+  UnitExponents unit = {0, 0, 0, 0, 0};
   std::optional<Bound> lower, upper;
   std::optional<Band> band;
   std::vector<std::string> choices;

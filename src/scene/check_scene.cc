@@ -2,6 +2,7 @@
 
 #include "core/parameters/spelling.h"
 #include "src/drawing/shown_field.h"
+#include "src/scene/atoms.h"
 #include "src/scene/check_flow_loads.h"
 #include "src/scene/zone_around.h"
 
@@ -50,7 +51,8 @@ void check_models(const Scene &scene, Findings &f)
     f.error(region_key, "missing key \"region\" in /discrete_zone",
             "it says which part of the specimen is discrete", proposed_zone(scene, f));
   for (const std::string key : {"packing", "spacing"})
-    if (!f.given(zone_key + "/" + key) && f.sound({zone_key + "/" + key}))
+    if (!f.given(zone_key + "/" + key) && f.sound({zone_key + "/" + key, "/atoms"}) &&
+        !(scene.atoms && key == "spacing"))
       f.error(zone_key + "/" + key, fmt::format("missing key \"{}\" in /discrete_zone", key),
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }
@@ -97,8 +99,14 @@ void check_packing(const Scene &scene, Findings &f)
   if (!f.sound_and_given({"/discrete_zone/packing"}))
     return;
   check_packing_keys(scene, f);
-  if (!f.sound({"/dimension"}) || scene.zone.is_irregular())
+  if (!f.sound({"/dimension"}) || scene.zone.is_irregular() || scene.atoms)
     return;
+  if (scene.zone.packing == PackingKind::bcc) {
+    f.error(key, "\"packing\" in /discrete_zone is \"bcc\" without \"atoms\"",
+            "cells on this lattice are not known to the law of discrete elements",
+            "choose \"fcc\", \"simple_cubic\" or \"random\", or give \"atoms\"");
+    return;
+  }
   const bool plane =
       scene.zone.packing == PackingKind::square || scene.zone.packing == PackingKind::hexagonal;
   if (plane != (scene.dimension == 2))
@@ -163,6 +171,7 @@ void check_scene(const Scene &scene, Findings &f)
 {
   check_models(scene, f);
   check_packing(scene, f);
+  check_atoms(scene, f);
   check_fracture(scene.material, "/material/fracture", scene, f);
   check_softening(scene, scene.material, "/material/fracture", f);
   check_plasticity(scene, f);

@@ -16,8 +16,21 @@ enum class PackingKind
   hexagonal,    // 2D
   simple_cubic, // 3D
   fcc,          // 3D
+  bcc,          // 3D, atoms
   random,
   file
+};
+
+/// What atoms feel of each other.
+enum class AtomPotential
+{
+  zhou,          // metals, built in
+  plane_crystal, // 2D, built in
+  lennard_jones,
+  morse,
+  setfl, // tables of files
+  setfl_fs,
+  funcfl
 };
 
 enum class Axis
@@ -141,7 +154,15 @@ inline const std::vector<std::string> &words(ToolKind)
 inline const std::vector<std::string> &words(PackingKind)
 {
   static const std::vector<std::string> list = {"square", "hexagonal", "simple_cubic",
-                                                "fcc",    "random",    "file"};
+                                                "fcc",    "bcc",       "random",
+                                                "file"};
+  return list;
+}
+
+inline const std::vector<std::string> &words(AtomPotential)
+{
+  static const std::vector<std::string> list = {"zhou",  "plane_crystal", "lennard_jones", "morse",
+                                                "setfl", "setfl_fs",      "funcfl"};
   return list;
 }
 

@@ -22,6 +22,8 @@ Findings::Findings(const core::JsonValue &json, std::vector<core::Diagnostic> &e
 
 bool Findings::given(const std::string &key) const
 {
+  if (derived_.count(key))
+    return true;
   const core::JsonValue *value = &json_;
   for (const std::string &part : core::pointer_parts(key)) {
     if (value->is(core::JsonValue::Kind::array)) {

@@ -4,6 +4,8 @@
 #include "core/json.h"
 
 #include <initializer_list>
+#include <set>
+#include <string>
 
 namespace ligament::program
 {
@@ -13,6 +15,9 @@ public:
   /// `errors` holds what reading found; both lists grow.
   Findings(const core::JsonValue &json, std::vector<core::Diagnostic> &errors,
            std::vector<core::Diagnostic> &warnings);
+
+  /// The key's value follows from others: from now on it counts as given.
+  void derive(const std::string &key) { derived_.insert(key); }
 
   /// True when the file or an override gives the key a value other than null.
   bool given(const std::string &key) const;
@@ -29,6 +34,7 @@ public:
 
 private:
   const core::JsonValue &json_;
+  std::set<std::string> derived_;
   std::vector<core::Diagnostic> &errors_, &warnings_;
 };
 } // namespace ligament::program

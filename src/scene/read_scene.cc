@@ -7,6 +7,7 @@
 #include "core/parameters/describe_parameters.h"
 #include "core/parameters/override.h"
 #include "core/parameters/read_parameters.h"
+#include "src/scene/atoms.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 #include "src/scene/scene_parameters.h"
@@ -133,7 +134,10 @@ void locate_files(const std::string &name, Scene &scene)
 {
   if (name == scene_name("-"))
     return;
-  for (std::string *path : {&scene.zone.packing_file, &scene.specimen.file})
+  std::vector<std::string *> paths = {&scene.zone.packing_file, &scene.specimen.file};
+  if (scene.atoms)
+    paths.push_back(&scene.atoms->file);
+  for (std::string *path : paths)
     if (!path->empty())
       *path = (std::filesystem::path(name).parent_path() / *path).string();
 }
@@ -141,6 +145,7 @@ void locate_files(const std::string &name, Scene &scene)
 /// Values in the form in which the program uses them.
 void complete(Scene &scene)
 {
+  resolve_atoms(scene, nullptr);
   enclose_body(scene.specimen, scene.dimension);
   place_zone(scene);
   enclose_boxes(scene.zone);
@@ -186,7 +191,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     return result;
   Scene scene;
   core::ParameterSection table;
-  declare_scene(table, scene);
+  declare_scene(table, scene, json.find("atoms") != nullptr);
   for (const auto &o : overrides)
     core::apply_override(table, o, json, result.errors);
   const int dimension = dimension_of(json);
@@ -198,6 +203,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     check_choice_of_zone(scene.zone, dimension, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
     locate_files(name, enclosed);
+    resolve_atoms(enclosed, &findings);
     try {
       if (findings.sound({"/specimen", "/dimension"}))
         enclose_body(enclosed.specimen, dimension);
@@ -230,6 +236,12 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   locate_files(name, scene);
   if (!scene.specimen.file.empty()) // whoever resumes the run reads it from another folder
     result.resolved["specimen"]["file"] = std::filesystem::absolute(scene.specimen.file).string();
+  if (scene.atoms) {
+    result.resolved.erase("material");
+    result.resolved["discrete_zone"].erase("spacing");
+    if (!scene.atoms->file.empty())
+      result.resolved["atoms"]["file"] = std::filesystem::absolute(scene.atoms->file).string();
+  }
   complete(scene);
   result.scene = std::move(scene);
   return result;

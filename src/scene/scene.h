@@ -188,9 +188,9 @@ struct ViscosityParameters
 
 struct MaterialParameters
 {
-  double youngs_modulus; // Pa
-  double poissons_ratio;
-  double density; // kg/m^3
+  double youngs_modulus = 0; // Pa
+  double poissons_ratio = 0;
+  double density = 0; // kg/m^3
   double friction = 0;
   FractureParameters fracture;
   std::optional<PlasticityParameters> plasticity;
@@ -204,6 +204,23 @@ struct Inclusion
   MaterialParameters material;
   std::vector<Hole> balls; // discs in 2D
   std::vector<Notch> boxes;
+};
+
+/// The particles are atoms; what the material is follows from them.
+struct AtomsParameters
+{
+  AtomPotential potential = AtomPotential::zhou;
+  std::string species; // of the crystal
+  std::string file;    // with tables; relative to the scene until it is read
+  // Of the potentials that are formulas:
+  double energy = 0, distance = 0; // J, m: depth of the well, place of it (lennard_jones: sigma)
+  double decay = 0;                // 1/m, of morse
+  double mass = 0;                 // kg
+  double taper_begin = 0;          // m; 0: the potential's own, also of the next
+  double cutoff = 0;               // m
+  /// 3D: directions of the crystal's cube that lie along x and y; all 0: the cube lies along the
+  /// axes.
+  Point along_x = {0, 0, 0}, along_y = {0, 0, 0};
 };
 
 /// m; sides as those of DiscreteZone.
@@ -456,7 +473,8 @@ struct Scene
   PlaneMode plane = PlaneMode::strain;
   Specimen specimen;
   MaterialParameters material;
-  std::vector<Inclusion> inclusions; // later ones over earlier ones
+  std::optional<AtomsParameters> atoms; // the material, spacing and plane then follow from them
+  std::vector<Inclusion> inclusions;    // later ones over earlier ones
   DiscreteZone zone;
   std::optional<FarField> far_field;
   CouplingParameters coupling;

@@ -138,15 +138,35 @@ void declare_viscosity(Section &s, ViscosityParameters &v)
   s.add("shear_viscosity", v.shear_viscosity, "Kelvin and Voigt's dashpot beside all that: stress 2 eta times the rate of the deviator of strain; it makes the stable step shorter").in("Pa*s").usually(1e-3, 1e12, "mPa*s kPa*s MPa*s GPa*s").above(0);
 }
 
-void declare_material(Section &s, MaterialParameters &m)
+void require_unless_atoms(core::Parameter &p, bool may_be_atoms)
 {
-  s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").usually(1e5, 2e12, "GPa MPa kPa").above(0).required();
-  s.add("poissons_ratio", m.poissons_ratio, "nu, the same in both models").at_least(-0.2).at_most(0.49).required();
-  s.add("density", m.density, "mass per volume").in("kg/m^3").usually(10, 3e4, "g/cm^3 t/m^3").above(0).required();
+  may_be_atoms ? p.required_unless("there are \"atoms\"") : p.required();
+}
+
+void declare_material(Section &s, MaterialParameters &m, bool may_be_atoms)
+{
+  require_unless_atoms(s.add("youngs_modulus", m.youngs_modulus, "E, the same in both models").in("Pa").usually(1e5, 2e12, "GPa MPa kPa").above(0), may_be_atoms);
+  require_unless_atoms(s.add("poissons_ratio", m.poissons_ratio, "nu, the same in both models").at_least(-0.2).at_most(0.49), may_be_atoms);
+  require_unless_atoms(s.add("density", m.density, "mass per volume").in("kg/m^3").usually(10, 3e4, "g/cm^3 t/m^3").above(0), may_be_atoms);
   s.add("friction", m.friction, "Coulomb friction of broken faces").at_least(0).at_most(10);
   declare_fracture(s.section("fracture", "when bonds break"), m.fracture);
   s.section("plasticity", m.plasticity, "none", "what particles flow by; cells and the overlap stay elastic", declare_plasticity);
   s.section("viscosity", m.viscosity, "none", "how the shear stress of particles relaxes and is damped, also together with plasticity; cells and the overlap stay elastic", declare_viscosity);
+}
+
+void declare_atoms(Section &s, AtomsParameters &a)
+{
+  s.add("potential", a.potential, "zhou: metals after Zhou, Johnson and Wadley (2004); plane_crystal: a 2D crystal half bound by its density; lennard_jones, morse: pairs; setfl, setfl_fs, funcfl: tables of embedded atoms in a file", words(AtomPotential())).required();
+  s.add("species", a.species, "of the crystal: Cu, Ag, Au, Ni, Pb, Fe or W (zhou), or a name in the file (setfl, setfl_fs)");
+  s.add("file", a.file, "setfl, setfl_fs, funcfl: the table, relative to the scene");
+  s.add("energy", a.energy, "depth of a pair's well (lennard_jones, morse), energy of an atom in the crystal (plane_crystal)").in("J").usually(1e-22, 1e-17, "eV meV").at_least(0);
+  s.add("distance", a.distance, "where the well is (morse, plane_crystal); of lennard_jones sigma, where the energy is 0").in("m").usually(1e-11, 1e-8, "angstrom nm pm").at_least(0);
+  s.add("decay", a.decay, "morse: alpha, the width of the well").in("1/m").usually(1e8, 1e12, "1/angstrom 1/nm").at_least(0);
+  s.add("mass", a.mass, "of an atom (lennard_jones, morse, plane_crystal)").in("kg").usually(1e-28, 1e-23, "u").at_least(0);
+  s.add("taper_begin", a.taper_begin, "lennard_jones, morse: from here on the pair's energy goes smoothly to 0; 0: 2.2 sigma, 1.6 distances").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
+  s.add("cutoff", a.cutoff, "lennard_jones, morse: where it is 0; 0: 2.5 sigma, 2 distances").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
+  s.add("along_x", a.along_x, "direction of the crystal's cube that lies along x, as [1, 1, 0]; not given, with along_y: the cube lies along the axes").usually(-20, 20, "").only_in(3);
+  s.add("along_y", a.along_y, "that along y, across the first").usually(-20, 20, "").only_in(3);
 }
 
 void declare_ball(Section &s, Hole &h)
@@ -157,7 +177,7 @@ void declare_ball(Section &s, Hole &h)
 
 void declare_inclusion(Section &s, Inclusion &i)
 {
-  declare_material(s, i.material);
+  declare_material(s, i.material, false);
   s.list("balls", i.balls, "discs (2D) or balls of this material", declare_ball);
   s.list("boxes", i.boxes, "boxes of this material", declare_notch);
 }
@@ -186,8 +206,8 @@ void declare_zone(Section &s, DiscreteZone &z)
   declare_region(s.section("region", "box of discrete elements, its overlap with the far field included; for extent box"), z);
   s.list("boxes", z.boxes, "in place of region: several boxes; those that overlap or touch are one zone, others are separate zones", declare_region<ZoneBox>);
   s.section("around", z.around, "none", "in place of region and boxes: zones that follow the specimen", declare_around);
-  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next two 3D; file: centres and radii from packing_file", words(PackingKind())).required_unless("extent is none");
-  s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").usually(1e-10, 1e2, "mm um nm").above(0).required_unless("extent is none");
+  s.add("packing", z.packing, "arrangement of the particles; the first two are 2D, the next three 3D; of atoms: hexagonal, fcc or bcc, which belongs to atoms alone; file: centres and radii from packing_file", words(PackingKind())).required_unless("extent is none");
+  s.add("spacing", z.spacing, "distance d of nearest neighbours; random, file: that of the densest lattice with cells of the same mean volume").in("m").usually(1e-10, 1e2, "mm um nm").above(0).required_unless("extent is none, or there are \"atoms\"");
   s.add("orientation", z.orientation, "turns the packing: an angle (2D) or a rotation vector (3D); close-packed rows lie along x at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();
   s.add("seed", z.seed, "random packing: which one").at_least(0).at_most(1000000000);
   s.add("relaxation_sweeps", z.relaxation_sweeps, "random packing: how often every particle moves to the centroid of its cell").at_least(0).at_most(1000);
@@ -360,14 +380,15 @@ void declare_output(Section &s, OutputParameters &o)
 }
 } // namespace
 
-void declare_scene(Section &s, Scene &scene)
+void declare_scene(Section &s, Scene &scene, bool may_be_atoms)
 {
   s.ignore("$schema", "address of the JSON schema, for editors");
   s.add("title", scene.title, "one line for reports");
   s.add("dimension", scene.dimension, "2 or 3").at_least(2).at_most(3);
   s.add("plane", scene.plane, "plane strain or plane stress", {"strain", "stress"}).only_in(2);
   declare_specimen(s.section("specimen", "the body"), scene.specimen);
-  declare_material(s.section("material", "what it is made of"), scene.material);
+  declare_material(s.section("material", "what it is made of"), scene.material, may_be_atoms);
+  s.section("atoms", scene.atoms, "none", "the particles are atoms of a crystal, whose spacing, density and elastic constants follow from their potential: in place of material", declare_atoms);
   s.list("inclusions", scene.inclusions, "other materials inside the discrete zone, later ones over earlier ones: particles whose centres lie in their regions, and in a packing from a file those whose material is their number, from 1", declare_inclusion);
   declare_zone(s.section("discrete_zone", "where the body may break"), scene.zone);
   s.section("far_field", scene.far_field, "none", "finite elements around the discrete zone; none: the pure discrete reference of the scene", declare_far_field).required_unless("extent is all");

@@ -7,6 +7,7 @@
 namespace ligament::program
 {
 /// Declares all keys, bound to the scene, whose present values count as the defaults. A new key is
-/// one line here and one member in scene.h.
-void declare_scene(core::ParameterSection &section, Scene &scene);
+/// one line here and one member in scene.h. Where the particles may be atoms no key of the material
+/// is required.
+void declare_scene(core::ParameterSection &section, Scene &scene, bool may_be_atoms = true);
 } // namespace ligament::program

@@ -52,12 +52,12 @@ struct CoupledBody
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
                            Reference &reference,
-                           const ForceMaker<dim> &make_force = make_many_body_force<dim>);
+                           const ForceMaker<dim> &make_force = make_zone_force<dim>);
 
 /// Where nothing is known.
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
-                           const ForceMaker<dim> &make_force = make_many_body_force<dim>)
+                           const ForceMaker<dim> &make_force = make_zone_force<dim>)
 {
   Reference reference;
   return make_body(scene, log, timers, reference, make_force);

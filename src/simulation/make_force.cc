@@ -3,6 +3,7 @@
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
+#include "src/scene/atoms.h"
 #include "src/scene/fracture_energy.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
@@ -229,6 +230,8 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
 template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene)
 {
+  if (scene.atoms)
+    return crystal_of<dim>(scene).elastic_constants();
   return material_of(scene.material, scene).elastic_constants<dim>();
 }
 
@@ -246,8 +249,25 @@ make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
                                                    fracture_of<dim>(scene, figures, log));
 }
 
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_zone_force(const Scene &scene, packings::Packing<dim> packing,
+                const std::vector<core::BoundaryLoad<dim>> &loads,
+                std::map<std::string, Figure> &figures, core::Log &log)
+{
+  const ForceMaker<dim> make =
+      scene.atoms ? make_atom_force<dim> : make_many_body_force<dim>;
+  return make(scene, std::move(packing), loads, figures, log);
+}
+
 template particles::ElasticConstants<2> elastic_constants_of(const Scene &);
 template particles::ElasticConstants<3> elastic_constants_of(const Scene &);
+template std::unique_ptr<particles::ParticleForce<2>>
+make_zone_force(const Scene &, packings::Packing<2>, const std::vector<core::BoundaryLoad<2>> &,
+                std::map<std::string, Figure> &, core::Log &);
+template std::unique_ptr<particles::ParticleForce<3>>
+make_zone_force(const Scene &, packings::Packing<3>, const std::vector<core::BoundaryLoad<3>> &,
+                std::map<std::string, Figure> &, core::Log &);
 template std::unique_ptr<particles::ParticleForce<2>>
 make_many_body_force(const Scene &, packings::Packing<2>,
                      const std::vector<core::BoundaryLoad<2>> &, std::map<std::string, Figure> &,

@@ -23,14 +23,32 @@ using ForceMaker = std::function<std::unique_ptr<particles::ParticleForce<dim>>(
     const Scene &, packings::Packing<dim>, const std::vector<core::BoundaryLoad<dim>> &loads,
     std::map<std::string, Figure> &figures, core::Log &)>;
 
-/// The default: the many-body law of discrete elements.
+/// The default: the law that the scene asks for.
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_zone_force(const Scene &scene, packings::Packing<dim> packing,
+                const std::vector<core::BoundaryLoad<dim>> &loads,
+                std::map<std::string, Figure> &figures, core::Log &log);
+
+/// The many-body law of discrete elements.
 template <int dim>
 std::unique_ptr<particles::ParticleForce<dim>>
 make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
                      const std::vector<core::BoundaryLoad<dim>> &loads,
                      std::map<std::string, Figure> &figures, core::Log &log);
 
-/// Of the solid that particles and far field share: the scene's /material.
+/// The embedded-atom law of a crystal; prints what the crystal is.
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_atom_force(const Scene &scene, packings::Packing<dim> packing,
+                const std::vector<core::BoundaryLoad<dim>> &loads,
+                std::map<std::string, Figure> &figures, core::Log &log);
+
+/// The crystal of a scene with atoms, cut to its specimen and zone.
+template <int dim>
+packings::Packing<dim> make_crystal_packing(const Scene &scene);
+
+/// Of the solid that particles and far field share: the scene's /material, or its crystal.
 template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene);
 } // namespace ligament::program

@@ -6,6 +6,7 @@
 #include "packings/packing_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/make_force.h"
 
 #include <fmt/format.h>
 
@@ -65,6 +66,14 @@ void set_specimen(const Scene &scene, packings::SpecimenParameters<dim> &p)
 } // namespace
 
 template <int dim>
+packings::SpecimenParameters<dim> packed_specimen_of(const Scene &scene)
+{
+  packings::SpecimenParameters<dim> p;
+  set_specimen<dim>(scene, p);
+  return p;
+}
+
+template <int dim>
 packings::LatticeParameters<dim> lattice_of(const Scene &scene)
 {
   packings::LatticeParameters<dim> p;
@@ -101,6 +110,8 @@ double mean_cell_volume(const Scene &scene)
     return d * d * d;
   case PackingKind::fcc:
     return d * d * d / std::sqrt(2.);
+  case PackingKind::bcc:
+    return 4 / (3 * std::sqrt(3.)) * d * d * d;
   case PackingKind::random:
   case PackingKind::file:
     break;
@@ -287,6 +298,10 @@ template <int dim>
 PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log)
 {
   PackedZone<dim> zone;
+  if (scene.atoms) {
+    zone.packing = make_crystal_packing<dim>(scene);
+    return zone;
+  }
   if (!scene.zone.is_irregular())
     zone.packing = packings::make_lattice_packing<dim>(lattice_of<dim>(scene));
   else {
@@ -303,6 +318,8 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
   return zone;
 }
 
+template packings::SpecimenParameters<2> packed_specimen_of(const Scene &);
+template packings::SpecimenParameters<3> packed_specimen_of(const Scene &);
 template packings::LatticeParameters<2> lattice_of(const Scene &);
 template packings::LatticeParameters<3> lattice_of(const Scene &);
 template packings::RandomParameters<2> random_packing_of(const Scene &);

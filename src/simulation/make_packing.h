@@ -24,6 +24,10 @@ struct PackedZone
 template <int dim>
 PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log);
 
+/// The specimen and the zone as packings see them.
+template <int dim>
+packings::SpecimenParameters<dim> packed_specimen_of(const Scene &scene);
+
 /// What a packing of the scene's kind is made from.
 template <int dim>
 packings::LatticeParameters<dim> lattice_of(const Scene &scene);

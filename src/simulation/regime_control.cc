@@ -26,11 +26,15 @@ constexpr double largest_corotated_strain = 0.01;
 
 // The laws of both models are meant for strains up to here.
 constexpr double largest_strain = 0.1;
+
+// Bonds between atoms are 2 to 3 % stiffer or softer for each per cent of strain, of which an
+// overlap without finite strains knows nothing.
+constexpr double largest_linear_strain = 0.03;
 } // namespace
 
 template <int dim>
 RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
-    : can_turn_(body.coupler->can_turn()),
+    : can_turn_(body.coupler->can_turn()), can_strain_(body.coupler->can_strain()),
       automatic_(choice == RegimeChoice::automatic && can_turn_)
 {
   if (!body.far)
@@ -53,7 +57,7 @@ void RegimeControl<dim>::set(Regime regime, CoupledBody<dim> &body)
 template <int dim>
 Regime RegimeControl<dim>::needed() const
 {
-  if (near_.bending > change_at || near_.strain > largest_corotated_strain)
+  if (can_strain_ && (near_.bending > change_at || near_.strain > largest_corotated_strain))
     return Regime::nonlinear;
   return std::max(near_.rotation, far_.rotation) > change_at ? Regime::corotated : Regime::linear;
 }
@@ -63,7 +67,7 @@ std::optional<std::string> RegimeControl<dim>::excess() const
 {
   const double rotation = std::max(near_.rotation, far_.rotation);
   const double strain = std::max(near_.strain, far_.strain);
-  if (strain > largest_strain)
+  if (strain > (can_strain_ ? largest_strain : largest_linear_strain))
     return fmt::format("overlap or far field is strained by {:.1f} %, more than its law is for; "
                        "make /discrete_zone/region larger or end the run earlier",
                        100 * strain);
@@ -75,9 +79,12 @@ std::optional<std::string> RegimeControl<dim>::excess() const
                                  : "energy-weighted schemes have no other: hold the specimen "
                                    "against rotation or end the run earlier");
   if (regime_ == Regime::corotated && near_.bending > limit)
-    return fmt::format("the overlap bends by {:.2f} degrees, more than one rotation carries; set "
-                       "/coupling/regime to \"automatic\" or \"nonlinear\"",
-                       near_.bending / degree);
+    return fmt::format(
+        "the overlap bends by {:.2f} degrees, more than one rotation carries; {}",
+        near_.bending / degree,
+        can_strain_ ? "set /coupling/regime to \"automatic\" or \"nonlinear\""
+                    : "overlaps of atoms know no more: make /discrete_zone/region larger or end "
+                      "the run earlier");
   return {};
 }
 

@@ -34,7 +34,8 @@ private:
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
-  bool can_turn_; // else the coupler is linear
+  bool can_turn_;   // else the coupler is linear
+  bool can_strain_; // else it is linear or turns
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
   coupling::NearMotion near_; // at the last look

@@ -23,7 +23,7 @@ public:
   /// goes on from it: the files that grow have been cut back to its positions.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
              bool draws_pictures = true, const Checkpoint *from = nullptr,
-             const ForceMaker<dim> &make_force = make_many_body_force<dim>);
+             const ForceMaker<dim> &make_force = make_zone_force<dim>);
 
   /// From now on the run writes checkpoints: by the interval of the scene, and where it ends before
   /// its time. `resolved`: the scene.

@@ -64,12 +64,12 @@ TEST(Crystal, EveryDisplacementGradientIsCarriedUnderStress)
 
 TEST(Crystal, EveryDisplacementGradientIsCarriedIn3D)
 {
-  for (const double turn : {0., 0.4})
-    expect_every_gradient(crystal<3>(turn), round_off);
+  expect_every_gradient(crystal<3>(0.4), round_off);
 }
 
-TEST(Crystal, EveryDisplacementGradientIsCarriedUnderStressIn3D)
+TEST(SlowCrystal, EveryDisplacementGradientIsCarriedIn3D)
 {
+  expect_every_gradient(crystal<3>(0), round_off);
   for (const double strain : {0.02, -0.02})
     expect_every_gradient(crystal<3>(0.4, strain), 1e-12);
 }

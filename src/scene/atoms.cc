@@ -1,0 +1,255 @@
+#include "src/scene/atoms.h"
+
+#include "core/keyed_error.h"
+#include "md/analytic.h"
+#include "md/atomic_units.h"
+#include "md/table_file.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace ligament::program
+{
+namespace
+{
+const std::string section = "/atoms";
+
+md::Potential potential_of(const AtomsParameters &a)
+{
+  const md::Species species = {a.species.empty() ? "A" : a.species, a.mass};
+  const double begin = a.taper_begin, end = a.cutoff;
+  switch (a.potential) {
+  case AtomPotential::zhou:
+    return md::zhou_johnson_wadley({a.species});
+  case AtomPotential::plane_crystal:
+    return md::plane_crystal(species, a.energy, a.distance);
+  case AtomPotential::lennard_jones:
+    return md::lennard_jones(species, a.energy, a.distance,
+                             {begin > 0 ? begin : 2.2 * a.distance,
+                              end > 0 ? end : 2.5 * a.distance});
+  case AtomPotential::morse:
+    return md::morse(species, a.energy, a.distance, a.decay,
+                     {begin > 0 ? begin : 1.6 * a.distance, end > 0 ? end : 2.0 * a.distance});
+  case AtomPotential::setfl:
+    return md::read_setfl(a.file, {a.species});
+  case AtomPotential::setfl_fs:
+    return md::read_setfl_fs(a.file, {a.species});
+  case AtomPotential::funcfl:
+    break;
+  }
+  return md::read_funcfl({a.file});
+}
+
+bool is_zero(const Point &p)
+{
+  return p[0] == 0 && p[1] == 0 && p[2] == 0;
+}
+
+template <int dim>
+md::Matrix<dim> orientation_of(const Scene &scene)
+{
+  const Point &turn = scene.zone.orientation;
+  if constexpr (dim == 2)
+    return Eigen::Rotation2Dd(turn[0]).toRotationMatrix();
+  else {
+    const Vector<3> vector(turn.data());
+    const double angle = vector.norm();
+    const md::Matrix<3> turned =
+        Eigen::AngleAxisd(angle, angle > 0 ? Vector<3>(vector / angle) : Vector<3>::UnitZ())
+            .toRotationMatrix();
+    const AtomsParameters &a = *scene.atoms;
+    if (is_zero(a.along_x) && is_zero(a.along_y))
+      return turned;
+    return turned * md::orientation_of(Vector<3>(a.along_x.data()), Vector<3>(a.along_y.data()));
+  }
+}
+
+md::CrystalKind kind_of(const Scene &scene)
+{
+  if (scene.dimension == 2)
+    return md::CrystalKind::triangular;
+  return scene.zone.packing == PackingKind::bcc ? md::CrystalKind::bcc : md::CrystalKind::fcc;
+}
+
+/// Shortest way along an axis after which the crystal repeats itself; 0 where it is longer than
+/// `most`.
+template <int dim>
+double period_along(const md::Crystal<dim> &crystal, int axis, double most)
+{
+  const md::Matrix<dim> &basis = crystal.basis();
+  double shortest = 0;
+  const int reach = 24;
+  Eigen::Matrix<int, dim, 1> k = Eigen::Matrix<int, dim, 1>::Constant(-reach);
+  while (k[dim - 1] <= reach) {
+    const Vector<dim> r = basis * k.template cast<double>();
+    const double along = r[axis];
+    if (along > 0.5 * crystal.spacing() && along <= most * (1 + 1e-9) &&
+        (r - along * Vector<dim>::Unit(axis)).norm() < 1e-9 * crystal.spacing() * reach &&
+        (shortest == 0 || along < shortest))
+      shortest = along;
+    ++k[0];
+    for (int c = 0; c + 1 < dim && k[c] > reach; ++c) {
+      k[c] = -reach;
+      ++k[c + 1];
+    }
+  }
+  return shortest;
+}
+
+template <int dim>
+void fit_periods(const md::Crystal<dim> &crystal, Scene &scene)
+{
+  for (int c = 0; c < dim; ++c) {
+    if (!scene.specimen.is_periodic(c))
+      continue;
+    double &size = scene.specimen.size[c];
+    const double period = period_along<dim>(crystal, c, size * 1.5);
+    if (period == 0)
+      throw core::KeyedError(
+          fmt::format("/specimen/periodic"),
+          fmt::format("the crystal does not repeat itself along {} within the specimen", "xyz"[c]),
+          fmt::format("the specimen is {:.6g} m long there", size),
+          "make it longer, or give the crystal a simpler orientation");
+    size = std::max(1., std::round(size / period)) * period;
+  }
+}
+
+template <int dim>
+void derive(Scene &scene)
+{
+  const auto crystal = crystal_of<dim>(scene);
+  const auto constants = crystal.elastic_constants();
+  scene.zone.spacing = crystal.spacing();
+  scene.material = MaterialParameters();
+  scene.material.youngs_modulus = constants.youngs_modulus;
+  scene.material.poissons_ratio = constants.poissons_ratio;
+  scene.material.density = constants.density;
+  fit_periods<dim>(crystal, scene);
+}
+
+/// Keys that its potential reads, and others that it doesn't.
+class KeyCheck
+{
+public:
+  KeyCheck(const AtomsParameters &a, Findings &f)
+      : f_(f), word_(word_of(a.potential)),
+        is_table_(a.potential == AtomPotential::setfl || a.potential == AtomPotential::setfl_fs ||
+                  a.potential == AtomPotential::funcfl),
+        is_formula_(!is_table_ && a.potential != AtomPotential::zhou),
+        is_pair_(a.potential == AtomPotential::lennard_jones ||
+                 a.potential == AtomPotential::morse)
+  {
+    key("species", !is_formula_ && a.potential != AtomPotential::funcfl, !a.species.empty(),
+        a.potential != AtomPotential::funcfl);
+    key("file", is_table_, !a.file.empty(), is_table_);
+    key("energy", is_formula_, a.energy > 0, is_formula_);
+    key("distance", is_formula_, a.distance > 0, is_formula_);
+    key("mass", is_formula_, a.mass > 0, is_formula_);
+    key("decay", a.potential == AtomPotential::morse, a.decay > 0,
+        a.potential == AtomPotential::morse);
+    key("taper_begin", false, a.taper_begin > 0, is_pair_);
+    key("cutoff", false, a.cutoff > 0, is_pair_);
+  }
+
+private:
+  void key(const std::string &name, bool is_needed, bool is_there, bool has_meaning)
+  {
+    const std::string key = section + "/" + name;
+    if (!f_.sound({key}))
+      return;
+    if (is_needed && !is_there)
+      f_.error(key, fmt::format("missing key \"{}\" in {}", name, section),
+               fmt::format("the potential \"{}\" needs it", word_), fmt::format("add \"{}\"", name));
+    else if (!has_meaning && is_there)
+      f_.error(key, fmt::format("\"{}\" in {} has no meaning for the potential \"{}\"", name,
+                                section, word_),
+               "it follows from the potential", "remove it");
+  }
+
+  Findings &f_;
+  std::string word_;
+  bool is_table_, is_formula_, is_pair_;
+};
+
+void check_lattice(const Scene &scene, Findings &f)
+{
+  const std::string packing = "/discrete_zone/packing", spacing = "/discrete_zone/spacing";
+  if (f.sound_and_given({packing})) {
+    const PackingKind kind = *scene.zone.packing;
+    const bool fits = scene.dimension == 2
+                          ? kind == PackingKind::hexagonal
+                          : kind == PackingKind::fcc || kind == PackingKind::bcc;
+    if (!fits)
+      f.error(packing,
+              fmt::format("\"packing\" in /discrete_zone is \"{}\" for atoms in {}D", word_of(kind),
+                          scene.dimension),
+              "crystals are hexagonal in 2D, fcc or bcc in 3D",
+              scene.dimension == 2 ? "choose \"hexagonal\"" : "choose \"fcc\" or \"bcc\"");
+  }
+  if (f.sound_and_given({spacing}))
+    f.error(spacing, "\"spacing\" in /discrete_zone of atoms",
+            "it follows from the potential: that of the crystal without stress", "remove it");
+  if (scene.dimension == 2 && !f.given("/specimen/thickness") && f.sound({"/specimen/thickness"}))
+    f.error("/specimen/thickness", "missing key \"thickness\" in /specimen of a plane crystal",
+            "its stresses and tractions are forces over length and thickness",
+            "add one, as a rule the spacing of the atoms");
+  const AtomsParameters &a = *scene.atoms;
+  if (is_zero(a.along_x) != is_zero(a.along_y) && f.sound({section}))
+    f.error(section + (is_zero(a.along_x) ? "/along_x" : "/along_y"),
+            "only one of \"along_x\" and \"along_y\" in /atoms", "two directions say how it lies",
+            "give both, or none");
+}
+} // namespace
+
+template <int dim>
+md::Crystal<dim> crystal_of(const Scene &scene)
+{
+  const AtomsParameters &a = *scene.atoms;
+  md::CrystalParameters<dim> p;
+  p.kind = kind_of(scene);
+  const bool has_file = !a.file.empty();
+  const md::Potential potential =
+      core::at_key(has_file ? section + "/file" : section, "correct it or its path",
+                   [&] { return potential_of(a); });
+  p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
+                               [&] { return orientation_of<dim>(scene); });
+  p.thickness = dim == 2 ? scene.specimen.thickness : 1;
+  return core::at_key(section + "/potential", "choose another potential or packing", [&] {
+    return md::Crystal<dim>(potential, p);
+  });
+}
+
+void resolve_atoms(Scene &scene, Findings *f)
+{
+  if (!scene.atoms)
+    return;
+  if (f) {
+    if (!f->sound({section, "/discrete_zone/packing", "/discrete_zone/orientation", "/dimension",
+                   "/specimen"}))
+      return;
+    const KeyCheck keys(*scene.atoms, *f);
+    check_lattice(scene, *f);
+    if (!f->sound({section, "/discrete_zone/packing", "/discrete_zone/spacing",
+                   "/specimen/thickness"}) ||
+        (!scene.zone.packing && scene.zone.extent != DiscreteZone::Extent::none))
+      return;
+  }
+  try {
+    scene.dimension == 2 ? derive<2>(scene) : derive<3>(scene);
+  } catch (const core::KeyedError &error) {
+    if (!f)
+      throw;
+    f->error(error.key, error.message, error.reason, error.remedy);
+    return;
+  }
+  if (f)
+    for (const char *key : {"/discrete_zone/spacing", "/material/youngs_modulus",
+                            "/material/poissons_ratio", "/material/density"})
+      f->derive(key);
+}
+
+template md::Crystal<2> crystal_of(const Scene &);
+template md::Crystal<3> crystal_of(const Scene &);
+} // namespace ligament::program

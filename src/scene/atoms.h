@@ -1,0 +1,21 @@
+// A scene whose particles are atoms: the crystal that it means, and what follows from it.
+#pragma once
+
+#include "md/crystal.h"
+#include "src/scene/findings.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// The crystal of a scene with "atoms". Throws core::KeyedError where there is none.
+template <int dim>
+md::Crystal<dim> crystal_of(const Scene &scene);
+
+/// Where the particles are atoms: checks the keys of the crystal and sets what follows from it, the
+/// spacing, the constants of the material, and the lengths of periodic sides, which become whole
+/// periods of the lattice. Without findings the scene is known to be right.
+void resolve_atoms(Scene &scene, Findings *findings);
+
+/// What a scene of atoms can't have beside them.
+void check_atoms(const Scene &scene, Findings &findings);
+} // namespace ligament::program

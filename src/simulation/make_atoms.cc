@@ -1,0 +1,74 @@
+// Atoms from their scene: the crystal, cut to shape, and its force.
+#include "md/atom_force.h"
+#include "md/crystal_packing.h"
+#include "src/scene/atoms.h"
+#include "src/simulation/make_force.h"
+#include "src/simulation/make_packing.h"
+
+namespace ligament::program
+{
+namespace
+{
+/// Where an atom lies: so that planes of low indices through the middle of the specimen pass
+/// between atoms.
+template <int dim>
+Vector<dim> anchor_of(const Scene &scene, const md::Crystal<dim> &crystal)
+{
+  const double share = crystal.parameters().kind == md::CrystalKind::fcc ? 0.25 : 0.5;
+  return to_vector<dim>(scene.specimen.centre) +
+         share * crystal.basis() * Vector<dim>::Ones();
+}
+} // namespace
+
+template <int dim>
+packings::Packing<dim> make_crystal_packing(const Scene &scene)
+{
+  const auto crystal = crystal_of<dim>(scene);
+  const auto specimen = packed_specimen_of<dim>(scene);
+  const packings::SpecimenShape<dim> body(specimen);
+  md::CrystalShape<dim> shape;
+  shape.specimen_lower = specimen.lower;
+  shape.specimen_upper = specimen.upper;
+  shape.lower = specimen.lower.cwiseMax(specimen.zone_lower);
+  shape.upper = specimen.upper.cwiseMin(specimen.zone_upper);
+  shape.anchor = anchor_of<dim>(scene, crystal);
+  shape.periodic = specimen.periodic;
+  const auto &parts = specimen.zone_parts;
+  shape.keep = [&](const Vector<dim> &x) {
+    return body.distance(x) > -1e-9 * crystal.spacing() &&
+           (parts.boxes.empty() || parts.distance(x) > 0);
+  };
+  packings::Packing<dim> packing = md::cut_crystal<dim>(crystal, shape);
+  packing.cuts = body.cracks;
+  return packing;
+}
+
+template <int dim>
+std::unique_ptr<particles::ParticleForce<dim>>
+make_atom_force(const Scene &scene, packings::Packing<dim> packing,
+                const std::vector<core::BoundaryLoad<dim>> &loads,
+                std::map<std::string, Figure> &figures, core::Log &log)
+{
+  const auto crystal = crystal_of<dim>(scene);
+  const auto c = crystal.elastic_constants().stiffness;
+  figures["spacing"] = {crystal.spacing(), "m"};
+  figures["lattice_parameter"] = {crystal.lattice_parameter(), "m"};
+  figures["C11"] = {c(0, 0), "Pa"};
+  figures["C12"] = {c(0, 1), "Pa"};
+  figures[dim == 2 ? "C33" : "C44"] = {c(dim, dim), "Pa"};
+  log.info("crystal: spacing {:.6g} m, range {:.4g} m, cohesive energy {:.4g} J, C11, C12, {} = "
+           "{:.4g}, {:.4g}, {:.4g} Pa along x, y",
+           crystal.spacing(), crystal.potential().cutoff(), crystal.cohesive_energy(),
+           dim == 2 ? "C33" : "C44", c(0, 0), c(0, 1), c(dim, dim));
+  return std::make_unique<md::AtomForce<dim>>(crystal, packing, md::AtomForceOptions(), loads);
+}
+
+template packings::Packing<2> make_crystal_packing(const Scene &);
+template packings::Packing<3> make_crystal_packing(const Scene &);
+template std::unique_ptr<particles::ParticleForce<2>>
+make_atom_force(const Scene &, packings::Packing<2>, const std::vector<core::BoundaryLoad<2>> &,
+                std::map<std::string, Figure> &, core::Log &);
+template std::unique_ptr<particles::ParticleForce<3>>
+make_atom_force(const Scene &, packings::Packing<3>, const std::vector<core::BoundaryLoad<3>> &,
+                std::map<std::string, Figure> &, core::Log &);
+} // namespace ligament::program
