@@ -55,9 +55,8 @@ std::vector<int> AtomForce<dim>::open_particles(const Particles &atoms,
 {
   const double cutoff = body_.potential.cutoff();
   const auto &bonds = crystal_.half_bonds();
-  const auto whole = 2 * std::count_if(bonds.begin(), bonds.end(), [&](const Vector<dim> &b) {
-                       return b.norm() < cutoff;
-                     });
+  const auto whole = 2 * std::count_if(bonds.begin(), bonds.end(),
+                                       [&](const Vector<dim> &b) { return b.norm() < cutoff; });
   std::vector<int> n_neighbours(atoms.size(), 0);
   AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
     ++n_neighbours[b.i];

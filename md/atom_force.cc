@@ -39,8 +39,8 @@ template <int dim>
 AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
                           const AtomForceOptions &options,
                           const std::vector<core::BoundaryLoad<dim>> &loads)
-    : crystal_(crystal), body_(make_body(crystal, packing, options)),
-      reference_(packing.centre), kernel_(body_.potential),
+    : crystal_(crystal), body_(make_body(crystal, packing, options)), reference_(packing.centre),
+      kernel_(body_.potential),
       loads_(packing, crystal.elastic_constants().stiffness(0, 0) / crystal.spacing(), loads),
       list_(body_.potential.cutoff(), options.skin, packing.period)
 {
@@ -149,8 +149,8 @@ template <int dim>
 double AtomForce<dim>::potential_energy(const Particles &atoms) const
 {
   update_list(atoms);
-  const double bonds = list_is_reference_ ? sum(energy_changes(atoms))
-                                          : sum(energies(atoms)) - reference_energy_;
+  const double bonds =
+      list_is_reference_ ? sum(energy_changes(atoms)) : sum(energies(atoms)) - reference_energy_;
   return bonds + loads_.energy(atoms);
 }
 

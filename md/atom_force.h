@@ -17,7 +17,6 @@ struct AtomForceOptions
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
 };
 
-
 /// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as
 /// long as no atom has moved by half of the skin they are sums of differences, with all their
 /// digits.
@@ -69,6 +68,12 @@ public:
   /// Of the atoms' bonds, each half, over the reference volume: (M7). For small strains Cauchy's
   /// stress, in general Kirchhoff's.
   void stresses(const Particles &atoms, Components<n_strains<dim>> &stress) const override;
+  std::string symbol() const override
+  {
+    return crystal_.potential().species(crystal_.parameters().species).name;
+  }
+  /// Potential energy in J, centro-symmetry and coordination.
+  std::vector<particles::OwnField> own_fields(const Particles &atoms) const override;
   Vector<dim> reaction(int load) const override { return loads_.reaction(load); }
   double external_work() const override { return loads_.external_work(); }
   void reset_work() override { loads_.reset_work(); }

@@ -109,6 +109,16 @@ std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
   return numbers;
 }
 
+template <int dim>
+std::vector<particles::OwnField> AtomForce<dim>::own_fields(const Particles &atoms) const
+{
+  update_list(atoms);
+  const std::vector<int> numbers = coordination(atoms);
+  return {{"potential_energy", energies(atoms)},
+          {"centro_symmetry", centro_symmetry(atoms)},
+          {"coordination", {numbers.begin(), numbers.end()}}};
+}
+
 // The list decides about the order of sums: it is built anew where it was built.
 template <int dim>
 void AtomForce<dim>::save(core::State &state, const core::Names &names, const Particles &) const
@@ -139,6 +149,7 @@ void AtomForce<dim>::load(const core::State &state, const core::Names &names,
   template void AtomForce<dim>::stresses(const Particles &, Components<n_strains<dim>> &) const;   \
   template std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &) const;           \
   template std::vector<int> AtomForce<dim>::coordination(const Particles &) const;                 \
+  template std::vector<particles::OwnField> AtomForce<dim>::own_fields(const Particles &) const;   \
   template void AtomForce<dim>::for_each_face(                                                     \
       const Particles &, const std::function<void(const particles::FaceView<dim> &)> &,            \
       const std::vector<int> *) const;                                                             \

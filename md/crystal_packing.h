@@ -26,8 +26,8 @@ struct CrystalShape
 /// gap), rows in the order of a space-filling curve; names, order and positions depend on lattice
 /// and anchor alone. Every atom has the volume of the crystal; there are no faces between atoms.
 /// The atoms within one range of a side of the specimen share its area evenly as boundary faces.
-/// Throws core::InputError for an empty crystal, one of more than 2^31 atoms and sides that are not a
-/// period of it.
+/// Throws core::InputError for an empty crystal, one of more than 2^31 atoms and sides that are not
+/// a period of it.
 template <int dim>
 packings::Packing<dim> cut_crystal(const Crystal<dim> &crystal, const CrystalShape<dim> &shape);
 

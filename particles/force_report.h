@@ -4,6 +4,7 @@
 #include "core/skipped_part.h"
 #include "particles/particles.h"
 
+#include <string>
 #include <vector>
 
 namespace ligament::particles
@@ -38,6 +39,13 @@ enum class Watch : char
   exempt
 };
 
+/// A number of each particle that only some forces know, by its name in the output's table.
+struct OwnField
+{
+  std::string name;
+  std::vector<double> values;
+};
+
 /// Energies in J that have left motion and potential so far.
 struct ForceLosses
 {
@@ -46,7 +54,7 @@ struct ForceLosses
   double plastic = 0; // taken by flow
   /// By which the leap-frog's invariant fell because forces jumped, theory.md (E10).
   double breaking_step_error = 0;
-  double cohesive = 0; // opened faces that soften
+  double cohesive = 0;  // opened faces that soften
   double hardening = 0; // the part of `plastic` that hardening stores; the rest is heat
   double viscous = 0;
   double rebonding = 0; // lost by faces as they were bonded again
@@ -137,6 +145,11 @@ public:
 
   /// Number of a particle's material; 0: the one that it shares with the far field.
   virtual int material(int /*particle*/) const { return 0; }
+
+  /// Chemical symbol of what the particles are; empty: no atoms.
+  virtual std::string symbol() const { return ""; }
+  /// Of all particles in their present state.
+  virtual std::vector<OwnField> own_fields(const Particles<dim> &) const { return {}; }
 
   /// It wakes what it acts on, see ParticleForce::set_rest: blocks of particles may rest.
   virtual bool can_rest() const { return false; }

@@ -10,6 +10,7 @@ namespace ligament::program
 const std::vector<FieldInfo> &field_table()
 {
   using Kind = Field::Kind;
+  using Only = FieldInfo::Only;
   constexpr auto number = Field::Storage::float32, name = Field::Storage::int64;
   static const std::vector<FieldInfo> table = {
       {"displacement", "m", Kind::vector, number, true, true, false},
@@ -23,8 +24,11 @@ const std::vector<FieldInfo> &field_table()
       {"softened", "1", Kind::scalar, number, false, false, false}, // where faces soften
       {"opening", "m", Kind::scalar, number, false, false, false},
       {"broken_bond_share", "1", Kind::scalar, number, true, false, false},
-      {"plastic_strain", "1", Kind::scalar, number, true, false, false, true},
-      {"inelastic_strain", "1", Kind::tensor, number, true, false, false, true}};
+      {"plastic_strain", "1", Kind::scalar, number, true, false, false, Only::where_it_flows},
+      {"inelastic_strain", "1", Kind::tensor, number, true, false, false, Only::where_it_flows},
+      {"potential_energy", "J", Kind::scalar, number, true, false, false, Only::of_atoms},
+      {"centro_symmetry", "1", Kind::scalar, number, true, false, false, Only::of_atoms},
+      {"coordination", "1", Kind::scalar, number, true, false, false, Only::of_atoms}};
   return table;
 }
 

@@ -37,6 +37,7 @@ struct ParticleFields
 {
   std::vector<double> reference; // m
   std::vector<Field> fields;
+  std::string symbol = {}; // chemical, of atoms; else empty
 
   std::size_t size() const { return reference.size() / 3; }
 };
@@ -94,7 +95,13 @@ struct FieldInfo
   Field::Kind kind;
   Field::Storage storage;
   bool on_particles, on_nodes, on_cells;
-  bool of_flow = false; // only where a material flows
+  enum class Only
+  {
+    anywhere,
+    where_it_flows, // a material
+    of_atoms
+  };
+  Only only = Only::anywhere;
 };
 const std::vector<FieldInfo> &field_table();
 

@@ -3,8 +3,9 @@
 #include "core/check.h"
 #include "core/files.h"
 #include "src/output/format.h"
+#include "src/output/xyz.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -264,6 +265,9 @@ void FieldSeries::write(const BodyState &state)
   const StateFiles files = FieldSeries::files(state, name);
   if (!files.particles.empty()) {
     write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
+    if (!state.particles.symbol.empty())
+      write_atoms_xyz(fmt::format("{}/fields/atoms_{}.xyz", folder_.path, name), state.particles,
+                      state.time);
     // Also while nothing is broken: a part must exist at every time or at none.
     write_broken_bonds_vtp(folder_.path + "/" + bonds_file(name), state.bonds, dimension_);
   }

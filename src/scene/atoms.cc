@@ -26,9 +26,9 @@ md::Potential potential_of(const AtomsParameters &a)
   case AtomPotential::plane_crystal:
     return md::plane_crystal(species, a.energy, a.distance);
   case AtomPotential::lennard_jones:
-    return md::lennard_jones(species, a.energy, a.distance,
-                             {begin > 0 ? begin : 2.2 * a.distance,
-                              end > 0 ? end : 2.5 * a.distance});
+    return md::lennard_jones(
+        species, a.energy, a.distance,
+        {begin > 0 ? begin : 2.2 * a.distance, end > 0 ? end : 2.5 * a.distance});
   case AtomPotential::morse:
     return md::morse(species, a.energy, a.distance, a.decay,
                      {begin > 0 ? begin : 1.6 * a.distance, end > 0 ? end : 2.0 * a.distance});
@@ -138,8 +138,7 @@ public:
         is_table_(a.potential == AtomPotential::setfl || a.potential == AtomPotential::setfl_fs ||
                   a.potential == AtomPotential::funcfl),
         is_formula_(!is_table_ && a.potential != AtomPotential::zhou),
-        is_pair_(a.potential == AtomPotential::lennard_jones ||
-                 a.potential == AtomPotential::morse)
+        is_pair_(a.potential == AtomPotential::lennard_jones || a.potential == AtomPotential::morse)
   {
     key("species", !is_formula_ && a.potential != AtomPotential::funcfl, !a.species.empty(),
         a.potential != AtomPotential::funcfl);
@@ -161,11 +160,13 @@ private:
       return;
     if (is_needed && !is_there)
       f_.error(key, fmt::format("missing key \"{}\" in {}", name, section),
-               fmt::format("the potential \"{}\" needs it", word_), fmt::format("add \"{}\"", name));
+               fmt::format("the potential \"{}\" needs it", word_),
+               fmt::format("add \"{}\"", name));
     else if (!has_meaning && is_there)
-      f_.error(key, fmt::format("\"{}\" in {} has no meaning for the potential \"{}\"", name,
-                                section, word_),
-               "it follows from the potential", "remove it");
+      f_.error(
+          key,
+          fmt::format("\"{}\" in {} has no meaning for the potential \"{}\"", name, section, word_),
+          "it follows from the potential", "remove it");
   }
 
   Findings &f_;
@@ -178,9 +179,8 @@ void check_lattice(const Scene &scene, Findings &f)
   const std::string packing = "/discrete_zone/packing", spacing = "/discrete_zone/spacing";
   if (f.sound_and_given({packing})) {
     const PackingKind kind = *scene.zone.packing;
-    const bool fits = scene.dimension == 2
-                          ? kind == PackingKind::hexagonal
-                          : kind == PackingKind::fcc || kind == PackingKind::bcc;
+    const bool fits = scene.dimension == 2 ? kind == PackingKind::hexagonal
+                                           : kind == PackingKind::fcc || kind == PackingKind::bcc;
     if (!fits)
       f.error(packing,
               fmt::format("\"packing\" in /discrete_zone is \"{}\" for atoms in {}D", word_of(kind),
@@ -216,9 +216,8 @@ md::Crystal<dim> crystal_of(const Scene &scene)
   p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
                                [&] { return orientation_of<dim>(scene); });
   p.thickness = dim == 2 ? scene.specimen.thickness : 1;
-  return core::at_key(section + "/potential", "choose another potential or packing", [&] {
-    return md::Crystal<dim>(potential, p);
-  });
+  return core::at_key(section + "/potential", "choose another potential or packing",
+                      [&] { return md::Crystal<dim>(potential, p); });
 }
 
 void resolve_atoms(Scene &scene, Findings *f)
@@ -231,8 +230,8 @@ void resolve_atoms(Scene &scene, Findings *f)
       return;
     const KeyCheck keys(*scene.atoms, *f);
     check_lattice(scene, *f);
-    if (!f->sound({section, "/discrete_zone/packing", "/discrete_zone/spacing",
-                   "/specimen/thickness"}) ||
+    if (!f->sound(
+            {section, "/discrete_zone/packing", "/discrete_zone/spacing", "/specimen/thickness"}) ||
         (!scene.zone.packing && scene.zone.extent != DiscreteZone::Extent::none))
       return;
   }

@@ -16,8 +16,8 @@ void refuse_other_laws(const Scene &scene, Findings &f)
       f.error(key, fmt::format("\"{}\" beside \"atoms\"", key.substr(key.rfind('/') + 1)), reason,
               "remove it, or remove \"atoms\"");
   };
-  for (const char *key : {"/material/fracture", "/material/plasticity", "/material/viscosity",
-                          "/material/friction"})
+  for (const char *key :
+       {"/material/fracture", "/material/plasticity", "/material/viscosity", "/material/friction"})
     refuse(key, "atoms bear and break as their potential says");
   if (!scene.inclusions.empty())
     refuse("/inclusions", "a crystal is of one kind of atoms");
@@ -55,11 +55,11 @@ void refuse_couplings(const Scene &scene, Findings &f)
             "the overlap of a crystal is linear or turns, it has no finite strains yet",
             "choose \"automatic\", and keep the strains of the overlap below one per cent");
   if (scene.time.has_phases() && f.sound({"/time/loading"}))
-    f.error("/time/loading",
-            fmt::format("\"loading\" in /time is \"{}\" beside \"atoms\"",
-                        word_of(scene.time.loading)),
-            "equilibria of atoms are not sought yet",
-            "choose \"dynamic\", with /damping for slow tests");
+    f.error(
+        "/time/loading",
+        fmt::format("\"loading\" in /time is \"{}\" beside \"atoms\"", word_of(scene.time.loading)),
+        "equilibria of atoms are not sought yet",
+        "choose \"dynamic\", with /damping for slow tests");
 }
 } // namespace
 

@@ -140,12 +140,14 @@ void check_time(const Scene &scene, Findings &f)
               "the fracture criterion is \"none\"", "");
 }
 
-bool is_of_flow(const std::string &word, int dimension)
+/// Where there is a field of this word.
+FieldInfo::Only only_of(const std::string &word, int dimension)
 {
   const std::string name = shown_field(word, dimension).field;
-  const auto &table = field_table();
-  return std::any_of(table.begin(), table.end(),
-                     [&](const FieldInfo &info) { return info.name == name && info.of_flow; });
+  for (const FieldInfo &info : field_table())
+    if (info.name == name)
+      return info.only;
+  return FieldInfo::Only::anywhere;
 }
 
 /// Components across the plane are 0 in 2D.
@@ -160,7 +162,10 @@ void check_pictures(const Scene &scene, Findings &f)
     if (std::find(words.begin(), words.end(), field) == words.end())
       f.error(key + "/field", fmt::format("there is no \"{}\" in 2D", field), "it is 0 everywhere",
               "use one of " + core::listed(words));
-    else if (!scene.flows() && is_of_flow(field, scene.dimension))
+    else if (!scene.atoms && only_of(field, scene.dimension) == FieldInfo::Only::of_atoms)
+      f.error(key + "/field", fmt::format("a picture of \"{}\"", field), "only atoms have one",
+              "give \"atoms\", or remove the picture");
+    else if (!scene.flows() && only_of(field, scene.dimension) == FieldInfo::Only::where_it_flows)
       f.error(key + "/field", fmt::format("a picture of \"{}\"", field), "no material flows",
               "give one its \"plasticity\", or remove the picture");
   }

@@ -153,9 +153,8 @@ inline const std::vector<std::string> &words(ToolKind)
 
 inline const std::vector<std::string> &words(PackingKind)
 {
-  static const std::vector<std::string> list = {"square", "hexagonal", "simple_cubic",
-                                                "fcc",    "bcc",       "random",
-                                                "file"};
+  static const std::vector<std::string> list = {"square", "hexagonal", "simple_cubic", "fcc",
+                                                "bcc",    "random",    "file"};
   return list;
 }
 

@@ -49,9 +49,8 @@ template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
-      has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()),
-      has_rebonding_(scene.rebonds()), gauges_(scene, body),
-      servos_(servo_targets(scene, body, gauges_)),
+      has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()), has_rebonding_(scene.rebonds()),
+      gauges_(scene, body), servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
 }

@@ -15,8 +15,7 @@ template <int dim>
 Vector<dim> anchor_of(const Scene &scene, const md::Crystal<dim> &crystal)
 {
   const double share = crystal.parameters().kind == md::CrystalKind::fcc ? 0.25 : 0.5;
-  return to_vector<dim>(scene.specimen.centre) +
-         share * crystal.basis() * Vector<dim>::Ones();
+  return to_vector<dim>(scene.specimen.centre) + share * crystal.basis() * Vector<dim>::Ones();
 }
 } // namespace
 

@@ -31,9 +31,8 @@ dem::Plasticity plasticity_of(const std::optional<PlasticityParameters> &p, doub
   if (p->law == PlasticityLaw::drucker_prager) {
     const double angle = *p->friction_angle;
     const double yield = p->shear_strength();
-    const double hardening = p->softening_energy
-                                 ? -yield * yield * width / (2 * *p->softening_energy)
-                                 : p->hardening;
+    const double hardening =
+        p->softening_energy ? -yield * yield * width / (2 * *p->softening_energy) : p->hardening;
     return dem::DruckerPragerFlow{yield, hardening, cone_slope(angle),
                                   cone_slope(p->dilatancy_angle)};
   }
@@ -255,8 +254,7 @@ make_zone_force(const Scene &scene, packings::Packing<dim> packing,
                 const std::vector<core::BoundaryLoad<dim>> &loads,
                 std::map<std::string, Figure> &figures, core::Log &log)
 {
-  const ForceMaker<dim> make =
-      scene.atoms ? make_atom_force<dim> : make_many_body_force<dim>;
+  const ForceMaker<dim> make = scene.atoms ? make_atom_force<dim> : make_many_body_force<dim>;
   return make(scene, std::move(packing), loads, figures, log);
 }
 

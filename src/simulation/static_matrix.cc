@@ -166,9 +166,7 @@ void for_each_own_cell(const fem::FemSolver<dim> &far, Visit &&visit)
 {
   const auto &mesh = far.mesh();
   const fem::CellCondenser<dim> condense(mesh);
-  const auto make = [&](int cell) {
-    return fem::cell_stiffness(mesh, cell, far.body());
-  };
+  const auto make = [&](int cell) { return fem::cell_stiffness(mesh, cell, far.body()); };
   std::map<std::array<double, dim>, fem::CellMatrix<dim>> of_size;
   const auto of_box = [&](int cell) -> const fem::CellMatrix<dim> & {
     std::array<double, dim> key;

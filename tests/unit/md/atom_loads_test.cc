@@ -83,7 +83,8 @@ TEST(AtomLoadsTest, ForcesReactionsAndWorkAreThoseOfSpringsAndTractions)
     return AtomForce<2>(body.crystal, body.packing, body.options, loads);
   };
   auto plain = make({});
-  auto force = make({load(1, Load::Kind::displacement, 0, pull), load(3, Load::Kind::traction, 1, t)});
+  auto force =
+      make({load(1, Load::Kind::displacement, 0, pull), load(3, Load::Kind::traction, 1, t)});
   body.disturb(0.02 * d);
   Particles &p = body.atoms;
   plain.compute(p, 2);
@@ -126,9 +127,9 @@ TEST(AtomLoadsTest, EnergyIsKept)
 {
   Body<2> body = specimen();
   const double d = body.crystal.spacing();
-  AtomForce<2> force(body.crystal, body.packing, body.options,
-                     {load(1, Load::Kind::displacement, 0, 0.02 * d),
-                      load(0, Load::Kind::displacement, 0, 0)});
+  AtomForce<2> force(
+      body.crystal, body.packing, body.options,
+      {load(1, Load::Kind::displacement, 0, 0.02 * d), load(0, Load::Kind::displacement, 0, 0)});
   Particles &p = body.atoms;
   const double dt = 0.02 * force.stable_step(p);
   for (auto *values : {&p.velocity, &p.displacement})
@@ -180,8 +181,7 @@ TEST(AtomLoadsTest, GoesOnFromItsState)
   const double d = body.crystal.spacing();
   const std::vector<Load> loads = {
       load(1, Load::Kind::displacement, 0, 0.05 * d),
-      load(3, Load::Kind::traction, 1,
-           1e-3 * body.crystal.elastic_constants().stiffness(0, 0))};
+      load(3, Load::Kind::traction, 1, 1e-3 * body.crystal.elastic_constants().stiffness(0, 0))};
   const auto make = [&] { return AtomForce<2>(body.crystal, body.packing, body.options, loads); };
   AtomForce<2> force = make();
   Particles &p = body.atoms;
