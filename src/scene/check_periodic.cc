@@ -119,11 +119,7 @@ public:
                    "would be joined without an overlap",
                    "let it reach both sides, or none");
         else if (scene_.far_field && spans(scene_, boxes[k].lower, boxes[k].upper, c))
-          f_.error(
-              key,
-              fmt::format("{} spans a periodic body with a far field along {}", key, axis_names[c]),
-              "its overlaps would go on through the joined sides, which they cannot yet",
-              "let it keep off these sides, or write \"far_field\": \"none\"");
+          overlap_through(c, key);
         else if (scene_.far_field && f_.sound({"/far_field", "/coupling"}))
           room(boxes[k], c, key);
       }
@@ -137,7 +133,7 @@ public:
   /// Whether the packing fits.
   void packing()
   {
-    if (scene_.zone.extent == Extent::none || !scene_.zone.packing ||
+    if (scene_.zone.extent == Extent::none || !scene_.zone.packing || scene_.atoms ||
         !f_.sound_and_given({"/discrete_zone/spacing"}) ||
         !f_.sound({"/discrete_zone", "/specimen"}))
       return;
@@ -160,6 +156,27 @@ private:
                            key, gap, axis_names[c]),
                fmt::format("the transition of the overlap and two cells need {:.4g} m", needed),
                "make the zone smaller, or lower /coupling/transition_cells");
+  }
+
+  /// The overlap goes on through the joined sides.
+  void overlap_through(int c, const std::string &key)
+  {
+    for (std::size_t l = 0; l < scene_.loads.size(); ++l)
+      if (const std::string load = fmt::format("/loads/{}", l);
+          scene_.loads[l].periodic && int(*scene_.loads[l].periodic) == c && f_.sound({load}))
+        f_.error(load, fmt::format("{} is a jump across sides through which an overlap goes", load),
+                 "the motion of the mesh in the overlap does not jump",
+                 "load another side, or let the zone keep off these sides");
+    if (!f_.sound({"/far_field"}))
+      return;
+    const double width = scene_.specimen.size[c], cell = scene_.far_field->cell_size;
+    if (width < 1.5 * cell)
+      f_.error(key,
+               fmt::format("the body repeats itself after {:.4g} m along {}, one cell of the far "
+                           "field",
+                           width, axis_names[c]),
+               "an overlap that goes on through joined sides needs two cells between them",
+               fmt::format("make the specimen at least {:.4g} m wide there", 1.5 * cell));
   }
 
   void side(int boundary, const std::string &key, const std::string &name)

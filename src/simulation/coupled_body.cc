@@ -168,6 +168,9 @@ coupling::OverlapParameters<dim> overlap_of(const Scene &scene)
   overlap.length = scene.coupling.overlap_cells * scene.far_field->cell_size;
   overlap.spacing = scene.zone.spacing;
   overlap.transition_cells = scene.coupling.transition_cells;
+  for (int c = 0; c < dim; ++c)
+    if (scene.specimen.is_periodic(c))
+      overlap.period[c] = scene.specimen.size[c];
   return overlap;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "src/verification/bodies/waves_twin.h"
+#include "src/verification/cases/atoms.h"
 #include "src/verification/cases/breaking.h"
 #include "src/verification/cases/closed_crack.h"
 #include "src/verification/cases/face_life.h"
@@ -65,6 +66,7 @@ std::vector<Case> all_cases()
   add(softening_cases());
   add(face_life_cases());
   add(softening_flow_cases());
+  add(atom_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -1,0 +1,9 @@
+// Bodies of atoms coupled to a mesh.
+#pragma once
+
+#include "src/verification/cases.h"
+
+namespace ligament::program
+{
+std::vector<Case> atom_cases();
+} // namespace ligament::program
