@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace ligament::md
 {
@@ -35,13 +36,17 @@ template <int dim>
 AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
                           const AtomForceOptions &options)
     : crystal_(crystal), body_(make_body(crystal, packing, options.species)),
-      reference_(packing.centre), kernel_(body_.potential),
+      reference_(packing.centre), kernel_(body_.potential, body_.species),
       list_(body_.potential.cutoff(), options.skin, packing.period)
 {
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);
   reference_density_ = densities(atoms);
   reference_energy_ = sum(energies(atoms));
+  const auto &species = body_.species;
+  if (options.keeps_neighbours && std::adjacent_find(species.begin(), species.end(),
+                                                     std::not_equal_to<>()) == species.end())
+    rows_.emplace(crystal, packing, species[0], list_.cutoff() + list_.skin());
 }
 
 template <int dim>
@@ -54,23 +59,38 @@ particles::Particles<dim> AtomForce<dim>::at_rest() const
   return atoms;
 }
 
+// The list of the reference has all bonds of the rows: while these hold, it does. When they hold
+// again, the list of the reference comes back.
 template <int dim>
-void AtomForce<dim>::update_list(const Particles &atoms) const
+bool AtomForce<dim>::update_list(const Particles &atoms) const
 {
-  if (list_.update<dim>(atoms.reference, atoms.displacement)) {
-    list_is_reference_ = false;
-    built_ = atoms.displacement;
+  const auto rows_hold = [&] { return rows_ && rows_->holds(atoms.displacement); };
+  if (list_is_reference_ && rows_hold())
+    return true;
+  if (list_.place<dim>(atoms.reference, atoms.displacement))
+    return false;
+  if (!list_is_reference_ && rows_hold()) {
+    const Particles rest = at_rest();
+    list_.build<dim>(rest.reference, rest.displacement);
+    list_is_reference_ = true;
+    return true;
   }
+  list_.build<dim>(atoms.reference, atoms.displacement);
+  list_is_reference_ = false;
+  built_ = atoms.displacement;
+  return false;
 }
 
 template <int dim>
 void AtomForce<dim>::compute(Particles &atoms, double)
 {
-  update_list(atoms);
-  if (kernel_.can_compute() && body_.weight.empty())
-    kernel_.compute<dim>(list_, atoms.force);
-  else
+  const bool is_undisturbed = update_list(atoms);
+  if (!body_.weight.empty())
     compute_plainly(atoms);
+  else if (is_undisturbed)
+    rows_->compute(atoms.force);
+  else
+    kernel_.compute<dim>(list_, atoms.force);
 }
 
 template <int dim>

@@ -4,9 +4,11 @@
 #include "md/atom_kernel.h"
 #include "md/atom_tangent.h"
 #include "md/crystal.h"
+#include "md/row_kernel.h"
 #include "packings/packing.h"
 
 #include <memory>
+#include <optional>
 
 namespace ligament::md
 {
@@ -14,6 +16,7 @@ struct AtomForceOptions
 {
   double skin = 1e-10;           // m: how much farther than the cut-off the neighbour list sees
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
+  bool keeps_neighbours = true;  // need not look for them while the crystal is undisturbed
 };
 
 /// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as
@@ -70,7 +73,9 @@ public:
   std::vector<int> coordination(const Particles &atoms) const;
 
 private:
-  void update_list(const Particles &atoms) const;
+  /// Afterwards the list has all pairs within the cut-off. Returns whether the crystal is
+  /// undisturbed: these are bonds of the rows.
+  bool update_list(const Particles &atoms) const;
   Particles at_rest() const;
   /// visit(bond) of the list as it is.
   template <typename Visit>
@@ -96,7 +101,10 @@ private:
   AtomKernel kernel_;
   std::vector<double> reference_density_;
   double reference_energy_ = 0; // J
-  // Looking at a state may bring the list up to date.
+  // Looking at a state may bring the list up to date. Which way a state goes depends on its
+  // displacements, and on whether and where the list was built, which save() keeps: a run that is
+  // taken up again goes the same way.
+  mutable std::optional<RowKernel<dim>> rows_; // of bodies of one species
   mutable NeighbourList list_;
   mutable bool list_is_reference_ = true;
   mutable Components<dim> built_; // m, else: displacements at which it was built

@@ -22,6 +22,10 @@ public:
   template <int dim>
   bool update(const Components<dim> &reference, const Components<dim> &displacement);
 
+  /// The same without building: returns false where that is due.
+  template <int dim>
+  bool place(const Components<dim> &reference, const Components<dim> &displacement);
+
   /// The same, built in any case.
   template <int dim>
   void build(const Components<dim> &reference, const Components<dim> &displacement);

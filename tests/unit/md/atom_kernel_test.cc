@@ -13,7 +13,7 @@ struct AtomKernelTest : ::testing::Test
   template <int dim>
   static void compare(Body<dim> body, double amplitude)
   {
-    SCOPED_TRACE(body.crystal.potential().species(0).name);
+    SCOPED_TRACE(body.crystal.potential().species(0).name + std::to_string(amplitude));
     body.disturb(amplitude * body.crystal.spacing());
     auto expected = body.atoms;
     body.oracle(body.crystal.potential()).compute(expected);
