@@ -47,7 +47,7 @@ Eigen::Matrix<int, dim, dim> whole_inverse(const Eigen::Matrix<int, dim, dim> &m
 
 /// Number of rows that lie beside each other before the next ones behind them come: what the second
 /// pass waits for should be near.
-constexpr int strip_width = 4;
+constexpr int strip_width = 3;
 
 template <int dim>
 int strip(const Eigen::Matrix<int, dim, 1> &k)

@@ -66,7 +66,21 @@ HWY_INLINE LaneJets look_up(const RowArrays &k, V r2, hn::Mask<D> live)
     is_near = hn::Or(is_near, hn::Not(live));
   LaneJets jets;
   jets.density = jets.slope = zero;
-  if (hn::AllTrue(d, is_near)) {
+  auto is_same = hn::Eq(whole, hn::Set(d, hn::GetLane(whole)));
+  if constexpr (is_tail)
+    is_same = hn::Or(is_same, hn::Not(live));
+  if (hn::AllTrue(d, is_same)) {
+    const PairPiece &p = k.table[int(hn::GetLane(whole))];
+    const auto columns = [&](const double *c) HWY_ATTR {
+      return Columns{hn::Set(d, c[0]), hn::Set(d, c[1]), hn::Set(d, c[2]), hn::Set(d, c[3])};
+    };
+    if constexpr (embedded) {
+      const ValueSlope f = cubic(columns(p.density), t);
+      jets.density = f.value;
+      jets.slope = f.slope;
+    }
+    jets.pull = parabola(columns(p.pull), t);
+  } else if (hn::AllTrue(d, is_near)) {
     const auto among = hn::And(hn::PromoteTo(dl, hn::DemoteTo(di, from_base)),
                                hn::Set(dl, lanes - 1)); // dead lanes, too
     const auto indices = hn::IndicesFromVec(d, among);
