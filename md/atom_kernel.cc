@@ -39,8 +39,18 @@ void AtomKernel::prepare(const NeighbourList &list)
   build_ = list.n_builds();
   const int n = list.n_atoms(), n_blocks = (n + slots_per_block - 1) / slots_per_block;
   slot_of_image_.clear();
-  for (int k = n; k < n + list.n_images(); ++k)
-    slot_of_image_.push_back(list.slot_of(k));
+  images_.clear();
+  image_begin_.assign(n_blocks + 1, 0);
+  for (int k = 0; k < list.n_images(); ++k) {
+    slot_of_image_.push_back(list.slot_of(n + k));
+    images_.push_back(k);
+    ++image_begin_[slot_of_image_.back() / slots_per_block + 1];
+  }
+  for (int b = 0; b < n_blocks; ++b)
+    image_begin_[b + 1] += image_begin_[b];
+  std::stable_sort(images_.begin(), images_.end(), [&](int a, int b) {
+    return slot_of_image_[a] / slots_per_block < slot_of_image_[b] / slots_per_block;
+  });
   blocks_.clear();
   int most = 0;
   for (int b = 0; b < n_blocks; ++b) {
@@ -61,12 +71,11 @@ void AtomKernel::prepare(const NeighbourList &list)
   }
   scratch_.resize(5 * (most + 2 * padding) / 4 + 1);
   density_.resize(n);
-  slope_.assign(n, 0.);
   force_.resize(n);
 }
 
 template <int dim>
-void AtomKernel::compute(const NeighbourList &list, Components<dim> &force)
+void AtomKernel::compute(NeighbourList &list, Components<dim> &force)
 {
   prepare(list);
   std::fill(density_.begin(), density_.end(), 0.);
@@ -82,14 +91,19 @@ void AtomKernel::compute(const NeighbourList &list, Components<dim> &force)
                                cutoff_ * cutoff_,
                                inverse_step_,
                                density_.data(),
-                               slope_.data(),
                                force_.data(),
                                component(scratch_[0])};
   const KernelPasses passes = kernel_passes();
   const auto find_slopes = [&](int b) {
-    for (int s = blocks_[b].first; s < blocks_[b].last && !embedding_.empty(); ++s)
-      slope_[s] = -inverse_step_ *
-                  embedding_[species_.empty() ? 0 : species_[list.order()[s]]](density_[s]).slope;
+    if (embedding_.empty())
+      return;
+    for (int s = blocks_[b].first; s < blocks_[b].last; ++s) {
+      const int a = species_.empty() ? 0 : species_[list.order()[s]];
+      list.set_extra(s, -inverse_step_ * embedding_[a](density_[s]).slope);
+    }
+    for (int m = image_begin_[b]; m < image_begin_[b + 1]; ++m)
+      list.set_extra(list.n_atoms() + images_[m],
+                     list.records()[slot_of_image_[images_[m]]].extra);
   };
   schedule_.run(
       [&](int b, int buffer) {
@@ -104,6 +118,6 @@ void AtomKernel::compute(const NeighbourList &list, Components<dim> &force)
       force[c][list.order()[s]] = component(force_[s])[c];
 }
 
-template void AtomKernel::compute<2>(const NeighbourList &, Components<2> &);
-template void AtomKernel::compute<3>(const NeighbourList &, Components<3> &);
+template void AtomKernel::compute<2>(NeighbourList &, Components<2> &);
+template void AtomKernel::compute<3>(NeighbourList &, Components<3> &);
 } // namespace ligament::md

@@ -29,14 +29,14 @@ struct SlotBlock
 /// What the passes read and write.
 struct KernelArrays
 {
-  const AtomRecord *records;
+  const AtomRecord *records; // extra: -F' over the step of the distance, when it is known
   const int *begin, *neighbours;
   const int *slot_of_image; // null where there are none
   int n_atoms;
   const PairPiece *table; // of the species (a, b) from a * row + b * column on
   const int *row, *column; // of slots; null where all are of one species
   double cutoff2, inverse_step; // m^2, 1/m
-  double *density, *slope;      // rho; -F' over the step of the distance
+  double *density;              // of slots
   AtomRecord *force;            // of slots, N
   double *scratch;              // 5 numbers per pair of a block, and some vectors; aligned
 };
@@ -60,7 +60,7 @@ public:
 
   /// Overwrites the forces of all atoms by those at the list's places.
   template <int dim>
-  void compute(const NeighbourList &list, Components<dim> &force);
+  void compute(NeighbourList &list, Components<dim> &force);
 
 private:
   void prepare(const NeighbourList &list);
@@ -75,9 +75,10 @@ private:
   std::vector<SlotBlock> blocks_;
   PassSchedule schedule_;
   std::vector<int> slot_of_image_;
+  std::vector<int> images_, image_begin_; // by the blocks of their slots
   std::vector<int> row_, column_; // in the table, of slots
   std::vector<PairBuffer> buffers_;
-  std::vector<double> density_, slope_;
+  std::vector<double> density_;
   std::vector<AtomRecord> force_, scratch_;
 };
 } // namespace ligament::md

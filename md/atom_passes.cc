@@ -49,6 +49,14 @@ struct Packing
       if (bits[0] >> k & 1)
         *to++ = lane[k];
   }
+  void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(D(), mask, bits);
+    for (int k = 0; k < lanes; ++k)
+      if (bits[0] >> k & 1)
+        *to++ = from[k];
+  }
 };
 #else
 /// Stores x, y, z, 0 of each lane as four numbers in turn.
@@ -82,6 +90,14 @@ struct Packing
   {
     hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, v.raw)}, D(), to);
   }
+  /// Loads whole numbers, one per lane.
+  HWY_INLINE void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    const hn::Rebind<std::int32_t, D> di;
+    hn::StoreU(hn::VFromD<decltype(di)>{_mm256_maskz_compress_epi32(
+                   mask.raw, hn::LoadU(di, from).raw)},
+               di, to);
+  }
 };
 #else
 /// Lanes that each of the masks of four keeps, and then others.
@@ -93,18 +109,27 @@ alignas(32) const std::int64_t kept_lanes[16][4] = {
 // Highway's own Compress copies its table to the stack in every call (1.0.3 with gcc 12).
 struct Packing
 {
+  const std::int64_t *kept;
   decltype(hn::IndicesFromVec(D(), hn::Zero(hn::RebindToSigned<D>()))) indices;
 
-  HWY_INLINE explicit Packing(hn::Mask<D> m) : indices(of(m)) {}
-  static HWY_INLINE decltype(indices) of(hn::Mask<D> mask)
+  HWY_INLINE explicit Packing(hn::Mask<D> m)
+      : kept(of(m)), indices(hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept)))
+  {
+  }
+  static HWY_INLINE const std::int64_t *of(hn::Mask<D> mask)
   {
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(D(), mask, bits);
-    return hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept_lanes[bits[0]]));
+    return kept_lanes[bits[0]];
   }
   HWY_INLINE void store(V v, double *to) const
   {
     hn::StoreU(hn::TableLookupLanes(v, indices), D(), to);
+  }
+  HWY_INLINE void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    for (int lane = 0; lane < 4; ++lane)
+      to[lane] = from[kept[lane]];
   }
 };
 #endif
@@ -129,15 +154,14 @@ void widen(PairBuffer &q, std::size_t room, bool has_several)
     q.other_slope.resize(room);
 }
 
-/// Pairs of the block in range go to the buffer, squared distances to its `pull`, the numbers of
-/// the others to its `slope`.
+/// Pairs of the block in range go to the buffer, squared distances to its `pull`.
 int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
-  const hn::Rebind<std::int32_t, D> di;
   widen(q, std::size_t(k.begin[block.last] - k.begin[block.first]) + 2 * lanes, k.row);
   q.row_end.resize(block.last - block.first);
-  double *const squares = q.pull.data(), *const places = q.slope.data();
+  double *const squares = q.pull.data();
+  std::int32_t *const places = q.place.data();
   const V limit = hn::Set(d, k.cutoff2);
   int n = 0;
   for (int s = block.first; s < block.last; ++s) {
@@ -153,7 +177,7 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
         near = hn::And(near, hn::FirstN(d, std::size_t(end - m)));
       const Packing packing(near);
       packing.store(r2, squares + n);
-      packing.store(hn::PromoteTo(d, hn::LoadU(di, k.neighbours + m)), places + n);
+      packing.store(k.neighbours + m, places + n);
       n += int(hn::CountTrue(d, near));
     }
     q.row_end[s - block.first] = n;
@@ -162,8 +186,6 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
     squares[m] = k.cutoff2;
     places[m] = 0;
   }
-  for (int m = 0; m < n + lanes; m += lanes)
-    hn::StoreU(hn::DemoteTo(di, hn::LoadU(d, places + m)), di, q.place.data() + m);
   for (int m = 0; k.slot_of_image && m < n; ++m)
     q.other[m] = q.place[m] < k.n_atoms ? q.place[m] : k.slot_of_image[q.place[m] - k.n_atoms];
   return n;
@@ -251,18 +273,15 @@ void second_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q
   const std::int32_t *const other = others(k, q), *const places = q.place.data();
   const double *const own_slope = q.slope.data(), *const pull = q.pull.data(),
                       *const other_slope = has_several ? q.other_slope.data() : own_slope;
-  const int n = q.row_end.back();
-  double *const slopes = k.scratch, *const rows = k.scratch + (n + lanes + 3) / 4 * 4; // aligned
-  for (int m = 0; m < n; ++m)
-    slopes[m] = k.slope[other[m]];
+  double *const rows = k.scratch;
   int m = 0;
   for (int s = block.first; s < block.last; ++s) {
     const V x = hn::Set(d, k.records[s].x), y = hn::Set(d, k.records[s].y),
-            z = hn::Set(d, k.records[s].z), slope = hn::Set(d, k.slope[s]);
+            z = hn::Set(d, k.records[s].z), slope = hn::Set(d, k.records[s].extra);
     // What the last vector has of the next row is overwritten by that.
     for (const int end = q.row_end[s - block.first]; m < end; m += lanes) {
       const Columns p = load_columns(&k.records[0].x, 4, places + m);
-      const V at_other = hn::LoadU(d, slopes + m), f = hn::LoadU(d, own_slope + m),
+      const V at_other = p.d, f = hn::LoadU(d, own_slope + m),
               c = has_several
                       ? hn::MulAdd(slope, f,
                                    hn::MulAdd(at_other, hn::LoadU(d, other_slope + m),

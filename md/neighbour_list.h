@@ -45,6 +45,7 @@ public:
   const std::vector<int> &neighbours() const { return neighbour_; }
   /// Where the atoms of slots and their images are, n_atoms() + n_images().
   const std::vector<AtomRecord> &records() const { return records_; }
+  void set_extra(int record, double value) { records_[record].extra = value; }
   /// The slot whose atom a neighbour is.
   int slot_of(int neighbour) const
   {
