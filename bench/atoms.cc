@@ -144,12 +144,13 @@ int main(int argc, char **argv)
     value = measure(fmt::format("copper, hot, list, periodic, {}", name), true, 600, false, 4);
     undisturbed = measure(fmt::format("copper, hot, rows, periodic, {}", name), true, 600, true, 4);
     for (const bool periodic : {true, false})
-      measure(fmt::format("copper, cold, rows, {}, {}", periodic ? "periodic" : "free surfaces",
-                          name),
-              periodic, 0.01, true, 8);
+      measure(
+          fmt::format("copper, cold, rows, {}, {}", periodic ? "periodic" : "free surfaces", name),
+          periodic, 0.01, true, 8);
   }
   for (const bool keeps : {false, true})
-    measure(fmt::format("copper, hot, {}, free surfaces", keeps ? "rows" : "list"), false, 600, keeps, 4);
+    measure(fmt::format("copper, hot, {}, free surfaces", keeps ? "rows" : "list"), false, 600,
+            keeps, 4);
   if (!wanted.empty())
     return 0;
   Copper body(table, true, 600, false);
@@ -159,10 +160,10 @@ int main(int argc, char **argv)
   };
   print("embedded atoms, copper, new neighbour list", 1e3 / bench::rate(list_only), "ms", 2.5);
   const double theirs = lammps_rate(table);
-  if (theirs > 0)
-  {
+  if (theirs > 0) {
     print("copper, hot, list, periodic; reference: LAMMPS", value, "1e6 atom-steps/s", theirs);
-    print("copper, hot, rows, periodic; reference: LAMMPS", undisturbed, "1e6 atom-steps/s", theirs);
+    print("copper, hot, rows, periodic; reference: LAMMPS", undisturbed, "1e6 atom-steps/s",
+          theirs);
   } else
     fmt::print(stderr, "not measured: lammps; to install: apt-get install lammps\n");
 }

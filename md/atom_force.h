@@ -45,6 +45,12 @@ public:
   void add_tangent(const Particles &atoms,
                    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
                    const std::vector<int> *of = nullptr) const override;
+  /// The terms of add_tangent() at any deformation, in normal form, and pairs that come into range
+  /// (of the list at rest) where both atoms are members: they have the share of their middle, and
+  /// enter the densities.
+  std::unique_ptr<particles::PartialForce<dim>>
+  part(const Particles &atoms, const std::vector<int> &members,
+       const typename particles::ParticleForce<dim>::TermShare &share) const override;
   void save(core::State &state, const core::Names &names, const Particles &atoms) const override;
   void load(const core::State &state, const core::Names &names, const Particles &atoms) override;
 
@@ -61,6 +67,9 @@ public:
   /// Pairs that the list has at present.
   long n_bonds() const override { return list_.n_pairs(); }
 
+  /// Whether every pair within the cut-off is one of the reference, so that nobody needs to be
+  /// looked for.
+  bool is_undisturbed(const Particles &atoms) const { return update_list(atoms); }
   const Crystal<dim> &crystal() const { return crystal_; }
   const NeighbourList &list() const { return list_; }
 

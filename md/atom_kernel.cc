@@ -29,7 +29,8 @@ AtomKernel::AtomKernel(const Potential &potential, const std::vector<int> &speci
   }
   if (n_species_ > 1)
     for (const int a : species)
-      species_.push_back(int(std::lower_bound(present.begin(), present.end(), a) - present.begin()));
+      species_.push_back(
+          int(std::lower_bound(present.begin(), present.end(), a) - present.begin()));
 }
 
 void AtomKernel::prepare(const NeighbourList &list)
@@ -102,8 +103,7 @@ void AtomKernel::compute(NeighbourList &list, Components<dim> &force)
       list.set_extra(s, -inverse_step_ * embedding_[a](density_[s]).slope);
     }
     for (int m = image_begin_[b]; m < image_begin_[b + 1]; ++m)
-      list.set_extra(list.n_atoms() + images_[m],
-                     list.records()[slot_of_image_[images_[m]]].extra);
+      list.set_extra(list.n_atoms() + images_[m], list.records()[slot_of_image_[images_[m]]].extra);
   };
   schedule_.run(
       [&](int b, int buffer) {
@@ -111,8 +111,7 @@ void AtomKernel::compute(NeighbourList &list, Components<dim> &force)
           buffers_.resize(buffer + 1);
         passes.first(arrays, blocks_[b], buffers_[buffer]);
       },
-      find_slopes,
-      [&](int b, int buffer) { passes.second(arrays, blocks_[b], buffers_[buffer]); });
+      find_slopes, [&](int b, int buffer) { passes.second(arrays, blocks_[b], buffers_[buffer]); });
   for (int s = 0; s < list.n_atoms(); ++s)
     for (int c = 0; c < dim; ++c)
       force[c][list.order()[s]] = component(force_[s])[c];

@@ -12,12 +12,12 @@ namespace ligament::md
 /// Pairs in range of the slots of a block, between the passes.
 struct PairBuffer
 {
-  std::vector<std::int32_t> place;   // record of the other atom
-  std::vector<std::int32_t> other;   // its slot, where there are images
-  std::vector<double> pull;          // -phi'/r, N/m
-  std::vector<double> slope;         // (df/dt)/r of the density at the slot, per m
-  std::vector<double> other_slope;   // at the other; not where all are of one species
-  std::vector<int> row_end;          // per slot: where its pairs end
+  std::vector<std::int32_t> place; // record of the other atom
+  std::vector<std::int32_t> other; // its slot, where there are images
+  std::vector<double> pull;        // -phi'/r, N/m
+  std::vector<double> slope;       // (df/dt)/r of the density at the slot, per m
+  std::vector<double> other_slope; // at the other; not where all are of one species
+  std::vector<int> row_end;        // per slot: where its pairs end
 };
 
 /// Slots that go through the passes together.
@@ -33,8 +33,8 @@ struct KernelArrays
   const int *begin, *neighbours;
   const int *slot_of_image; // null where there are none
   int n_atoms;
-  const PairPiece *table; // of the species (a, b) from a * row + b * column on
-  const int *row, *column; // of slots; null where all are of one species
+  const PairPiece *table;       // of the species (a, b) from a * row + b * column on
+  const int *row, *column;      // of slots; null where all are of one species
   double cutoff2, inverse_step; // m^2, 1/m
   double *density;              // of slots
   AtomRecord *force;            // of slots, N
@@ -76,7 +76,7 @@ private:
   PassSchedule schedule_;
   std::vector<int> slot_of_image_;
   std::vector<int> images_, image_begin_; // by the blocks of their slots
-  std::vector<int> row_, column_; // in the table, of slots
+  std::vector<int> row_, column_;         // in the table, of slots
   std::vector<PairBuffer> buffers_;
   std::vector<double> density_;
   std::vector<AtomRecord> force_, scratch_;

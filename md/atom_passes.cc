@@ -94,9 +94,9 @@ struct Packing
   HWY_INLINE void store(const std::int32_t *from, std::int32_t *to) const
   {
     const hn::Rebind<std::int32_t, D> di;
-    hn::StoreU(hn::VFromD<decltype(di)>{_mm256_maskz_compress_epi32(
-                   mask.raw, hn::LoadU(di, from).raw)},
-               di, to);
+    hn::StoreU(
+        hn::VFromD<decltype(di)>{_mm256_maskz_compress_epi32(mask.raw, hn::LoadU(di, from).raw)},
+        di, to);
   }
 };
 #else
@@ -226,8 +226,8 @@ void first_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
   const int n = find_in_range(k, block, q);
   double *const slope = q.slope.data(), *const pull = q.pull.data(), *const values = k.scratch,
                 *const other_values = has_several ? values + rounded(n) : values;
-  int *const straight = reinterpret_cast<int *>(values + 2 * rounded(n)),
-            *const reverse = straight + rounded(n);
+  int *const straight = reinterpret_cast<int *>(values + 2 * rounded(n)), *const reverse =
+                                                                              straight + rounded(n);
   if (has_several)
     find_tables(k, block, q, straight, reverse);
   const V inverse_step = hn::Set(d, k.inverse_step),
@@ -282,11 +282,10 @@ void second_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q
     for (const int end = q.row_end[s - block.first]; m < end; m += lanes) {
       const Columns p = load_columns(&k.records[0].x, 4, places + m);
       const V at_other = p.d, f = hn::LoadU(d, own_slope + m),
-              c = has_several
-                      ? hn::MulAdd(slope, f,
-                                   hn::MulAdd(at_other, hn::LoadU(d, other_slope + m),
-                                              hn::LoadU(d, pull + m)))
-                      : hn::MulAdd(hn::Add(slope, at_other), f, hn::LoadU(d, pull + m));
+              c = has_several ? hn::MulAdd(slope, f,
+                                           hn::MulAdd(at_other, hn::LoadU(d, other_slope + m),
+                                                      hn::LoadU(d, pull + m)))
+                              : hn::MulAdd(hn::Add(slope, at_other), f, hn::LoadU(d, pull + m));
       store_rows(hn::Mul(c, hn::Sub(p.a, x)), hn::Mul(c, hn::Sub(p.b, y)),
                  hn::Mul(c, hn::Sub(p.c, z)), rows + 4 * m);
     }

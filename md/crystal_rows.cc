@@ -141,7 +141,8 @@ CrystalRows<dim>::CrystalRows(const Crystal<dim> &crystal, const packings::Packi
           moves.push_back(move + sign * m * k);
   }
   find_bonds(crystal, reach);
-  const Eigen::Matrix<int, dim, dim> basis = choose_basis(index), inverse = whole_inverse<dim>(basis);
+  const Eigen::Matrix<int, dim, dim> basis = choose_basis(index),
+                                     inverse = whole_inverse<dim>(basis);
   along_ = crystal.basis() * basis.col(0).template cast<double>();
   for (auto *list : {&index, &moves, &steps_})
     for (Index &k : *list)
@@ -205,12 +206,14 @@ void CrystalRows<dim>::spread_rows()
 }
 
 template <int dim>
-Eigen::Matrix<int, dim, dim>
-CrystalRows<dim>::choose_basis(const std::vector<Index> &index) const
+Eigen::Matrix<int, dim, dim> CrystalRows<dim>::choose_basis(const std::vector<Index> &index) const
 {
   Eigen::Matrix<int, dim, dim> best = Eigen::Matrix<int, dim, dim>::Identity(), basis;
   long least = std::numeric_limits<long>::max();
-  const int n = shells_[std::min<std::size_t>(1, shells_.size() - 1)].n_bonds;
+  const Vector<dim> nearest = bonds_[0]; // they come nearest first
+  int n = 0;
+  while (n < int(bonds_.size()) && bonds_[n].norm() < 1.5 * nearest.norm())
+    ++n;
   const auto has_volume_1 = [&] {
     return std::lround(std::abs(basis.template cast<double>().determinant())) == 1;
   };
@@ -272,9 +275,8 @@ void CrystalRows<dim>::lay_out(const std::vector<Index> &index, const std::vecto
       ++runs.back().length;
     else
       runs.push_back({atoms[i].k, 1, int(i)});
-  std::stable_sort(runs.begin(), runs.end(), [](const Run &a, const Run &b) {
-    return strip<dim>(a.k) < strip<dim>(b.k);
-  });
+  std::stable_sort(runs.begin(), runs.end(),
+                   [](const Run &a, const Run &b) { return strip<dim>(a.k) < strip<dim>(b.k); });
   std::vector<Site> images;
   for (const Run &run : runs)
     for (std::size_t b = 0; b < steps_.size() && moves.size() > 1; ++b) {

@@ -5,6 +5,7 @@
 #include "md/crystal_rows.h"
 #include "md/pair_table.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace ligament::md
@@ -67,6 +68,9 @@ public:
   /// Overwrites the forces of all atoms by those at the displacements that holds() said yes to.
   /// Bonds out of range add zeros: how many shells a run looks at does not change a bit.
   void compute(Components<dim> &force);
+
+  /// That an atom looks along at present.
+  int most_bonds() const { return *std::max_element(n_bonds_.begin(), n_bonds_.end()); }
 
 private:
   struct Affine

@@ -86,8 +86,7 @@ HWY_INLINE LaneJets look_up(const RowArrays &k, V r2, hn::Mask<D> live)
     const auto indices = hn::IndicesFromVec(d, among);
     const double *const first = k.columns + base;
     const auto number = [&](int c) HWY_ATTR {
-      return hn::TableLookupLanes(hn::LoadU(d, first + std::ptrdiff_t(c) * k.column_size),
-                                  indices);
+      return hn::TableLookupLanes(hn::LoadU(d, first + std::ptrdiff_t(c) * k.column_size), indices);
     };
     if constexpr (embedded) {
       const ValueSlope f = cubic({number(3), number(4), number(5), number(6)}, t);
@@ -159,8 +158,7 @@ HWY_INLINE void push(const RowArrays &k, int j, V scale, const LaneBond<dim> &bo
 }
 
 template <int dim>
-HWY_INLINE void second_vector(const RowArrays &k, const RowTask &task, int s,
-                              const double *between)
+HWY_INLINE void second_vector(const RowArrays &k, const RowTask &task, int s, const double *between)
 {
   const D d;
   V own[dim], sum[dim];
@@ -171,8 +169,7 @@ HWY_INLINE void second_vector(const RowArrays &k, const RowTask &task, int s,
   for (int b = 0; b < task.n_bonds; ++b) {
     const int j = s + task.shift[b];
     const V scale =
-        hn::MulAdd(hn::Add(slope, hn::LoadU(d, k.slope + j)),
-                   hn::LoadU(d, between + 2 * b * lanes),
+        hn::MulAdd(hn::Add(slope, hn::LoadU(d, k.slope + j)), hn::LoadU(d, between + 2 * b * lanes),
                    hn::LoadU(d, between + (2 * b + 1) * lanes));
     push<dim>(k, j, scale, LaneBond<dim>(k, task, b, s, own), sum);
   }
