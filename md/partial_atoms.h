@@ -9,7 +9,7 @@ namespace ligament::md
 /// sum_pairs s_b [phi + F'_i f_ij + F'_j f_ji] + sum_i s_i [F_i(rho_i) - F'_i rho_i], less the same
 /// at rest, with the F' that the atoms of the whole body have there: its second derivatives at rest
 /// are those of the terms (M6), each times its share; in the crystal F' = 0. At any deformation
-/// (theory.md (M8)). Plain loops over few atoms.
+/// (theory.md (M9)). Plain loops over few atoms.
 template <int dim>
 class PartialAtoms : public particles::PartialForce<dim>
 {
