@@ -36,14 +36,16 @@ void print(const std::string &name, double value, const std::string &unit, doubl
 /// 20 x 20 x 20 cells with velocities of 600 K, half of which goes into the potential.
 struct Copper
 {
-  Copper(const std::string &table, bool periodic, double temperature)
+  Copper(const std::string &table, bool periodic, double temperature, bool keeps_neighbours)
       : crystal(read_funcfl({table}), {})
   {
     CrystalShape<3> shape;
     shape.upper = 20 * crystal.lattice_parameter() * Vector<3>::Ones();
     shape.periodic.fill(periodic);
     const auto packing = cut_crystal(crystal, shape);
-    auto force = std::make_unique<AtomForce<3>>(crystal, packing);
+    AtomForceOptions options;
+    options.keeps_neighbours = keeps_neighbours;
+    auto force = std::make_unique<AtomForce<3>>(crystal, packing, options);
     atoms = force.get();
     auto state = make_atoms(crystal, packing);
     for (int i = 0; i < state.size(); ++i)
@@ -110,24 +112,28 @@ double lammps_rate(const std::string &table)
 }
 } // namespace
 
-/// Argument: a funcfl table of copper. To be called in the root of the sources.
+/// Arguments: a funcfl table of copper, and a part of the names to be measured (empty: all). To be
+/// called in the root of the sources.
 int main(int argc, char **argv)
 {
   const std::string table = argc > 1 ? argv[1] : "/usr/share/lammps/potentials/Cu_u3.eam";
+  const std::string wanted = argc > 2 ? argv[2] : "";
   const auto measure = [&](const std::string &name, bool periodic, double temperature,
-                           double reference) {
-    Copper body(table, periodic, temperature);
+                           bool keeps_neighbours, double reference) {
+    if (name.find(wanted) == std::string::npos)
+      return 0.;
+    Copper body(table, periodic, temperature, keeps_neighbours);
     for (int s = 0; s < warm_up; ++s)
       body.step();
     const int builds = body.atoms->list().n_builds();
     const double value = rate(body);
-    print(fmt::format("{}, {} atoms at {:.0f} K, {} new lists in {} steps; reference: must", name,
+    print(fmt::format("{}, {} atoms at {:.3g} K, {} new lists in {} steps; reference: must", name,
                       body.solver->state.size(), body.temperature(),
                       body.atoms->list().n_builds() - builds, 7 * (steps / 5)),
           value, "1e6 atom-steps/s", reference);
     return value;
   };
-  double value = 0;
+  double value = 0, undisturbed = 0;
   for (const auto &[name, target] : {std::pair("plain code", HWY_SCALAR),
                                      std::pair("AVX2", HWY_AVX2), std::pair("AVX-512", HWY_AVX3)})
   {
@@ -135,18 +141,29 @@ int main(int argc, char **argv)
     if (!(hwy::SupportedTargets() & target))
       continue;
     hwy::SetSupportedTargetsForTest(target);
-    value = measure(fmt::format("embedded atoms, copper, periodic, {}", name), true, 600, 4);
+    value = measure(fmt::format("copper, hot, list, periodic, {}", name), true, 600, false, 4);
+    undisturbed = measure(fmt::format("copper, hot, rows, periodic, {}", name), true, 600, true, 4);
+    for (const bool periodic : {true, false})
+      measure(
+          fmt::format("copper, cold, rows, {}, {}", periodic ? "periodic" : "free surfaces", name),
+          periodic, 0.01, true, 8);
   }
-  measure("embedded atoms, copper, free surfaces", false, 600, 4);
-  Copper body(table, true, 600);
+  for (const bool keeps : {false, true})
+    measure(fmt::format("copper, hot, {}, free surfaces", keeps ? "rows" : "list"), false, 600,
+            keeps, 4);
+  if (!wanted.empty())
+    return 0;
+  Copper body(table, true, 600, false);
   const auto list_only = [&] {
     auto list = body.atoms->list();
     list.build<3>(body.solver->state.reference, body.solver->state.displacement);
   };
   print("embedded atoms, copper, new neighbour list", 1e3 / bench::rate(list_only), "ms", 2.5);
   const double theirs = lammps_rate(table);
-  if (theirs > 0)
-    print("embedded atoms, copper, periodic; reference: LAMMPS", value, "1e6 atom-steps/s", theirs);
-  else
+  if (theirs > 0) {
+    print("copper, hot, list, periodic; reference: LAMMPS", value, "1e6 atom-steps/s", theirs);
+    print("copper, hot, rows, periodic; reference: LAMMPS", undisturbed, "1e6 atom-steps/s",
+          theirs);
+  } else
     fmt::print(stderr, "not measured: lammps; to install: apt-get install lammps\n");
 }

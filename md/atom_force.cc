@@ -1,10 +1,12 @@
 #include "md/atom_force.h"
 
 #include "core/check.h"
+#include "md/partial_atoms.h"
 #include "particles/block_sum.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace ligament::md
 {
@@ -40,7 +42,7 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
                           const AtomForceOptions &options,
                           const std::vector<core::BoundaryLoad<dim>> &loads)
     : crystal_(crystal), body_(make_body(crystal, packing, options)), reference_(packing.centre),
-      kernel_(body_.potential),
+      kernel_(body_.potential, body_.species),
       loads_(packing, crystal.elastic_constants().stiffness(0, 0) / crystal.spacing(), loads),
       list_(body_.potential.cutoff(), options.skin, packing.period)
 {
@@ -49,6 +51,22 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
   body_.screen.apply(list_);
   reference_density_ = densities(atoms);
   reference_energy_ = sum(energies(atoms));
+  std::vector<Bond<dim>> nearest;
+  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+    if (b.length < 1.05 * crystal.spacing())
+      nearest.push_back(b);
+  });
+  const double n_nearest = double(
+      std::count_if(crystal.half_bonds().begin(), crystal.half_bonds().end(),
+                    [&](const Vector<dim> &b) { return b.norm() < 1.05 * crystal.spacing(); }));
+  parted_ = PartedBonds<dim>(std::move(nearest), shell_limit(),
+                             dim * crystal.volume() / (n_nearest * crystal.spacing()));
+  looked_build_ = list_.n_builds();
+  const auto &species = body_.species;
+  // Rows know no cuts.
+  if (options.keeps_neighbours && body_.screen.is_empty() &&
+      std::adjacent_find(species.begin(), species.end(), std::not_equal_to<>()) == species.end())
+    rows_.emplace(crystal, packing, species[0], list_.cutoff() + list_.skin());
 }
 
 template <int dim>
@@ -61,24 +79,44 @@ particles::Particles<dim> AtomForce<dim>::at_rest() const
   return atoms;
 }
 
+// The list of the reference has all bonds of the rows: while these hold, it does. When they hold
+// again, the list of the reference comes back.
 template <int dim>
-void AtomForce<dim>::update_list(const Particles &atoms) const
+bool AtomForce<dim>::update_list(const Particles &atoms) const
 {
-  if (list_.update<dim>(atoms.reference, atoms.displacement)) {
+  const auto rows_hold = [&] { return rows_ && rows_->holds(atoms.displacement); };
+  if (list_is_reference_ && rows_hold())
+    return true;
+  if (list_.place<dim>(atoms.reference, atoms.displacement))
+    return false;
+  if (!list_is_reference_ && rows_hold()) {
+    const Particles rest = at_rest();
+    list_.build<dim>(rest.reference, rest.displacement);
     body_.screen.apply(list_);
-    list_is_reference_ = false;
-    built_ = atoms.displacement;
+    list_is_reference_ = true;
+    return true;
   }
+  list_.build<dim>(atoms.reference, atoms.displacement);
+  body_.screen.apply(list_);
+  list_is_reference_ = false;
+  built_ = atoms.displacement;
+  return false;
 }
 
 template <int dim>
 void AtomForce<dim>::compute(Particles &atoms, double time)
 {
-  update_list(atoms);
-  if (kernel_.can_compute() && body_.weight.empty())
-    kernel_.compute<dim>(list_, atoms.force);
-  else
+  const bool is_undisturbed = update_list(atoms);
+  if (list_.n_builds() != looked_build_) {
+    parted_.look(atoms, time);
+    looked_build_ = list_.n_builds();
+  }
+  if (!body_.weight.empty())
     compute_plainly(atoms);
+  else if (is_undisturbed)
+    rows_->compute(atoms.force);
+  else
+    kernel_.compute<dim>(list_, atoms.force);
   loads_.add_forces(atoms, time);
 }
 
@@ -173,6 +211,53 @@ void AtomForce<dim>::set_energy_weights(const std::vector<double> &weights)
                 "energy weights are set once, for all atoms, before these move");
   body_.weight = weights;
   reference_energy_ = sum(energies(at_rest()));
+}
+
+template <int dim>
+std::unique_ptr<particles::PartialForce<dim>>
+AtomForce<dim>::part(const Particles &atoms, const std::vector<int> &members,
+                     const typename particles::ParticleForce<dim>::TermShare &share) const
+{
+  using Part = PartialAtoms<dim>;
+  const int n = int(members.size());
+  std::vector<int> index(atoms.size(), -1);
+  std::vector<typename Part::SharedAtom> shared;
+  std::vector<std::vector<int>> neighbours; // of members, themselves first
+  const auto rest_slope = [&](int i) {
+    return body_.potential.embedding(body_.species[i], reference_density_[i]).slope;
+  };
+  for (int m = 0; m < n; ++m) {
+    index[members[m]] = m;
+    shared.push_back({body_.species[members[m]], 0., rest_slope(members[m])});
+    neighbours.push_back({members[m]});
+  }
+  const Particles rest = at_rest();
+  NeighbourList list(list_.cutoff() + list_.skin(), 0, body_.period);
+  list.build<dim>(rest.reference, rest.displacement);
+  std::vector<typename Part::SharedPair> pairs;
+  for_each_bond<dim>(list, rest, body_.period, false, [&](const Bond<dim> &b) {
+    const int i = index[b.i], j = index[b.j];
+    if (b.length < list_.cutoff()) {
+      if (i >= 0)
+        neighbours[i].push_back(b.j);
+      if (j >= 0)
+        neighbours[j].push_back(b.i);
+    }
+    if (i < 0 || j < 0)
+      return;
+    const double s = share(Vector<dim>(get(reference_, b.i) + b.reference / 2), {b.i, b.j});
+    pairs.push_back({i, j, b.reference, s * body_.weight_of(b.i, b.j),
+                     s * body_.weight_of(b.i) * shared[i].rest_slope,
+                     s * body_.weight_of(b.j) * shared[j].rest_slope});
+  });
+  for (int m = 0; m < n && body_.potential.has_embedding(); ++m)
+    shared[m].share = body_.weight_of(members[m]) *
+                      share(Vector<dim>(get(reference_, members[m])), neighbours[m]);
+  const auto is_idle = [&](const auto &p) {
+    return p.share == 0 && shared[p.i].share == 0 && shared[p.j].share == 0;
+  };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_idle), pairs.end());
+  return std::make_unique<Part>(body_.potential, std::move(pairs), std::move(shared));
 }
 
 template class AtomForce<2>;

@@ -5,9 +5,12 @@
 #include "md/atom_loads.h"
 #include "md/atom_tangent.h"
 #include "md/crystal.h"
+#include "md/parted_bonds.h"
+#include "md/row_kernel.h"
 #include "packings/packing.h"
 
 #include <memory>
+#include <optional>
 
 namespace ligament::md
 {
@@ -15,6 +18,7 @@ struct AtomForceOptions
 {
   double skin = 1e-10;           // m: how much farther than the cut-off the neighbour list sees
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
+  bool keeps_neighbours = true;  // need not look for them while the crystal is undisturbed
 };
 
 /// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as
@@ -55,12 +59,18 @@ public:
   void add_tangent(const Particles &atoms,
                    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
                    const std::vector<int> *of = nullptr) const override;
+  /// The terms of add_tangent() at any deformation, in normal form, and pairs that come into range
+  /// (of the list at rest) where both atoms are members: they have the share of their middle, and
+  /// enter the densities.
+  std::unique_ptr<particles::PartialForce<dim>>
+  part(const Particles &atoms, const std::vector<int> &members,
+       const typename particles::ParticleForce<dim>::TermShare &share) const override;
   void save(core::State &state, const core::Names &names, const Particles &atoms) const override;
   void load(const core::State &state, const core::Names &names, const Particles &atoms) override;
 
-  /// Pairs within the cut-off in the reference. The area is the same for all, so that the pyramids
-  /// between an atom of the crystal and the middle of its bonds fill its volume; atoms at the
-  /// surface have no faces there.
+  /// Between nearest neighbours, with areas that close around an atom of the crystal and fill its
+  /// volume (in triangular and face-centred crystals those of its cell); atoms at the surface have
+  /// no faces there.
   void for_each_face(const Particles &atoms,
                      const std::function<void(const particles::FaceView<dim> &)> &visit,
                      const std::vector<int> *of = nullptr) const override;
@@ -68,6 +78,12 @@ public:
   /// Of the atoms' bonds, each half, over the reference volume: (M7). For small strains Cauchy's
   /// stress, in general Kirchhoff's.
   void stresses(const Particles &atoms, Components<n_strains<dim>> &stress) const override;
+  bool can_break() const override { return true; }
+  /// Nearest neighbours that have left each other, seen when the list of neighbours is built anew.
+  const std::vector<particles::BrokenBond<dim>> &broken_bonds() const override
+  {
+    return parted_.parted();
+  }
   std::string symbol() const override
   {
     return crystal_.potential().species(crystal_.parameters().species).name;
@@ -80,6 +96,9 @@ public:
   /// Pairs that the list has at present.
   long n_bonds() const override { return list_.n_pairs(); }
 
+  /// Whether every pair within the cut-off is one of the reference, so that nobody needs to be
+  /// looked for.
+  bool is_undisturbed(const Particles &atoms) const { return update_list(atoms); }
   const Crystal<dim> &crystal() const { return crystal_; }
   const NeighbourList &list() const { return list_; }
 
@@ -92,7 +111,11 @@ public:
   std::vector<int> coordination(const Particles &atoms) const;
 
 private:
-  void update_list(const Particles &atoms) const;
+  /// m: farther apart, two atoms are no nearest neighbours.
+  double shell_limit() const;
+  /// Afterwards the list has all pairs within the cut-off. Returns whether the crystal is
+  /// undisturbed: these are bonds of the rows.
+  bool update_list(const Particles &atoms) const;
   Particles at_rest() const;
   /// visit(bond) of the list as it is.
   template <typename Visit>
@@ -117,9 +140,14 @@ private:
   Components<dim> reference_; // m
   AtomKernel kernel_;
   AtomLoads<dim> loads_;
+  PartedBonds<dim> parted_;
+  int looked_build_ = 0; // number of the list at the last look for parted bonds
   std::vector<double> reference_density_;
   double reference_energy_ = 0; // J
-  // Looking at a state may bring the list up to date.
+  // Looking at a state may bring the list up to date. Which way a state goes depends on its
+  // displacements, and on whether and where the list was built, which save() keeps: a run that is
+  // taken up again goes the same way.
+  mutable std::optional<RowKernel<dim>> rows_; // of bodies of one species
   mutable NeighbourList list_;
   mutable bool list_is_reference_ = true;
   mutable Components<dim> built_; // m, else: displacements at which it was built

@@ -6,36 +6,14 @@
 
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway wants it.
-#include <hwy/highway.h>
+#include "md/table_lanes.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace ligament::md::HWY_NAMESPACE
 {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
-constexpr int lanes = int(hn::MaxLanes(D()));
-
-/// Four numbers of each lane, one lane after the other in a vector.
-struct Columns
-{
-  V a, b, c, d;
-};
-
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128 // plain code: lane by lane
-template <typename Index>
-Columns load_columns(const double *first, int stride, const Index *index)
-{
-  const D d;
-  HWY_ALIGN double columns[4][lanes];
-  for (int lane = 0; lane < lanes; ++lane)
-    for (int c = 0; c < 4; ++c)
-      columns[c][lane] = first[std::ptrdiff_t(stride) * index[lane] + c];
-  return {hn::Load(d, columns[0]), hn::Load(d, columns[1]), hn::Load(d, columns[2]),
-          hn::Load(d, columns[3])};
-}
-
 void store_rows(V x, V y, V z, double *rows)
 {
   const D d;
@@ -71,38 +49,16 @@ struct Packing
       if (bits[0] >> k & 1)
         *to++ = lane[k];
   }
+  void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(D(), mask, bits);
+    for (int k = 0; k < lanes; ++k)
+      if (bits[0] >> k & 1)
+        *to++ = from[k];
+  }
 };
 #else
-/// Vectors of [a b | c d] of lanes 0 and 4, 1 and 5, ... become columns.
-HWY_INLINE Columns transposed(V r0, V r1, V r2, V r3)
-{
-  const D d;
-  const V ac01 = hn::InterleaveLower(d, r0, r1), bd01 = hn::InterleaveUpper(d, r0, r1),
-          ac23 = hn::InterleaveLower(d, r2, r3), bd23 = hn::InterleaveUpper(d, r2, r3);
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(ac23), ac01),
-          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(bd23), bd01),
-          hn::OddEvenBlocks(ac23, hn::SwapAdjacentBlocks(ac01)),
-          hn::OddEvenBlocks(bd23, hn::SwapAdjacentBlocks(bd01))};
-}
-
-/// The four numbers at first + stride * index[lane] for each lane.
-template <typename Index>
-HWY_INLINE Columns load_columns(const double *first, int stride, const Index *index)
-{
-  const D d;
-  const auto row = [&](int lane) {
-    const double *const at = first + std::ptrdiff_t(stride) * index[lane];
-    if constexpr (lanes == 8) {
-      const hn::Half<D> half;
-      return hn::Combine(d,
-                         hn::Load(half, first + std::ptrdiff_t(stride) * index[lane + lanes / 2]),
-                         hn::Load(half, at));
-    } else
-      return hn::Load(d, at);
-  };
-  return transposed(row(0), row(1), row(2), row(3));
-}
-
 /// Stores x, y, z, 0 of each lane as four numbers in turn.
 HWY_INLINE void store_rows(V x, V y, V z, double *rows)
 {
@@ -134,6 +90,14 @@ struct Packing
   {
     hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, v.raw)}, D(), to);
   }
+  /// Loads whole numbers, one per lane.
+  HWY_INLINE void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    const hn::Rebind<std::int32_t, D> di;
+    hn::StoreU(
+        hn::VFromD<decltype(di)>{_mm256_maskz_compress_epi32(mask.raw, hn::LoadU(di, from).raw)},
+        di, to);
+  }
 };
 #else
 /// Lanes that each of the masks of four keeps, and then others.
@@ -145,18 +109,27 @@ alignas(32) const std::int64_t kept_lanes[16][4] = {
 // Highway's own Compress copies its table to the stack in every call (1.0.3 with gcc 12).
 struct Packing
 {
+  const std::int64_t *kept;
   decltype(hn::IndicesFromVec(D(), hn::Zero(hn::RebindToSigned<D>()))) indices;
 
-  HWY_INLINE explicit Packing(hn::Mask<D> m) : indices(of(m)) {}
-  static HWY_INLINE decltype(indices) of(hn::Mask<D> mask)
+  HWY_INLINE explicit Packing(hn::Mask<D> m)
+      : kept(of(m)), indices(hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept)))
+  {
+  }
+  static HWY_INLINE const std::int64_t *of(hn::Mask<D> mask)
   {
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(D(), mask, bits);
-    return hn::IndicesFromVec(D(), hn::Load(hn::RebindToSigned<D>(), kept_lanes[bits[0]]));
+    return kept_lanes[bits[0]];
   }
   HWY_INLINE void store(V v, double *to) const
   {
     hn::StoreU(hn::TableLookupLanes(v, indices), D(), to);
+  }
+  HWY_INLINE void store(const std::int32_t *from, std::int32_t *to) const
+  {
+    for (int lane = 0; lane < 4; ++lane)
+      to[lane] = from[kept[lane]];
   }
 };
 #endif
@@ -168,21 +141,27 @@ HWY_INLINE void add_record(const double *from, double *to)
 }
 #endif
 
-/// Pairs of the block in range go to the buffer, squared distances to its `pair`, the numbers of
-/// the others to its `density`.
+/// Room for so many pairs.
+void widen(PairBuffer &q, std::size_t room, bool has_several)
+{
+  if (q.pull.size() >= room)
+    return;
+  q.place.resize(room);
+  q.other.resize(room);
+  q.slope.resize(room);
+  q.pull.resize(room);
+  if (has_several)
+    q.other_slope.resize(room);
+}
+
+/// Pairs of the block in range go to the buffer, squared distances to its `pull`.
 int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
-  const hn::Rebind<std::int32_t, D> di;
-  const std::size_t room = k.begin[block.last] - k.begin[block.first] + 2 * lanes;
-  if (q.density.size() < room) {
-    q.place.resize(room);
-    q.other.resize(room);
-    q.density.resize(room);
-    q.pair.resize(room);
-  }
+  widen(q, std::size_t(k.begin[block.last] - k.begin[block.first]) + 2 * lanes, k.row);
   q.row_end.resize(block.last - block.first);
-  double *const squares = q.pair.data(), *const places = q.density.data();
+  double *const squares = q.pull.data();
+  std::int32_t *const places = q.place.data();
   const V limit = hn::Set(d, k.cutoff2);
   int n = 0;
   for (int s = block.first; s < block.last; ++s) {
@@ -198,7 +177,7 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
         near = hn::And(near, hn::FirstN(d, std::size_t(end - m)));
       const Packing packing(near);
       packing.store(r2, squares + n);
-      packing.store(hn::PromoteTo(d, hn::LoadU(di, k.neighbours + m)), places + n);
+      packing.store(k.neighbours + m, places + n);
       n += int(hn::CountTrue(d, near));
     }
     q.row_end[s - block.first] = n;
@@ -207,6 +186,8 @@ int find_in_range(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
     squares[m] = k.cutoff2;
     places[m] = 0;
   }
+  for (int m = 0; k.slot_of_image && m < n; ++m)
+    q.other[m] = q.place[m] < k.n_atoms ? q.place[m] : k.slot_of_image[q.place[m] - k.n_atoms];
   return n;
 }
 
@@ -216,68 +197,95 @@ const std::int32_t *others(const KernelArrays &k, const PairBuffer &q)
   return k.slot_of_image ? q.other.data() : q.place.data();
 }
 
-void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+/// Where the tables of pairs begin: for what the other is to the slot, and the slot to the other.
+void find_tables(const KernelArrays &k, const SlotBlock &block, const PairBuffer &q, int *straight,
+                 int *reverse)
+{
+  const std::int32_t *const other = others(k, q);
+  int m = 0;
+  for (int s = block.first; s < block.last; ++s)
+    for (const int end = q.row_end[s - block.first]; m < end; ++m) {
+      straight[m] = k.row[s] + k.column[other[m]];
+      reverse[m] = k.row[other[m]] + k.column[s];
+    }
+  std::fill(straight + m, straight + m + lanes, 0);
+  std::fill(reverse + m, reverse + m + lanes, 0);
+}
+
+/// Numbers of the scratch that a block's pairs take, in whole vectors.
+int rounded(int n)
+{
+  return (n + 2 * lanes - 1) / lanes * lanes;
+}
+
+template <bool has_several>
+void first_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
   const hn::Rebind<std::int32_t, D> di;
   const int n = find_in_range(k, block, q);
-  double *const density = q.density.data(), *const pair = q.pair.data();
-  for (int m = 0; m < n + lanes; m += lanes)
-    hn::StoreU(hn::DemoteTo(di, hn::LoadU(d, density + m)), di, q.place.data() + m);
-  for (int m = 0; k.slot_of_image && m < n; ++m)
-    q.other[m] = q.place[m] < k.n_atoms ? q.place[m] : k.slot_of_image[q.place[m] - k.n_atoms];
-  const V inverse_step = hn::Set(d, k.inverse_step), one = hn::Set(d, 1.), two = hn::Set(d, 2.),
-          three = hn::Set(d, 3.), least = hn::Set(d, 1e-12 / (k.inverse_step * k.inverse_step));
-  HWY_ALIGN std::int32_t piece[lanes];
+  double *const slope = q.slope.data(), *const pull = q.pull.data(), *const values = k.scratch,
+                *const other_values = has_several ? values + rounded(n) : values;
+  int *const straight = reinterpret_cast<int *>(values + 2 * rounded(n)), *const reverse =
+                                                                              straight + rounded(n);
+  if (has_several)
+    find_tables(k, block, q, straight, reverse);
+  const V inverse_step = hn::Set(d, k.inverse_step),
+          least = hn::Set(d, 1e-12 / (k.inverse_step * k.inverse_step));
+  HWY_ALIGN std::int32_t piece[lanes], reverse_piece[lanes];
   for (int m = 0; m < n; m += lanes) {
     // Atoms at the same place have no direction: their force is 0.
-    const V r2 = hn::Max(hn::LoadU(d, pair + m), least), inverse = hn::Div(one, hn::Sqrt(r2)),
+    const V r2 = hn::Max(hn::LoadU(d, pull + m), least), inverse = inverse_root(r2),
             place = hn::Mul(hn::Mul(r2, inverse), inverse_step);
-    const auto whole = hn::DemoteTo(di, place); // towards 0
-    hn::Store(whole, di, piece);
+    auto whole = hn::DemoteTo(di, place); // towards 0
     const V t = hn::Sub(place, hn::PromoteTo(d, whole));
-    const Columns f = load_columns(k.table[0].density, 8, piece),
-                  p = load_columns(k.table[0].pair, 8, piece);
-    const V value = hn::MulAdd(hn::MulAdd(hn::MulAdd(f.d, t, f.c), t, f.b), t, f.a);
-    const auto slope = [&](const Columns &c) {
-      return hn::MulAdd(hn::MulAdd(hn::Mul(c.d, three), t, hn::Mul(two, c.c)), t, c.b);
-    };
-    const V scale = hn::Neg(hn::Mul(inverse, inverse_step));
-    hn::StoreU(value, d, k.scratch + m);
-    hn::StoreU(hn::Mul(slope(f), scale), d, density + m);
-    hn::StoreU(hn::Mul(slope(p), scale), d, pair + m);
+    if constexpr (has_several) {
+      hn::Store(hn::Add(whole, hn::LoadU(di, reverse + m)), di, reverse_piece);
+      const ValueSlope f = cubic(load_columns(k.table[0].density, 8, reverse_piece), t);
+      hn::StoreU(f.value, d, other_values + m);
+      hn::StoreU(hn::Mul(f.slope, inverse), d, q.other_slope.data() + m);
+      whole = hn::Add(whole, hn::LoadU(di, straight + m));
+    }
+    hn::Store(whole, di, piece);
+    const ValueSlope f = cubic(load_columns(k.table[0].density, 8, piece), t);
+    const V p = parabola(load_columns(k.table[0].pull, 8, piece), t);
+    hn::StoreU(f.value, d, values + m);
+    hn::StoreU(hn::Mul(f.slope, inverse), d, slope + m);
+    hn::StoreU(hn::Mul(p, inverse), d, pull + m);
   }
   const std::int32_t *const other = others(k, q);
   int m = 0;
   for (int s = block.first; s < block.last; ++s) {
     double sum = 0;
     for (const int end = q.row_end[s - block.first]; m < end; ++m) {
-      sum += k.scratch[m];
-      k.density[other[m]] += k.scratch[m];
+      sum += values[m];
+      k.density[other[m]] += other_values[m];
     }
     k.density[s] += sum;
   }
 }
 
 // Vectors between atoms are found again: to keep them would take more time than that.
-void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+template <bool has_several>
+void second_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
   const std::int32_t *const other = others(k, q), *const places = q.place.data();
-  const double *const density = q.density.data(), *const pair = q.pair.data();
-  const int n = q.row_end.back();
-  double *const slopes = k.scratch, *const rows = k.scratch + (n + lanes + 3) / 4 * 4; // aligned
-  for (int m = 0; m < n; ++m)
-    slopes[m] = k.slope[other[m]];
+  const double *const own_slope = q.slope.data(), *const pull = q.pull.data(),
+                      *const other_slope = has_several ? q.other_slope.data() : own_slope;
+  double *const rows = k.scratch;
   int m = 0;
   for (int s = block.first; s < block.last; ++s) {
     const V x = hn::Set(d, k.records[s].x), y = hn::Set(d, k.records[s].y),
-            z = hn::Set(d, k.records[s].z), slope = hn::Set(d, k.slope[s]);
+            z = hn::Set(d, k.records[s].z), slope = hn::Set(d, k.records[s].extra);
     // What the last vector has of the next row is overwritten by that.
     for (const int end = q.row_end[s - block.first]; m < end; m += lanes) {
       const Columns p = load_columns(&k.records[0].x, 4, places + m);
-      const V c = hn::MulAdd(hn::Add(slope, hn::LoadU(d, slopes + m)), hn::LoadU(d, density + m),
-                             hn::LoadU(d, pair + m));
+      const V at_other = p.d, f = hn::LoadU(d, own_slope + m),
+              c = has_several ? hn::MulAdd(slope, f,
+                                           hn::MulAdd(at_other, hn::LoadU(d, other_slope + m),
+                                                      hn::LoadU(d, pull + m)))
+                              : hn::MulAdd(hn::Add(slope, at_other), f, hn::LoadU(d, pull + m));
       store_rows(hn::Mul(c, hn::Sub(p.a, x)), hn::Mul(c, hn::Sub(p.b, y)),
                  hn::Mul(c, hn::Sub(p.c, z)), rows + 4 * m);
     }
@@ -293,6 +301,16 @@ void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
     for (int c = 0; c < 4; ++c)
       (&k.force[s].x)[c] -= sum[c];
   }
+}
+
+void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  k.row ? first_pass_of<true>(k, block, q) : first_pass_of<false>(k, block, q);
+}
+
+void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  k.row ? second_pass_of<true>(k, block, q) : second_pass_of<false>(k, block, q);
 }
 
 KernelPasses choose_passes()

@@ -3,10 +3,11 @@
 
 namespace ligament::md
 {
-/// Three components and one that fills the vector; in 2D z = 0.
+/// Three components and one that fills the vector, which kernels may use; in 2D z = 0.
 struct alignas(32) AtomRecord
 {
-  double x = 0, y = 0, z = 0, unused = 0; // m or N
+  double x = 0, y = 0, z = 0; // m or N
+  double extra = 0;
 };
 
 inline double *component(AtomRecord &r)

@@ -38,19 +38,26 @@ void AtomForce<dim>::for_each_face(
     const Particles &atoms, const std::function<void(const particles::FaceView<dim> &)> &visit,
     const std::vector<int> *of) const
 {
-  double lengths = 0;
-  for (const Vector<dim> &bond : crystal_.half_bonds())
-    if (bond.norm() < crystal_.potential().cutoff())
-      lengths += 2 * bond.norm();
-  const double area = 2 * dim * crystal_.volume() / lengths;
+  const double area = parted_.area();
   const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
-  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
+  parted_.for_each_bond([&](const Bond<dim> &b, bool is_parted) {
     const Vector<dim> normal = b.reference.normalized(), half = b.reference / 2;
     if (is_asked(b.i))
-      visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, true});
+      visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, !is_parted});
     if (is_asked(b.j))
-      visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, true});
+      visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, !is_parted});
   });
+}
+
+template <int dim>
+double AtomForce<dim>::shell_limit() const
+{
+  const CrystalKind kind = crystal_.parameters().kind;
+  const double next = kind == CrystalKind::triangular ? std::sqrt(3.)
+                      : kind == CrystalKind::fcc      ? std::sqrt(2.)
+                                                      : std::sqrt(8 / 3.);
+  const double last = kind == CrystalKind::bcc ? std::sqrt(4 / 3.) : 1;
+  return (last + next) / 2 * crystal_.spacing();
 }
 
 template <int dim>
@@ -97,14 +104,8 @@ std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &atoms) cons
 template <int dim>
 std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
 {
-  const double d = crystal_.spacing();
-  const CrystalKind kind = crystal_.parameters().kind;
-  const double next = kind == CrystalKind::triangular ? std::sqrt(3.)
-                      : kind == CrystalKind::fcc      ? std::sqrt(2.)
-                                                      : std::sqrt(8 / 3.);
-  const double last = kind == CrystalKind::bcc ? std::sqrt(4 / 3.) : 1;
   std::vector<int> numbers;
-  for (const auto &near : neighbours(atoms, (last + next) / 2 * d))
+  for (const auto &near : neighbours(atoms, shell_limit()))
     numbers.push_back(int(near.size()));
   return numbers;
 }
@@ -121,9 +122,11 @@ std::vector<particles::OwnField> AtomForce<dim>::own_fields(const Particles &ato
 
 // The list decides about the order of sums: it is built anew where it was built.
 template <int dim>
-void AtomForce<dim>::save(core::State &state, const core::Names &names, const Particles &) const
+void AtomForce<dim>::save(core::State &state, const core::Names &names,
+                          const Particles &atoms) const
 {
   loads_.save(state, names);
+  parted_.save(state, atoms);
   if (list_is_reference_)
     return;
   core::Table table(names.sorted());
@@ -143,10 +146,13 @@ void AtomForce<dim>::load(const core::State &state, const core::Names &names,
   list_.build<dim>(atoms.reference, built_);
   body_.screen.apply(list_);
   loads_.load(state, names, atoms);
+  parted_.load(state, atoms);
+  looked_build_ = list_.n_builds();
 }
 
 #define INSTANTIATE(dim)                                                                           \
   template void AtomForce<dim>::stresses(const Particles &, Components<n_strains<dim>> &) const;   \
+  template double AtomForce<dim>::shell_limit() const;                                             \
   template std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &) const;           \
   template std::vector<int> AtomForce<dim>::coordination(const Particles &) const;                 \
   template std::vector<particles::OwnField> AtomForce<dim>::own_fields(const Particles &) const;   \

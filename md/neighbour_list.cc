@@ -65,10 +65,17 @@ void NeighbourList::set_image_records()
 template <int dim>
 bool NeighbourList::update(const Components<dim> &reference, const Components<dim> &displacement)
 {
-  if (n_atoms() != int(reference[0].size())) {
-    build<dim>(reference, displacement);
-    return true;
-  }
+  if (place<dim>(reference, displacement))
+    return false;
+  build<dim>(reference, displacement);
+  return true;
+}
+
+template <int dim>
+bool NeighbourList::place(const Components<dim> &reference, const Components<dim> &displacement)
+{
+  if (n_atoms() != int(reference[0].size()))
+    return false;
   bool is_near = true;
   for (int s = 0; s < n_atoms(); ++s) {
     AtomRecord now;
@@ -82,12 +89,9 @@ bool NeighbourList::update(const Components<dim> &reference, const Components<di
     records_[s] = now;
     is_near = is_near && way2 <= skin_ * skin_ / 4; // not so of what is no number
   }
-  if (!is_near) {
-    build<dim>(reference, displacement);
-    return true;
-  }
-  set_image_records();
-  return false;
+  if (is_near)
+    set_image_records();
+  return is_near;
 }
 
 template <int dim>
@@ -222,6 +226,7 @@ void NeighbourList::find_pairs(const CellGrid &grid, double reach)
 #define INSTANTIATE(dim)                                                                           \
   template NeighbourList::NeighbourList(double, double, const Vector<dim> &);                      \
   template bool NeighbourList::update<dim>(const Components<dim> &, const Components<dim> &);      \
+  template bool NeighbourList::place<dim>(const Components<dim> &, const Components<dim> &);       \
   template void NeighbourList::build<dim>(const Components<dim> &, const Components<dim> &);
 INSTANTIATE(2)
 INSTANTIATE(3)

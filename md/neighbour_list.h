@@ -22,6 +22,10 @@ public:
   template <int dim>
   bool update(const Components<dim> &reference, const Components<dim> &displacement);
 
+  /// The same without building: returns false where that is due.
+  template <int dim>
+  bool place(const Components<dim> &reference, const Components<dim> &displacement);
+
   /// The same, built in any case.
   template <int dim>
   void build(const Components<dim> &reference, const Components<dim> &displacement);
@@ -45,6 +49,7 @@ public:
   const std::vector<int> &neighbours() const { return neighbour_; }
   /// Where the atoms of slots and their images are, n_atoms() + n_images().
   const std::vector<AtomRecord> &records() const { return records_; }
+  void set_extra(int record, double value) { records_[record].extra = value; }
   /// The slot whose atom a neighbour is.
   int slot_of(int neighbour) const
   {

@@ -22,8 +22,8 @@ std::string grouped(std::int64_t n)
 
 Prefix si_prefix(double magnitude)
 {
-  static constexpr std::array<const char *, 9> symbols = {"p", "n", "µ", "m", "",
-                                                          "k", "M", "G", "T"};
+  static constexpr std::array<const char *, 11> symbols = {"a", "f", "p", "n", "µ", "m",
+                                                           "",  "k", "M", "G", "T"};
   if (!(magnitude > 0) || !std::isfinite(magnitude))
     return {1, ""};
   // The small slack keeps 999.9999999 k from appearing as 1000 k.

@@ -210,9 +210,15 @@ md::Crystal<dim> crystal_of(const Scene &scene)
   md::CrystalParameters<dim> p;
   p.kind = kind_of(scene);
   const bool has_file = !a.file.empty();
-  const md::Potential potential =
-      core::at_key(has_file ? section + "/file" : section, "correct it or its path",
-                   [&] { return potential_of(a); });
+  const std::string source = has_file ? section + "/file" : section;
+  const md::Potential potential = core::at_key(source, "correct it or its path", [&] {
+    try {
+      return potential_of(a);
+    } catch (const core::EnvironmentError &error) {
+      throw core::KeyedError(source, "the \"file\" in /atoms cannot be read", error.what(),
+                             "check the path; it starts in the folder of the scene");
+    }
+  });
   p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
                                [&] { return orientation_of<dim>(scene); });
   p.thickness = dim == 2 ? scene.specimen.thickness : 1;

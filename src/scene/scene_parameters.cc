@@ -63,7 +63,7 @@ void declare_periodic_axis(Section &s, PeriodicAxis &p)
 
 void declare_specimen(Section &s, Specimen &p)
 {
-  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-7, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
+  s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-9, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
   s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-8, 1e4, "mm um nm").above(0);
   s.list("outline", p.outline, "in place of size: the corners of the body's outline in turn, either way round; in 3D that of a prism along z", declare_corner);
   s.list("cutouts", p.cutouts, "openings of any outline; what reaches out of the specimen opens its side; in 3D they go through along z", declare_cutout);
@@ -219,7 +219,7 @@ void declare_zone(Section &s, DiscreteZone &z)
 
 void declare_far_field(Section &s, FarField &f)
 {
-  s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").usually(1e-9, 1e3, "mm um nm").above(0).required();
+  s.add("cell_size", f.cell_size, "size h of the cells beside the discrete zone; 2.5 to 8 spacings").in("m").usually(1e-10, 1e3, "mm um nm").above(0).required();
   s.add("levels", f.levels, "refinement levels: the largest cells have size h 2^levels").at_least(0).at_most(8);
   s.add("cells_per_level", f.cells_per_level, "cells between two steps of the mesh size").at_least(1).at_most(100);
   s.add("growth", f.growth, "above 1: cells grow to that size by this factor from one to the next, in place of refinement, which doubles them").at_least(1).at_most(1.5);

@@ -30,6 +30,8 @@ constexpr double largest_strain = 0.1;
 // Bonds between atoms are 2 to 3 % stiffer or softer for each per cent of strain, of which an
 // overlap without finite strains knows nothing.
 constexpr double largest_linear_strain = 0.03;
+// Which errs by as much as a strain of 1e-3, phi^2/2.
+constexpr double largest_corotated_bending = 2.5 * degree;
 } // namespace
 
 template <int dim>
@@ -78,7 +80,8 @@ std::optional<std::string> RegimeControl<dim>::excess() const
                        can_turn_ ? "set /coupling/regime to \"automatic\""
                                  : "energy-weighted schemes have no other: hold the specimen "
                                    "against rotation or end the run earlier");
-  if (regime_ == Regime::corotated && near_.bending > limit)
+  if (regime_ == Regime::corotated &&
+      near_.bending > (can_strain_ ? limit : largest_corotated_bending))
     return fmt::format(
         "the overlap bends by {:.2f} degrees, more than one rotation carries; {}",
         near_.bending / degree,

@@ -249,6 +249,7 @@ TEST(AtomForceTest, EnergyIsKeptInMotion)
 {
   auto body = make_body<3>(foiles_copper(), CrystalKind::fcc, {3, 3, 3}, {true, true, true});
   body.options.skin = 0.2 * angstrom;
+  body.options.keeps_neighbours = false;
   auto made = std::make_unique<AtomForce<3>>(body.crystal, body.packing, body.options);
   const AtomForce<3> &force = *made;
   Noise noise(4);

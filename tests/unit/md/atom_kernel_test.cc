@@ -13,7 +13,7 @@ struct AtomKernelTest : ::testing::Test
   template <int dim>
   static void compare(Body<dim> body, double amplitude)
   {
-    SCOPED_TRACE(body.crystal.potential().species(0).name);
+    SCOPED_TRACE(body.crystal.potential().species(0).name + std::to_string(amplitude));
     body.disturb(amplitude * body.crystal.spacing());
     auto expected = body.atoms;
     body.oracle(body.crystal.potential()).compute(expected);
@@ -26,6 +26,7 @@ struct AtomKernelTest : ::testing::Test
       if (!(hwy::SupportedTargets() & target))
         continue;
       hwy::SetSupportedTargetsForTest(target);
+      body.options.keeps_neighbours = false;
       auto force = body.force();
       force.compute(body.atoms, 0);
       EXPECT_LT(difference(body.atoms.force, expected.force, scale), 1e-12);
@@ -47,6 +48,20 @@ TEST_F(AtomKernelTest, AgreesWithTheOracleOnAllInstructionSets)
   // Many blocks of slots, of which the last one is not full.
   compare<3>(make_body<3>(foiles_copper(), CrystalKind::fcc, {5, 4, 5.5}, {}, some_rotation<3>()),
              0.05);
+}
+
+TEST_F(AtomKernelTest, AgreesForAlloysOfTables)
+{
+  for (const Potential &p : {nickel_aluminium(), copper_zirconium()}) {
+    auto body = make_body<3>(p, CrystalKind::fcc, {4, 3, 3}, {true, false, false});
+    for (int i = 0; i < body.atoms.size(); ++i)
+      body.options.species.push_back(i % 5 < 2);
+    for (const double amplitude : {0.02, 0.15, 0.6})
+      compare<3>(body, amplitude);
+    // The other species alone: tables are those of species that there are.
+    std::fill(body.options.species.begin(), body.options.species.end(), 1);
+    compare<3>(body, 0.15);
+  }
 }
 
 TEST_F(AtomKernelTest, BearsAtomsAtTheSamePlace)

@@ -181,7 +181,7 @@ TEST(AtomTangentTest, FacesOfInnerAtomsClose)
                   face.normal.transpose();
       },
       &asked);
-  EXPECT_EQ(n, 42); // three shells
+  EXPECT_EQ(n, 12);
   const double area = std::pow(body.crystal.spacing(), 2);
   EXPECT_LT(normals.norm(), 1e-14 * area);
   EXPECT_LT((volume - body.crystal.volume() * Matrix<3>::Identity()).norm(),

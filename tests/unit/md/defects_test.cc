@@ -59,4 +59,36 @@ TEST(DefectsTest, VacanciesAreSeen)
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 11), 12);
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 12), 243);
 }
+// The published ones are those of relaxed surfaces: layers go down along their forces.
+TEST(DefectsTest, SurfaceEnergiesOfTables)
+{
+  struct Case
+  {
+    Potential potential;
+    CrystalKind kind;
+    double energy; // J/m^2
+  };
+  for (const Case &c : {Case{foiles_copper(), CrystalKind::fcc, 1.288},
+                        Case{mishin_copper(), CrystalKind::fcc, 1.345},
+                        Case{mendelev_iron(), CrystalKind::bcc, 1.785}})
+  {
+    auto body = make_body<3>(c.potential, c.kind, {1, 1, 12}, {true, true, false});
+    auto force = body.force();
+    const double a = body.crystal.lattice_parameter();
+    double largest = 1;
+    for (int step = 0; step < 2000 && largest > 1e-6; ++step) {
+      force.compute(body.atoms, 0);
+      largest = 0;
+      for (int i = 0; i < body.atoms.size(); ++i) {
+        const double f = body.atoms.force[2][i] / body.stiffness(); // m
+        body.atoms.displacement[2][i] += 0.1 * f;
+        largest = std::max(largest, std::abs(f) / body.crystal.spacing());
+      }
+    }
+    EXPECT_LT(largest, 1e-6);
+    const double relaxed =
+        body.crystal.surface_energy({0, 0, 1}) + force.potential_energy(body.atoms) / (2 * a * a);
+    EXPECT_NEAR(relaxed / c.energy, 1, 0.002);
+  }
+}
 } // namespace ligament::md::testing

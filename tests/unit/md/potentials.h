@@ -30,6 +30,14 @@ inline Potential mendelev_iron()
 {
   return read_setfl_fs(table("Fe_mm.eam.fs"), {"Fe"});
 }
+inline Potential nickel_aluminium() // densities by the atom that makes them
+{
+  return read_setfl(table("NiAlH_jea.eam.alloy"), {"Ni", "Al"});
+}
+inline Potential copper_zirconium() // densities by pairs
+{
+  return read_setfl_fs(table("CuZr_mm.eam.fs"), {"Cu", "Zr"});
+}
 inline Species argon()
 {
   return {"Ar", 39.948 * atomic_mass_unit};

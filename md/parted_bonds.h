@@ -1,0 +1,50 @@
+// Nearest neighbours of a crystal that have left each other: what cracks and slip leave behind.
+#pragma once
+
+#include "md/bond_view.h"
+#include "particles/force_report.h"
+
+#include <map>
+
+namespace ligament::md
+{
+/// Two nearest neighbours of the reference count as parted for good once they are farther apart
+/// than midway between the shells of neighbours, beyond what a bond bears. A parted bond has the
+/// area of the face between the cells of the two atoms and no energy: that is in the potential.
+template <int dim>
+class PartedBonds
+{
+public:
+  using Particles = particles::Particles<dim>;
+
+  PartedBonds() = default;
+  /// Bonds of the reference; `limit` in m, `area` of a face in m^2.
+  PartedBonds(std::vector<Bond<dim>> bonds, double limit, double area);
+
+  /// Adds those that have parted by now, in the order of the bonds.
+  void look(const Particles &atoms, double time);
+
+  /// In the order in which they were seen.
+  const std::vector<particles::BrokenBond<dim>> &parted() const { return parted_; }
+  double area() const { return area_; }
+  /// visit(bond, is_parted)
+  template <typename Visit>
+  void for_each_bond(Visit &&visit) const
+  {
+    for (std::size_t b = 0; b < bonds_.size(); ++b)
+      visit(bonds_[b], is_parted_[b] != 0);
+  }
+
+  void save(core::State &state, const Particles &atoms) const;
+  void load(const core::State &state, const Particles &atoms);
+
+private:
+  void part(std::size_t bond, const Particles &atoms, double time);
+
+  std::vector<Bond<dim>> bonds_;
+  std::vector<char> is_parted_;
+  std::vector<std::size_t> order_; // parted bonds as they were seen
+  std::vector<particles::BrokenBond<dim>> parted_;
+  double limit_ = 0, area_ = 0;
+};
+} // namespace ligament::md

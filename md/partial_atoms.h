@@ -1,0 +1,45 @@
+// A part of the energy of atoms: every pair and every embedding with a share of its own.
+#pragma once
+
+#include "md/potential.h"
+#include "particles/particle_force.h"
+
+namespace ligament::md
+{
+/// sum_pairs s_b [phi + F'_i f_ij + F'_j f_ji] + sum_i s_i [F_i(rho_i) - F'_i rho_i], less the same
+/// at rest, with the F' that the atoms of the whole body have there: its second derivatives at rest
+/// are those of the terms (M6), each times its share; in the crystal F' = 0. At any deformation
+/// (theory.md (M9)). Plain loops over few atoms.
+template <int dim>
+class PartialAtoms : public particles::PartialForce<dim>
+{
+public:
+  /// Between atoms of the part. Atoms whose embedding has a share need all their neighbours.
+  struct SharedPair
+  {
+    int i, j;
+    Vector<dim> reference; // m, from i to j or its image
+    double share;          // of phi
+    double tilt_i, tilt_j; // share times F' of i and of j
+  };
+
+  struct SharedAtom
+  {
+    int species;
+    double share;      // of its embedding
+    double rest_slope; // F' at rest, J
+  };
+
+  PartialAtoms(const Potential &potential, std::vector<SharedPair> pairs,
+               std::vector<SharedAtom> atoms);
+
+  double compute(particles::Particles<dim> &atoms) override;
+
+private:
+  Potential potential_;
+  std::vector<SharedPair> pairs_;
+  std::vector<SharedAtom> atoms_;
+  std::vector<double> rest_density_;
+  std::vector<double> denser_, slope_; // rho less that at rest; s (F' less that at rest)
+};
+} // namespace ligament::md
