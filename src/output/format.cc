@@ -27,8 +27,8 @@ Prefix si_prefix(double magnitude)
   if (!(magnitude > 0) || !std::isfinite(magnitude))
     return {1, ""};
   // The small slack keeps 999.9999999 k from appearing as 1000 k.
-  const int power = std::clamp(int(std::floor((std::log10(magnitude) + 1e-9) / 3)), -4, 4);
-  return {std::pow(1000., power), symbols[power + 4]};
+  const int power = std::clamp(int(std::floor((std::log10(magnitude) + 1e-9) / 3)), -6, 4);
+  return {std::pow(1000., power), symbols[power + 6]};
 }
 
 std::string quantity(double value, const std::string &unit)

@@ -64,7 +64,7 @@ void declare_periodic_axis(Section &s, PeriodicAxis &p)
 void declare_specimen(Section &s, Specimen &p)
 {
   s.add("size", p.size, "edge lengths of the box, which is centred at the origin; not with outline, ball or file").in("m").usually(1e-9, 1e4, "mm um nm").above(0).required_unless("there is an outline, a ball or a file");
-  s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-8, 1e4, "mm um nm").above(0);
+  s.add("thickness", p.thickness, "extent across the plane; in 3D of an outline along z, half of it to either side of 0").in("m").usually(1e-10, 1e4, "mm um nm").above(0);
   s.list("outline", p.outline, "in place of size: the corners of the body's outline in turn, either way round; in 3D that of a prism along z", declare_corner);
   s.list("cutouts", p.cutouts, "openings of any outline; what reaches out of the specimen opens its side; in 3D they go through along z", declare_cutout);
   s.list("slots", p.slots, "notches with parallel flanks at any angle; in 3D they go through along z", declare_slot);
