@@ -66,10 +66,12 @@ void expect_constants(const Vector<3> &found, const Vector<3> &expected)
 }
 
 /// Constants of the tables as they are known for these potentials: a in angstrom, C in GPa; to 2e-5
-/// and 0.1 %. The iron table holds its functions at steps of 5.3e-4 angstrom, where the curvature
-/// of any interpolation is ruled by how the values were rounded: the published constants belong to
-/// the smooth functions, which differences over ten steps (truncated at (5.3e-3)^4 phi/90,
-/// 1e-9 of phi'') see. The crystal has the constants of the rounded table, as LAMMPS would have.
+/// and 0.1 %. The iron table has r phi at steps of h = 5.3e-4 angstrom with noise (by its sixth
+/// differences) of 8e-10 eV angstrom near the first neighbours, 3e-10 near the second. A spline
+/// makes 6/h^2 of noise in values: 7e-3 and 3e-3 eV/angstrom^2 of phi'', some 0.4 GPa of C11 (0.85
+/// are found). Differences over ten steps see the smooth functions (noise over 100 times less,
+/// truncated at (5.3e-3 angstrom)^4 phi/90). The crystal has the constants of the table as it
+/// is, as in LAMMPS, whose interpolation stands beside.
 TEST(CrystalTest, ConstantsOfPublishedTables)
 {
   struct Case
