@@ -55,6 +55,12 @@ public:
   /// Those with fewer neighbours than the crystal gives them.
   std::vector<int> open_particles(const Particles &atoms,
                                   const std::vector<int> &of) const override;
+  /// Atoms that lack neighbours there have the stress of the crystal in the mesh's motion, and no
+  /// defect.
+  void set_coupled_edge(const Particles &, particles::CoupledEdge<dim> edge) override
+  {
+    edge_ = std::move(edge);
+  }
   void set_energy_weights(const std::vector<double> &weights) override;
   void add_tangent(const Particles &atoms,
                    const std::function<void(const particles::QuadraticTerm<dim> &)> &add,
@@ -140,6 +146,7 @@ private:
   Components<dim> reference_; // m
   AtomKernel kernel_;
   AtomLoads<dim> loads_;
+  particles::CoupledEdge<dim> edge_;
   PartedBonds<dim> parted_;
   int looked_build_ = 0; // number of the list at the last look for parted bonds
   std::vector<double> reference_density_;

@@ -31,6 +31,15 @@ void AtomForce<dim>::stresses(const Particles &atoms, Components<n_strains<dim>>
       stress[k][b.j] += half / atoms.volume[b.j];
     }
   });
+  for (std::size_t o = 0; o < edge_.open.size(); ++o) {
+    const Matrix<dim> gradient = edge_.gradient(int(o));
+    const Matrix<dim> kirchhoff =
+        crystal_.stress(gradient) * (Matrix<dim>::Identity() + gradient).transpose();
+    for (int k = 0; k < n_strains<dim>; ++k) {
+      const int r = dim == 2 && k == 2 ? 0 : first[k], c = dim == 2 && k == 2 ? 1 : second[k];
+      stress[k][edge_.open[o]] = kirchhoff(r, c);
+    }
+  }
 }
 
 template <int dim>
@@ -98,6 +107,8 @@ std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &atoms) cons
       symmetry[i] += sums[k];
     symmetry[i] += double(n - int(x.size())); // each one that is missing counts 1
   }
+  for (const int i : edge_.open)
+    symmetry[i] = 0;
   return symmetry;
 }
 
@@ -107,6 +118,10 @@ std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
   std::vector<int> numbers;
   for (const auto &near : neighbours(atoms, shell_limit()))
     numbers.push_back(int(near.size()));
+  for (const int i : edge_.open) {
+    const CrystalKind kind = crystal_.parameters().kind;
+    numbers[i] = kind == CrystalKind::triangular ? 6 : kind == CrystalKind::fcc ? 12 : 14;
+  }
   return numbers;
 }
 

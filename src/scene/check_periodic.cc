@@ -170,13 +170,14 @@ private:
     if (!f_.sound({"/far_field"}))
       return;
     const double width = scene_.specimen.size[c], cell = scene_.far_field->cell_size;
-    if (width < 1.5 * cell)
+    if (width < 2.5 * cell)
       f_.error(key,
-               fmt::format("the body repeats itself after {:.4g} m along {}, one cell of the far "
+               fmt::format("the body repeats itself after {:.4g} m along {}, two cells of the far "
                            "field",
                            width, axis_names[c]),
-               "an overlap that goes on through joined sides needs two cells between them",
-               fmt::format("make the specimen at least {:.4g} m wide there", 1.5 * cell));
+               "an overlap that goes on through joined sides needs three cells between them: the "
+               "nearest image of a node must be one",
+               fmt::format("make the specimen at least {:.4g} m wide there", 2.5 * cell));
   }
 
   void side(int boundary, const std::string &key, const std::string &name)
