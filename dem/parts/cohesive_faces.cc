@@ -218,11 +218,14 @@ void CohesiveFaces<dim>::book(const Particles &p)
 {
   is_booked_ = true;
   for (auto &[name, face] : faces_) {
-    const SofteningFace<dim> now(face, p, strains_);
+    const double shear = OpenedBond::of(face.bond).shear;
+    const auto bending_share = [&](const Opening<dim> &o) {
+      return SofteningFace<dim>::bending_share(face, shear, o);
+    };
     const Spin<dim> turn = relative_turn(face.bond, p);
     const Vector<dim> opened = face.opening.jump - face.stayed.jump;
     const double taken = 0.5 * (face.last_force + face.force).dot(opened) +
-                         (now.bending_share(face.stayed) - now.bending_share()) *
+                         (bending_share(face.stayed) - bending_share(face.opening)) *
                              bending_product(face.bond, face.last_turn, turn);
     if (!face.fall.is_on())
       face.spent += face.law.strength * face.law.reach *

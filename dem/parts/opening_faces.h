@@ -43,11 +43,7 @@ struct SofteningFace
 
   SofteningFace(const CohesiveFace<dim> &of, const particles::Particles<dim> &p,
                 const InelasticStrains<dim> &strains)
-      : face(of), law(OpenedBond::of(of.bond)),
-        own(Turn<dim>::of(p, of.turns_with_i ? of.bond.i : of.bond.j)),
-        motion(
-            strains.motion(of.bond, p, Turn<dim>::of(p, of.bond.i), Turn<dim>::of(p, of.bond.j))),
-        jump(in_space(of.opening.jump)), normal(in_space(of.bond.normal))
+      : SofteningFace(of, p, strains, Turn<dim>::of(p, of.bond.i), Turn<dim>::of(p, of.bond.j))
   {
   }
 
@@ -90,13 +86,14 @@ struct SofteningFace
   }
 
   /// Share of bending and twist that is left: they fall as the face's stiffness does.
-  double bending_share() const { return bending_share(face.opening); }
-  double bending_share(const Opening<dim> &o) const
+  double bending_share() const { return bending_share(face, law.shear, face.opening); }
+  /// The same at an opening o, with k in N/m: the particles' state does not matter.
+  static double bending_share(const CohesiveFace<dim> &face, double shear, const Opening<dim> &o)
   {
     const double left = face.law.left(o), force = face.law.strength * left;
     if (face.fall.is_on()) // what presses has no strength to lose, but time goes on
-      return left > 0 ? left * force / (force + law.shear * o.largest) : 0;
-    return force / (force + law.shear * o.largest);
+      return left > 0 ? left * force / (force + shear * o.largest) : 0;
+    return force / (force + shear * o.largest);
   }
 
   /// At these strains of the particles, in the axes of each, in place of their own.
@@ -140,6 +137,14 @@ struct SofteningFace
   }
 
 private:
+  SofteningFace(const CohesiveFace<dim> &of, const particles::Particles<dim> &p,
+                const InelasticStrains<dim> &strains, const Turn<dim> &of_i, const Turn<dim> &of_j)
+      : face(of), law(OpenedBond::of(of.bond)), own(of.turns_with_i ? of_i : of_j),
+        motion(strains.motion(of.bond, p, of_i, of_j)), jump(in_space(of.opening.jump)),
+        normal(in_space(of.bond.normal))
+  {
+  }
+
   double energy_change(const Vector<dim> &whole) const
   {
     const Vector<dim> left = whole - jump;

@@ -12,6 +12,9 @@ namespace ligament::program
 {
 namespace
 {
+/// Of figures that have no bound.
+constexpr double stated = std::numeric_limits<double>::infinity();
+
 struct Body
 {
   std::string name;
@@ -85,9 +88,11 @@ std::vector<Result> bonded_again()
     const auto [strength, unbooked] =
         body.dimension == 2 ? press_and_pull<2>(body) : press_and_pull<3>(body);
     const std::string name = "law_rebonding/" + body.name;
-    // Faces of a cut off the rows are bonded under unequal tractions, and keep these.
     const bool is_even = body.packing == PackingKind::hexagonal && body.degrees == 0;
-    results.push_back({name + "/strength", std::abs(strength - 1), is_even ? 0.05 : 0.3, 0.02});
+    if (is_even)
+      results.push_back({name + "/strength", std::abs(strength - 1), 0.05, 0.02});
+    else // faces are bonded under unequal tractions, and keep these: how unequal no theory says
+      results.push_back({name + "/strength", std::abs(strength - 1), stated, {}});
     results.push_back({name + "/residual", unbooked, 1e-4, 1e-6});
   }
   return results;
@@ -140,10 +145,14 @@ std::vector<Result> limited_cracks()
     const double free = run_along(0, packing)[0];
     for (const double limit : {0.05, 0.15}) {
       const auto [speed, unbooked] = run_along(limit, packing);
-      // In a random packing a crack leaves out faces that it has to cross in a lattice.
-      const double must = packing == PackingKind::random ? 1.2 : 1;
-      results.push_back({fmt::format("{}at_{}", begin, limit), speed / limit, must, 1.});
-      results.push_back({fmt::format("{}without_over_{}", begin, limit), free / limit, 1.2,
+      // Faces of a path fall one after the other where each shares a particle with the next one. In
+      // a row all do; in a random packing a crack leaves out some, and how many no theory says.
+      if (packing == PackingKind::random)
+        results.push_back({fmt::format("{}at_{}", begin, limit), speed / limit, stated, {}});
+      else
+        results.push_back({fmt::format("{}at_{}", begin, limit), speed / limit, 1, 1.});
+      // Else the limit would not be what holds the crack.
+      results.push_back({fmt::format("{}without_over_{}", begin, limit), free / limit, 1,
                          std::nullopt, Result::Bound::at_least});
       results.push_back({fmt::format("{}residual_at_{}", begin, limit), unbooked, 1e-2, 1e-3});
     }

@@ -173,6 +173,28 @@ TEST(Weibull, MeanAndScatterAreThoseOfTheDistribution)
   }
 }
 
+/// What the criteria take for the area of a face is its own.
+TEST(Weibull, StrengthOfABodysFaceFollowsItsArea)
+{
+  constexpr double modulus = 4;
+  const auto packing = pair<2>();
+  Particles<2> p;
+  packings::fill_particles(packing, 1., p);
+  p.displacement[0][1] = 1e-6;
+  const auto utilisation = [&](double reference_area) {
+    FaceStrength strength = 1.;
+    strength.scatter = {modulus, reference_area, 3};
+    const DemMaterial material{1., 0, 1, PlaneMode::strain, 0};
+    const ManyBodyForce<2> force(packing, material, {},
+                                 {FractureLaw::Criterion::face_tension, strength});
+    return force.weakest_bond(p, {0, 1}).utilisation;
+  };
+  const double area = packing.faces[0].area, mean = utilisation(0);
+  EXPECT_NEAR(utilisation(area), mean, 1e-12 * mean);
+  EXPECT_NEAR(utilisation(8 * area), mean * std::pow(8, -1 / modulus), 1e-12 * mean);
+  EXPECT_NEAR(utilisation(area / 8), mean * std::pow(8, 1 / modulus), 1e-12 * mean);
+}
+
 /// The same body with its particles counted the other way round.
 template <int dim>
 Packing<dim> renumbered(Packing<dim> p)
