@@ -136,6 +136,35 @@ std::vector<Result> boxes_3d(const std::string &name, const Point &size,
   return report(name, worst);
 }
 
+/// Bands through joined sides: what the fit leaves.
+std::vector<Result> joined_sides()
+{
+  const std::string name = "patch_joined_sides";
+  std::vector<Result> results;
+  const auto add = [&](const std::string &packing, double residual) {
+    results.push_back({name + "/" + packing, residual, 1e-12, 1e-14});
+  };
+  for (const bool random : {false, true}) {
+    double worst = 0;
+    for (const double nu : {0., 0.3, 0.45}) {
+      Scene scene = unit_scene(2, {24, 94, 0}, nu);
+      scene.specimen.periodic.push_back({Axis::x});
+      add_far_field(scene, {0, 34, 0}, 4);
+      scene.coupling.transition_cells = 2;
+      if (random)
+        scene.zone.packing = PackingKind::random;
+      keep_worst(worst, UnitBody<2>(scene).body.figures.at("patch_residual").value);
+    }
+    add(random ? "random" : "hexagonal", worst);
+  }
+  Scene scene = unit_scene(3, {9, 9, 56}, 0.3);
+  scene.specimen.periodic = {{Axis::x}, {Axis::y}};
+  add_far_field(scene, {0, 0, 25}, 3);
+  scene.coupling.transition_cells = 2;
+  add("fcc", UnitBody<3>(scene).body.figures.at("patch_residual").value);
+  return results;
+}
+
 std::vector<Result> band_3d(const std::string &name, double cell_size, const Arrangement &packing)
 {
   Deviation worst;
@@ -199,6 +228,7 @@ std::vector<Case> patch_cases()
            [=] { return ring_2d("patch_ring_2d_random_growing", 3.07, random_growing); }},
           {"patch_band_3d_random_hanging", band + " and doubles its cells, random, h/d 2.6", true,
            [=] { return band_3d("patch_band_3d_random_hanging", 2.6, random_hanging); }},
+          {"patch_joined_sides", "overlap through joined sides", false, joined_sides},
           {"patch_l_shape_2d", "zone of two boxes with a re-entrant corner, hexagonal", false,
            [] { return boxes_2d("patch_l_shape_2d", l_shape_2d, {}); }},
           {"patch_l_shape_2d_random", "zone of two boxes with a re-entrant corner, random", false,
