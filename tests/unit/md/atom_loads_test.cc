@@ -1,4 +1,5 @@
-// Loads on the sides of crystals, crystals that cracks part, and what couplers are told of both.
+// Loads on the sides of crystals, crystals that cracks part, bonds that part, and what couplers are
+// told of all that.
 #include "tests/unit/md/bodies.h"
 
 #include "core/check.h"
@@ -311,5 +312,57 @@ TEST(CouplingTest, OpenAtomsLackNeighbours)
       largest = std::max(largest, get(left, i).norm());
   EXPECT_GT(largest, 1e-4 * body.stiffness() * body.crystal.spacing());
   EXPECT_EQ(force.elastic_constants().stress.norm(), 0);
+}
+
+// Bonds of nearest neighbours part where a slit is drawn open, each once, and stay parted.
+TEST(PartedBondsTest, AreSeenOnce)
+{
+  Body<2> body = specimen({12, 6});
+  const double d = body.crystal.spacing(), middle = 0.5 * body.top[1];
+  auto force = body.force();
+  Particles &p = body.atoms;
+  int n_crossing = 0;
+  force.for_each_face(p, [&](const particles::FaceView<2> &face) {
+    n_crossing += p.reference[1][face.i] < middle && p.reference[1][face.j] > middle;
+    EXPECT_TRUE(face.bonded);
+    EXPECT_NEAR(face.area, d / std::sqrt(3.), 1e-12 * d); // of a cell of thickness 1
+  });
+  const auto open = [&](double gap) {
+    for (int i = 0; i < p.size(); ++i)
+      p.displacement[1][i] = p.reference[1][i] > middle ? gap : 0;
+    force.compute(p, gap / d);
+  };
+  open(0.2 * d);
+  EXPECT_TRUE(force.broken_bonds().empty());
+  open(1.2 * d);
+  EXPECT_EQ(int(force.broken_bonds().size()), n_crossing);
+  EXPECT_GT(n_crossing, 20);
+  open(0);
+  open(1.5 * d);
+  EXPECT_EQ(int(force.broken_bonds().size()), n_crossing);
+  double length = 0;
+  for (const auto &bond : force.broken_bonds()) {
+    EXPECT_NEAR(bond.time, 1.2, 1e-12);
+    EXPECT_NEAR(bond.position[1], middle, d);
+    length += bond.area * std::abs(bond.normal[1]);
+  }
+  // Two bonds per atom of the row, each seen as half a spacing.
+  EXPECT_NEAR(length, n_crossing * d / 2, 1e-12 * d);
+  int n_parted = 0;
+  force.for_each_face(p, [&](const particles::FaceView<2> &face) { n_parted += !face.bonded; });
+  EXPECT_EQ(n_parted, 2 * n_crossing);
+}
+
+// A whole crystal that is strained or turns has lost no bond.
+TEST(PartedBondsTest, StrainAndRotationPartNothing)
+{
+  Body<2> body = specimen({12, 6});
+  Matrix<2> gradient;
+  gradient << std::cos(0.8) * 1.15 - 1, -std::sin(0.8), std::sin(0.8) * 1.15, std::cos(0.8) - 1;
+  for (int i = 0; i < body.atoms.size(); ++i)
+    set(body.atoms.displacement, i, Vector<2>(gradient * get(body.atoms.reference, i)));
+  auto force = body.force();
+  force.compute(body.atoms, 1);
+  EXPECT_TRUE(force.broken_bonds().empty());
 }
 } // namespace ligament::md::testing

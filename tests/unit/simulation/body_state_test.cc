@@ -3,6 +3,7 @@
 #include "src/simulation/body_state.h"
 
 #include "dem/many_body_force.h"
+#include "src/scene/read_scene.h"
 #include "src/simulation/damping.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/regime_control.h"
@@ -110,7 +111,7 @@ bool same_bits(const std::vector<double> &a, const std::vector<double> &b)
 template <int dim>
 void expect_same_course(const Scene &scene, double from, double to, long least_broken,
                         bool rests = false,
-                        const ForceMaker<dim> &make_force = make_many_body_force<dim>)
+                        const ForceMaker<dim> &make_force = make_zone_force<dim>)
 {
   Course<dim> plain(scene, rests, make_force);
   std::vector<std::vector<double>> ledgers; // after each far step
@@ -207,13 +208,13 @@ TEST(BodyState, ASlidingClosedCrackGoesOnToTheLastBit)
                         60, 500, 1);
 }
 
-// Faces break under pressure by strengths that scatter: contacts take over, keep their distances and
-// slips.
+// Faces break under pressure by strengths that scatter: contacts take over, keep their distances
+// and slips.
 TEST(BodyState, FacesThatFailUnderPressureGoOnToTheLastBit)
 {
-  for (const char *criterion :
-       {R"("mohr_coulomb", "cohesion": 2e-3, "friction_angle": 0.5)",
-        R"("drucker_prager", "compressive_strength": 4e-3)"}) {
+  for (const char *criterion : {R"("mohr_coulomb", "cohesion": 2e-3, "friction_angle": 0.5)",
+                                R"("drucker_prager", "compressive_strength": 4e-3)"})
+  {
     SCOPED_TRACE(criterion);
     expect_same_course<2>({"/far_field=none", friction,
                            std::string(R"(/material/fracture={"criterion": )") + criterion +
@@ -303,6 +304,35 @@ TEST(BodyState, ViscosityGoesOnToTheLastBit)
       course.step(false);
     EXPECT_GT(course.body().force()->losses().viscous, 0);
   }
+}
+
+// A crystal that is torn apart: its list of neighbours is built again and again, bonds part,
+// springs and tractions act on its sides.
+TEST(BodyState, ACrystalGoesOnToTheLastBit)
+{
+  const std::string crystal = R"({
+    "dimension": 2,
+    "specimen": {"size": ["36 nm", "36 nm"], "thickness": "0.38 nm",
+                 "cracks": [{"points": [["-2.5 nm", 0], ["2.5 nm", 0]]}]},
+    "atoms": {"potential": "lennard_jones", "energy": "0.0104 eV", "distance": "3.4 angstrom",
+              "mass": "39.95 u"},
+    "discrete_zone": {"packing": "hexagonal",
+                      "region": {"lower": ["-10 nm", "-10 nm"], "upper": ["10 nm", "10 nm"]}},
+    "far_field": {"cell_size": "1 nm"},
+    "coupling": {"overlap_cells": 5, "transition_cells": 3, "step_ratio": 2},
+    "loads": [{"boundary": "top", "velocity": [null, "150 m/s"]},
+              {"boundary": "bottom", "velocity": ["10 m/s", "-150 m/s"]},
+              {"boundary": "left", "traction": ["-10 MPa", 0], "ramp": "5 ps"}],
+    "time": {"duration": "20 ps", "step_fraction": 0.2}
+  })";
+  const auto scene = [&](const std::vector<std::string> &set) {
+    const ReadResult read = parse_scene(crystal, "crystal.json", set);
+    for (const auto &error : read.errors)
+      ADD_FAILURE() << core::to_string(error);
+    return *read.scene;
+  };
+  expect_same_course<2>(scene({"/far_field=none"}), 6e-12, 16e-12, 10);
+  expect_same_course<2>(scene({}), 15.4e-12, 16e-12, 0);
 }
 
 // In three dimensions, with a turned lattice.
