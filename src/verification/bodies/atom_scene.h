@@ -18,7 +18,8 @@ struct AtomBody
 };
 
 /// Lennard-Jones and the plane crystal are argon's size; `zone` and `margin` (of the mesh beyond
-/// it), overlap and cells in spacings. Undamped.
+/// it), overlap and cells in spacings. In 3D the body repeats itself along y and z after about
+/// three cells. Undamped.
 inline Scene atom_scene(const AtomBody &b, double zone, double margin, double cell,
                         int overlap_cells)
 {
@@ -50,6 +51,16 @@ inline Scene atom_scene(const AtomBody &b, double zone, double margin, double ce
     scene.specimen.size[c] = (zone + 2 * margin) * d;
     scene.zone.upper[c] = zone / 2 * d;
     scene.zone.lower[c] = -zone / 2 * d;
+  }
+  if (scene.dimension == 3) {
+    scene.specimen.periodic = {{Axis::y}, {Axis::z}};
+    for (const int c : {1, 2})
+      scene.specimen.size[c] = 3.2 * cell * d;
+    resolve_atoms(scene, nullptr); // whole periods
+    for (const int c : {1, 2}) {
+      scene.zone.upper[c] = scene.specimen.size[c];
+      scene.zone.lower[c] = -scene.zone.upper[c];
+    }
   }
   return scene;
 }
