@@ -130,7 +130,7 @@ void check_time(const Scene &scene, Findings &f)
                         *scene.time.step, scene.time.duration),
             "nothing would be computed", "give a smaller step, or none");
   const bool breaks =
-      scene.material.fracture.criterion != Criterion::none ||
+      scene.atoms || scene.material.fracture.criterion != Criterion::none ||
       std::any_of(scene.inclusions.begin(), scene.inclusions.end(), [](const Inclusion &i) {
         return i.material.fracture.criterion != Criterion::none;
       });
