@@ -29,7 +29,9 @@ void expect_fields(const std::vector<Field> &fields, bool FieldInfo::*on, std::s
 {
   std::size_t n = 0;
   for (const FieldInfo &info : field_table())
-    if (info.*on && (flows || !info.of_flow)) {
+    if (info.*on && (info.only == FieldInfo::Only::anywhere ||
+                     (flows && info.only == FieldInfo::Only::where_it_flows)))
+    {
       ++n;
       const Field *field = find_field(fields, info.name);
       ASSERT_NE(field, nullptr) << info.name;
