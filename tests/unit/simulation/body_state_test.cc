@@ -332,7 +332,7 @@ TEST(BodyState, ACrystalGoesOnToTheLastBit)
     return *read.scene;
   };
   expect_same_course<2>(scene({"/far_field=none"}), 6e-12, 16e-12, 10);
-  expect_same_course<2>(scene({}), 15.4e-12, 16e-12, 0);
+  expect_same_course<2>(scene({}), 7e-12, 16e-12, 0);
 }
 
 // In three dimensions, with a turned lattice.
