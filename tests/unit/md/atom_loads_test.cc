@@ -121,6 +121,21 @@ TEST(AtomLoadsTest, ForcesReactionsAndWorkAreThoseOfSpringsAndTractions)
   EXPECT_NEAR(held.external_work(), held.potential_energy(p) - at_start.potential_energy(p),
               1e-13 * scale * d);
   EXPECT_GT(held.external_work(), 1e-6 * scale * d);
+
+  // A traction that is there in full does the work of the way of its atoms.
+  auto pulled = make({load(3, Load::Kind::traction, 1, t)});
+  pulled.compute(p, 2);
+  const double before = pulled.external_work();
+  double work = 0;
+  Noise noise(9);
+  for (int i = 0; i < p.size(); ++i) {
+    const double way = 0.01 * d * noise();
+    p.displacement[1][i] += way;
+    work += area[i] * t * way;
+  }
+  pulled.compute(p, 3);
+  EXPECT_NEAR(pulled.external_work() - before, work, 1e-14 * scale * d);
+  EXPECT_GT(std::abs(work), 1e-8 * scale * d);
 }
 
 // A body in motion between springs that move: what the loads put in is there.
