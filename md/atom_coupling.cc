@@ -1,5 +1,7 @@
-// What a coupler asks of atoms: neighbours, who lacks some, forces and terms of the reference.
+// What a coupler asks of atoms: neighbours, who lacks some, forces and terms of the reference,
+// parts of the energy.
 #include "md/atom_force.h"
+#include "md/partial_atoms.h"
 
 #include <algorithm>
 
@@ -69,6 +71,53 @@ std::vector<int> AtomForce<dim>::open_particles(const Particles &atoms,
   return open;
 }
 
+template <int dim>
+std::unique_ptr<particles::PartialForce<dim>>
+AtomForce<dim>::part(const Particles &atoms, const std::vector<int> &members,
+                     const typename particles::ParticleForce<dim>::TermShare &share) const
+{
+  using Part = PartialAtoms<dim>;
+  const int n = int(members.size());
+  std::vector<int> index(atoms.size(), -1);
+  std::vector<typename Part::SharedAtom> shared;
+  std::vector<std::vector<int>> neighbours; // of members, themselves first
+  const auto rest_slope = [&](int i) {
+    return body_.potential.embedding(body_.species[i], reference_density_[i]).slope;
+  };
+  for (int m = 0; m < n; ++m) {
+    index[members[m]] = m;
+    shared.push_back({body_.species[members[m]], 0., rest_slope(members[m])});
+    neighbours.push_back({members[m]});
+  }
+  const Particles rest = at_rest();
+  NeighbourList list(list_.cutoff() + list_.skin(), 0, body_.period);
+  list.build<dim>(rest.reference, rest.displacement);
+  std::vector<typename Part::SharedPair> pairs;
+  for_each_bond<dim>(list, rest, body_.period, false, [&](const Bond<dim> &b) {
+    const int i = index[b.i], j = index[b.j];
+    if (b.length < list_.cutoff()) {
+      if (i >= 0)
+        neighbours[i].push_back(b.j);
+      if (j >= 0)
+        neighbours[j].push_back(b.i);
+    }
+    if (i < 0 || j < 0)
+      return;
+    const double s = share(Vector<dim>(get(reference_, b.i) + b.reference / 2), {b.i, b.j});
+    pairs.push_back({i, j, b.reference, s * body_.weight_of(b.i, b.j),
+                     s * body_.weight_of(b.i) * shared[i].rest_slope,
+                     s * body_.weight_of(b.j) * shared[j].rest_slope});
+  });
+  for (int m = 0; m < n && body_.potential.has_embedding(); ++m)
+    shared[m].share = body_.weight_of(members[m]) *
+                      share(Vector<dim>(get(reference_, members[m])), neighbours[m]);
+  const auto is_idle = [&](const auto &p) {
+    return p.share == 0 && shared[p.i].share == 0 && shared[p.j].share == 0;
+  };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_idle), pairs.end());
+  return std::make_unique<Part>(body_.potential, std::move(pairs), std::move(shared));
+}
+
 #define INSTANTIATE(dim)                                                                           \
   template void AtomForce<dim>::reference_forces(const Particles &, Components<dim> &) const;      \
   template void AtomForce<dim>::add_tangent(                                                       \
@@ -77,6 +126,9 @@ std::vector<int> AtomForce<dim>::open_particles(const Particles &atoms,
   template void AtomForce<dim>::for_each_neighbour(                                                \
       const Particles &, const std::function<void(const particles::Neighbour &)> &,                \
       const std::vector<int> *) const;                                                             \
+  template std::unique_ptr<particles::PartialForce<dim>> AtomForce<dim>::part(                     \
+      const Particles &, const std::vector<int> &,                                                 \
+      const particles::ParticleForce<dim>::TermShare &) const;                                     \
   template std::vector<int> AtomForce<dim>::open_particles(const Particles &,                      \
                                                            const std::vector<int> &) const;
 INSTANTIATE(2)

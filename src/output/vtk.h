@@ -33,9 +33,9 @@ class FieldSeries
 public:
   FieldSeries(RunFolder folder, int dimension);
 
-  /// Writes fields/{particles,cells,broken_bonds}_NAME.vt?, of atoms fields/atoms_NAME.xyz, and the .pvd; a state without a name has
-  /// the next number. Empty parts are left out. Of two states of one time the later one written
-  /// counts.
+  /// Writes fields/{particles,cells,broken_bonds}_NAME.vt?, of atoms fields/atoms_NAME.xyz, and the
+  /// .pvd; a state without a name has the next number. Empty parts are left out. Of two states of
+  /// one time the later one written counts.
   void write(const BodyState &state);
 
   /// Of the numbered states so far, in their order.

@@ -50,23 +50,16 @@ const std::vector<AtomBody> solid_bodies = {
     {"argon", AtomPotential::lennard_jones, "", PackingKind::fcc},
     {"iron_turned", AtomPotential::zhou, "Fe", PackingKind::bcc, 0, {1, 1, 0}, {-1, 1, 0}}};
 
-std::vector<Result> all_plane(const std::string &name)
+template <int dim>
+std::vector<Result> all_of(const std::string &name, const std::vector<AtomBody> &bodies,
+                           int n_steps)
 {
   std::vector<Result> results;
-  for (const AtomBody &b : plane_bodies)
-    for (const Result &r :
-         patch_and_rest<2>(name + "/" + b.name, atom_scene(b, 60, 21, 4.1, 6), 500))
+  for (const AtomBody &b : bodies) {
+    const Scene scene = dim == 2 ? atom_scene(b, 60, 21, 4.1, 6) : atom_scene(b, 37, 12, 2.6, 5);
+    for (const Result &r : patch_and_rest<dim>(name + "/" + b.name, scene, n_steps))
       results.push_back(r);
-  return results;
-}
-
-std::vector<Result> all_solid(const std::string &name)
-{
-  std::vector<Result> results;
-  for (const AtomBody &b : solid_bodies)
-    for (const Result &r :
-         patch_and_rest<3>(name + "/" + b.name, atom_scene(b, 37, 12, 2.6, 5), 200))
-      results.push_back(r);
+  }
   return results;
 }
 } // namespace
@@ -74,8 +67,8 @@ std::vector<Result> all_solid(const std::string &name)
 std::vector<Case> atom_cases()
 {
   return {{"atoms_patch", "crystals inside a mesh in 2D: gradients, and no motion without load",
-           false, [] { return all_plane("atoms_patch"); }},
+           false, [] { return all_of<2>("atoms_patch", plane_bodies, 500); }},
           {"atoms_patch_3d", "the same for copper, argon and iron, joined sideways", false,
-           [] { return all_solid("atoms_patch_3d"); }}};
+           [] { return all_of<3>("atoms_patch_3d", solid_bodies, 200); }}};
 }
 } // namespace ligament::program
