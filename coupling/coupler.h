@@ -43,6 +43,7 @@ struct CoupledEnergy
   double impulses = 0;    // step error of the far field's impulses, theory.md eq. (E5); 0 for m = 1
   double fine_damper = 0; // taken so far by the fluctuation damper
   double gap_filter = 0;  // taken so far by the gap-band filter
+  double thermostat = 0;  // taken so far by the overlap's thermostat, less what it has given
 };
 
 /// Share of some steps so far that a part of the body was left out of.
@@ -97,6 +98,8 @@ public:
   virtual bool can_turn() const { return true; }
   /// And the nonlinear one.
   virtual bool can_strain() const { return can_turn(); }
+  /// Strain up to which the other two are as good as that one.
+  virtual double largest_linear_strain() const { return 0.01; }
   /// The regime in which they move from now on, never back to an earlier one; core::InputError when
   /// the discrete law cannot follow. Without more knowledge the far field's cells turn.
   virtual void set_regime(Regime regime, Bodies<dim> &bodies);

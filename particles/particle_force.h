@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/check.h"
+#include "core/hyperelastic_law.h"
 #include "particles/force_report.h"
 #include "particles/rest_blocks.h"
 
@@ -120,6 +121,9 @@ public:
   virtual double stable_step(const Particles<dim> &particles) const = 0;
 
   virtual ElasticConstants<dim> elastic_constants() const = 0;
+  /// The body inside, under finite homogeneous strain. Null: as far as the law knows, linear in
+  /// axes that turn with the material.
+  virtual std::shared_ptr<const core::HyperelasticLaw<dim>> finite_strain_law() const { return {}; }
 
   /// m: particles farther apart than this don't enter each other's terms. 0: those do whose cells
   /// share a face.

@@ -221,6 +221,10 @@ struct AtomsParameters
   /// 3D: directions of the crystal's cube that lie along x and y; all 0: the cube lies along the
   /// axes.
   Point along_x = {0, 0, 0}, along_y = {0, 0, 0};
+  double temperature = 0;   // K
+  int seed = 1;             // of its random numbers
+  double zone_friction = 0; // 1/s, of a thermostat on the zone's atoms outside the overlap
+  double averaging = 0;     // s, over which thermal means are taken; 0: as long as they need
 };
 
 /// m; sides as those of DiscreteZone.

@@ -26,11 +26,10 @@ struct EnergyLedger
   double residual() const
   {
     return kinetic() + potential() + body.impulses + body.fine_damper + body.gap_filter +
-           force.fracture + force.friction + force.breaking_step_error + damping + absorbed +
-           regime_change + settled + force.plastic + force.viscous + force.cohesive +
-           force.rebonding + tools.kinetic +
-           tools.contact + tools.spring +
-           tools.friction - external_work;
+           body.thermostat + force.fracture + force.friction + force.breaking_step_error + damping +
+           absorbed + regime_change + settled + force.plastic + force.viscous + force.cohesive +
+           force.rebonding + tools.kinetic + tools.contact + tools.spring + tools.friction -
+           external_work;
   }
   /// Name of the history column and value of every channel.
   std::vector<std::pair<std::string, double>> channels() const;
