@@ -98,8 +98,6 @@ public:
   virtual bool can_turn() const { return true; }
   /// And the nonlinear one.
   virtual bool can_strain() const { return can_turn(); }
-  /// Strain up to which the other two are as good as that one.
-  virtual double largest_linear_strain() const { return 0.01; }
   /// The regime in which they move from now on, never back to an earlier one; core::InputError when
   /// the discrete law cannot follow. Without more knowledge the far field's cells turn.
   virtual void set_regime(Regime regime, Bodies<dim> &bodies);

@@ -55,7 +55,10 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   mass_solver_->factorise(mass);
   mass_ = mass;
 
-  const auto constants = bodies.zone->force->elastic_constants();
+  const auto &force = *bodies.zone->force;
+  can_strain_ =
+      !force.is_prestressed() || (force.finite_strain_law() && far.body().stress.isZero(0));
+  const auto constants = force.elastic_constants();
   if (parameters.gap_filter > 0)
     filter_ =
         ScalarMatrix<dim>(make_gap_filter(overlap_, parameters.gap_filter, constants.wave_speed_p,
@@ -84,22 +87,25 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
   core::require(regime != Regime::linear, "an overlap that turns cannot be linear again");
   make_coarse_energy(regime, bodies);
   fine_.turn_pads(near_.displacement(), bodies.zone->state);
-  bodies.far->set_corotated(true);
   fine_.write_velocities(near_.velocity(), bodies.zone->state);
 }
 
 template <int dim>
 void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &bodies)
 {
+  bodies.far->set_corotated(true);
   if (regime == Regime::corotated)
     coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_, dead_load_);
   else {
-    if (bodies.zone->force->is_prestressed())
-      throw core::InputError(
-          "/coupling/regime: bonds bear forces in the reference, which the "
-          "nonlinear regime doesn't know yet; choose \"linear\" or \"corotated\"");
+    const auto &force = *bodies.zone->force;
+    core::require(
+        can_strain(),
+        "/coupling/regime: bonds bear a stress in the reference, which cells under finite "
+        "strain don't know; choose \"linear\" or \"corotated\"");
     coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
-        overlap_, parts_, bodies.zone->state, *bodies.zone->force, bodies.far->body(), correction_);
+        overlap_, parts_, bodies.zone->state, force, bodies.far->body(), correction_, dead_load_);
+    if (const auto law = force.finite_strain_law())
+      bodies.far->set_strain_law(law);
   }
   regime_ = regime;
 }

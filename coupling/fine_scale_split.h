@@ -63,8 +63,8 @@ public:
   /// core::InputError when the discrete law cannot follow, and when asked to become linear again.
   void set_regime(Regime regime, Bodies<dim> &bodies) override;
   Regime regime() const { return regime_; }
-  /// Not where bonds bear forces in the reference.
-  bool can_strain() const override { return dead_load_.size() == 0; }
+  /// Forces that bear some in the reference need a law of finite strain, and no stress there.
+  bool can_strain() const override { return can_strain_; }
   /// Of the near cells, in the present state.
   NearMotion largest_motion() const override { return parts_.largest_motion(near_.displacement()); }
 
@@ -130,6 +130,7 @@ private:
 
   Eigen::SparseMatrix<double> stiffness_, correction_; // K_near with the patch fit Z; Z alone
   Nodal<dim> dead_load_;                               // g; empty: no bond bears forces at first
+  bool can_strain_ = true;
   RigidFrames<dim> parts_;
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference

@@ -9,7 +9,9 @@ namespace ligament::fem
 {
 template <int dim>
 CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body,
-                                      const std::vector<char> &is_own)
+                                      const std::vector<char> &is_own,
+                                      std::shared_ptr<const core::HyperelasticLaw<dim>> law)
+    : law_(std::move(law))
 {
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
     if (!is_own[cell] || !mesh.is_box(cell))
@@ -19,24 +21,30 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &bo
       return ((g.size - h).array().abs() <= 1e-12 * h.array()).all();
     });
     if (group == groups_.end())
-      group =
-          groups_.insert(groups_.end(), {h, CellShape<dim>(h), cell_stiffness<dim>(h, body), {}});
+      group = groups_.insert(groups_.end(),
+                             {h, CellShape<dim>(h), cell_stiffness<dim>(h, body), {}, {}});
     group->cells.push_back(mesh.cells[cell]);
   }
-  if (mesh.general.empty())
-    return;
   const int n_box_groups = int(groups_.size());
   CellClasses<dim> classes;
-  for (int cell = 0; cell < mesh.n_cells(); ++cell) {
+  for (int cell = 0; cell < mesh.n_cells() && !mesh.general.empty(); ++cell) {
     if (!is_own[cell] || mesh.is_box(cell))
       continue;
     const CellVectors<dim> corners = cell_corners(mesh, cell);
     const int group = n_box_groups + classes.number(corners);
     if (group == int(groups_.size()))
-      groups_.push_back(
-          {mesh.cell_size[cell], CellShape<dim>(corners), cell_stiffness<dim>(corners, body), {}});
+      groups_.push_back({mesh.cell_size[cell],
+                         CellShape<dim>(corners),
+                         cell_stiffness<dim>(corners, body),
+                         {},
+                         {}});
     groups_[group].cells.push_back(mesh.cells[cell]);
   }
+  for (Group &group : groups_)
+    if (law_) {
+      group.mean = CellMean<dim>(group.shape.corner, body.thickness);
+      group.stiffness = deviation_stiffness(group.stiffness, group.mean, body);
+    }
 }
 
 template <int dim>
@@ -50,7 +58,8 @@ double CorotatedKernel<dim>::subtract_forces(const Components<dim> &displacement
       for (int a = 0; a < n_cell_nodes<dim>; ++a)
         for (int c = 0; c < dim; ++c)
           u(c, a) = displacement[c][nodes[a]];
-      energy += corotated_cell<dim>(group.stiffness, group.shape, u, f);
+      energy += law_ ? strained_cell<dim>(*law_, group.mean, group.stiffness, group.shape, u, f)
+                     : corotated_cell<dim>(group.stiffness, group.shape, u, f);
       for (int a = 0; a < n_cell_nodes<dim>; ++a)
         for (int c = 0; c < dim; ++c)
           force[c][nodes[a]] += f(c, a);

@@ -1,7 +1,9 @@
 // Internal forces of cells that may turn: the far field at large rotation.
 #pragma once
 
-#include "fem/corotated_cell.h"
+#include "fem/strained_cell.h"
+
+#include <memory>
 
 namespace ligament::fem
 {
@@ -9,8 +11,9 @@ template <int dim>
 class CorotatedKernel
 {
 public:
-  /// `is_own[cell]` says which cells take part.
-  CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body, const std::vector<char> &is_own);
+  /// `is_own[cell]` says which cells take part. With a law they are under finite strain, too.
+  CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body, const std::vector<char> &is_own,
+                  std::shared_ptr<const core::HyperelasticLaw<dim>> law = {});
 
   /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J.
   double subtract_forces(const Components<dim> &displacement, Components<dim> &force) const;
@@ -25,9 +28,11 @@ private:
   {
     Vector<dim> size; // m, of the bounding box
     CellShape<dim> shape;
-    CellMatrix<dim> stiffness;
+    CellMatrix<dim> stiffness; // with a law: of deviations from the mean
+    CellMean<dim> mean;        // only with a law
     std::vector<std::array<int, n_cell_nodes<dim>>> cells; // nodes
   };
+  std::shared_ptr<const core::HyperelasticLaw<dim>> law_;
   std::vector<Group> groups_;
 };
 } // namespace ligament::fem

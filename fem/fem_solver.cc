@@ -306,7 +306,14 @@ void FemSolver<dim>::set_corotated(bool corotated)
 {
   corotated_.reset();
   if (corotated)
-    corotated_ = std::make_unique<CorotatedKernel<dim>>(mesh_, body_, is_own_cell_);
+    corotated_ = std::make_unique<CorotatedKernel<dim>>(mesh_, body_, is_own_cell_, strain_law_);
+}
+
+template <int dim>
+void FemSolver<dim>::set_strain_law(std::shared_ptr<const core::HyperelasticLaw<dim>> law)
+{
+  strain_law_ = std::move(law);
+  set_corotated(true);
 }
 
 template <int dim>

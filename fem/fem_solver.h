@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/dashpots.h"
+#include "core/hyperelastic_law.h"
 #include "core/load.h"
 #include "fem/mesh.h"
 #include "fem/pressed_faces.h"
@@ -49,6 +50,8 @@ public:
   /// Whether every cell turns with its material (theory.md eq. (F6)); else rotations must stay
   /// small. Takes effect with the next compute_forces.
   void set_corotated(bool corotated);
+  /// Every cell turns and bears finite strain by this law of the body (eq. (C28)).
+  void set_strain_law(std::shared_ptr<const core::HyperelasticLaw<dim>> law);
 
   /// Largest rotation in rad and largest strain (2-norm) at the centres of the solver's own cells.
   struct Motion
@@ -206,7 +209,8 @@ private:
   std::array<std::vector<char>, dim> held_;
   std::vector<std::pair<int, int>> own_ranges_; // nodes that are not released
   std::unique_ptr<CellKernel<dim>> kernel_;
-  std::unique_ptr<CorotatedKernel<dim>> corotated_; // null: linear
+  std::unique_ptr<CorotatedKernel<dim>> corotated_;              // null: linear
+  std::shared_ptr<const core::HyperelasticLaw<dim>> strain_law_; // null: linear in turned axes
   std::vector<double> mass_, inverse_mass_;
   std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;

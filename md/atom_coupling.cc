@@ -1,12 +1,19 @@
 // What a coupler asks of atoms: neighbours, who lacks some, forces and terms of the reference,
 // parts of the energy.
 #include "md/atom_force.h"
+#include "md/cauchy_born_law.h"
 #include "md/partial_atoms.h"
 
 #include <algorithm>
 
 namespace ligament::md
 {
+template <int dim>
+std::shared_ptr<const core::HyperelasticLaw<dim>> AtomForce<dim>::finite_strain_law() const
+{
+  return std::make_shared<CauchyBornLaw<dim>>(crystal_);
+}
+
 template <int dim>
 void AtomForce<dim>::reference_forces(const Particles &, Components<dim> &force) const
 {
@@ -119,6 +126,8 @@ AtomForce<dim>::part(const Particles &atoms, const std::vector<int> &members,
 }
 
 #define INSTANTIATE(dim)                                                                           \
+  template std::shared_ptr<const core::HyperelasticLaw<dim>> AtomForce<dim>::finite_strain_law()   \
+      const;                                                                                       \
   template void AtomForce<dim>::reference_forces(const Particles &, Components<dim> &) const;      \
   template void AtomForce<dim>::add_tangent(                                                       \
       const Particles &, const std::function<void(const particles::QuadraticTerm<dim> &)> &,       \

@@ -45,6 +45,8 @@ public:
   {
     return crystal_.elastic_constants();
   }
+  /// Cauchy and Born's.
+  std::shared_ptr<const core::HyperelasticLaw<dim>> finite_strain_law() const override;
   double range() const override { return body_.potential.cutoff(); }
   bool is_prestressed() const override { return true; }
   void reference_forces(const Particles &atoms, Components<dim> &force) const override;

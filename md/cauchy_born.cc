@@ -207,6 +207,8 @@ double Crystal<dim>::surface_energy(const Vector<dim> &normal) const
   return energy * layer / volume_;
 }
 
+template Matrix<2> Crystal<2>::deformation(const Matrix<2> &) const;
+template Matrix<3> Crystal<3>::deformation(const Matrix<3> &) const;
 template double Crystal<2>::energy_density(const Matrix<2> &) const;
 template double Crystal<3>::energy_density(const Matrix<3> &) const;
 template Matrix<2> Crystal<2>::stress(const Matrix<2> &) const;

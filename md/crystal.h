@@ -70,6 +70,8 @@ public:
   double energy_density(const Matrix<dim> &gradient) const;
   Matrix<dim> stress(const Matrix<dim> &gradient) const;
   Moduli<dim> moduli(const Matrix<dim> &gradient) const;
+  /// F; throws likewise.
+  Matrix<dim> deformation(const Matrix<dim> &gradient) const;
 
   /// C in the axes of space. Young's modulus and Poisson's ratio are those of Voigt's average over
   /// all orientations, wave speeds the largest (P) and smallest (S) along high symmetry directions.
@@ -87,9 +89,6 @@ private:
   /// Energy per atom and a times its derivative by a, of the lattice with parameter a.
   Jet energy_of(double a, const Potential &potential) const;
   double find_lattice_parameter(const Potential &potential) const;
-  /// F; throws where bonds may be missing.
-  Matrix<dim> deformation(const Matrix<dim> &gradient) const;
-
   CrystalParameters<dim> parameters_;
   Potential potential_;
   std::vector<Vector<dim>> half_bonds_;

@@ -377,6 +377,22 @@ fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
 }
 
 template <int dim>
+fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
+                                     const typename Overlap<dim>::Cell &cell,
+                                     const fem::Body<dim> &body)
+{
+  fem::CellMean<dim> mean;
+  for_each_gauss_point<dim>(overlap.mesh.cell_lower[cell.cell], overlap.mesh.cell_size[cell.cell],
+                            [&](const Vector<dim> &x, double w) {
+                              const double share = cell.layer > 0 ? 1 : 1 - overlap.weight(x);
+                              mean.add(overlap.shape_gradients(cell, x),
+                                       share * w * body.thickness);
+                            });
+  mean.close();
+  return mean;
+}
+
+template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k)
 {
   Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
@@ -493,6 +509,10 @@ template fem::CellMatrix<2> blended_cell_stiffness(const Overlap<2> &, const Ove
                                                    const fem::Body<2> &);
 template fem::CellMatrix<3> blended_cell_stiffness(const Overlap<3> &, const Overlap<3>::Cell &,
                                                    const fem::Body<3> &);
+template fem::CellMean<2> blended_cell_mean(const Overlap<2> &, const Overlap<2>::Cell &,
+                                            const fem::Body<2> &);
+template fem::CellMean<3> blended_cell_mean(const Overlap<3> &, const Overlap<3>::Cell &,
+                                            const fem::Body<3> &);
 template Eigen::Matrix<double, 2, 2> unit_strain<2>(int);
 template Eigen::Matrix<double, 3, 3> unit_strain<3>(int);
 template Eigen::Matrix<double, 2, 2> unit_gradient<2>(int, int);

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "coupling/operators/interpolated_motion.h"
-#include "fem/corotated_cell.h"
 #include "fem/fem_solver.h"
+#include "fem/strained_cell.h"
 
 #include <Eigen/SparseCore>
 
@@ -48,6 +48,12 @@ template <int dim>
 fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
                                             const typename Overlap<dim>::Cell &cell,
                                             const fem::Body<dim> &body);
+
+/// Mean deformation of a near cell, weighted as its energy.
+template <int dim>
+fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
+                                     const typename Overlap<dim>::Cell &cell,
+                                     const fem::Body<dim> &body);
 
 /// The cells' part alone: stiffness weighted by 1 - a, without the subtracted terms, and mass,
 /// without the particles' share. Residual, mass bound and normals stay empty. Throws

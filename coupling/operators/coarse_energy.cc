@@ -44,7 +44,7 @@ double CorotatedCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<di
     for (const int i : parts_.nodes[p])
       torque += core::moment(Vector<dim>((parts_.position.row(i) + turned.row(i)).transpose()),
                              Vector<dim>(f.row(i).transpose()));
-    const Spin<dim> y = rotation.conjugate(torque);
+    const Spin<dim> y = rotation.conjugate(parts_.turning(torque));
     for (const int i : parts_.nodes[p])
       force.row(i) +=
           f.row(i) * rotation.matrix().transpose() -
@@ -59,9 +59,22 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
                                                   const particles::Particles<dim> &particles,
                                                   const particles::ParticleForce<dim> &force,
                                                   const fem::Body<dim> &body,
-                                                  const Eigen::SparseMatrix<double> &correction)
-    : motions_(interpolate_motions(overlap, particles, force)),
+                                                  const Eigen::SparseMatrix<double> &correction,
+                                                  const Nodal<dim> &dead_load)
+    : law_(force.finite_strain_law()), motions_(interpolate_motions(overlap, particles, force)),
       state_(std::make_unique<particles::Particles<dim>>())
+{
+  add_cells(overlap, body);
+  add_parts(overlap, particles, force);
+  Nodal<dim> load = dead_load;
+  if (load.size() > 0) // the parts have forces at rest, too
+    add_discrete(Nodal<dim>::Zero(overlap.n_nodes(), dim), load);
+  if (correction.nonZeros() > 0 || load.size() > 0)
+    correction_ = std::make_unique<CorotatedCoarseEnergy<dim>>(correction, parts, load);
+}
+
+template <int dim>
+void NonlinearCoarseEnergy<dim>::add_cells(const Overlap<dim> &overlap, const fem::Body<dim> &body)
 {
   std::vector<Vector<dim>> sizes;
   std::vector<typename fem::CondensedCell<dim>::Shares> shares;
@@ -83,15 +96,24 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
     }
     int &known = whole[shape];
     const int stiffness = cell.layer > 0 && known >= 0 ? known : int(stiffness_.size());
-    if (stiffness == int(stiffness_.size()))
+    if (stiffness == int(stiffness_.size())) {
       stiffness_.push_back(blended_cell_stiffness(overlap, cell, body));
+      if (law_) {
+        means_.push_back(blended_cell_mean(overlap, cell, body));
+        stiffness_.back() = fem::deviation_stiffness(stiffness_.back(), means_.back(), body);
+      }
+    }
     if (cell.layer > 0)
       known = stiffness;
     cells_.push_back({cell.nodes, shape, stiffness});
   }
-  if (correction.nonZeros() > 0)
-    correction_ = std::make_unique<CorotatedCoarseEnergy<dim>>(correction, parts);
+}
 
+template <int dim>
+void NonlinearCoarseEnergy<dim>::add_parts(const Overlap<dim> &overlap,
+                                           const particles::Particles<dim> &particles,
+                                           const particles::ParticleForce<dim> &force)
+{
   std::vector<int> members;
   for (const auto &m : overlap.members)
     members.push_back(m.particle);
@@ -117,8 +139,11 @@ double NonlinearCoarseEnergy<dim>::subtract_cells(const Nodal<dim> &u, Nodal<dim
   for (const Cell &cell : cells_) {
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
       cell_u.col(a) = u.row(cell.nodes[a]);
-    energy +=
-        fem::corotated_cell<dim>(stiffness_[cell.stiffness], shapes_[cell.shape], cell_u, cell_f);
+    const auto &k = stiffness_[cell.stiffness];
+    const auto &shape = shapes_[cell.shape];
+    energy += law_
+                  ? fem::strained_cell<dim>(*law_, means_[cell.stiffness], k, shape, cell_u, cell_f)
+                  : fem::corotated_cell<dim>(k, shape, cell_u, cell_f);
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
       force.row(cell.nodes[a]) += cell_f.col(a).transpose();
   }
@@ -130,28 +155,34 @@ template <int dim>
 double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> &force) const
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
+  const bool turns = state_->turns;
   std::vector<core::PolarRotation<dim>> polars;
-  polars.reserve(motions_.size());
+  polars.reserve(turns ? motions_.size() : 0);
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     Matrix gradient = Matrix::Identity();
     Vector<dim> translation = Vector<dim>::Zero();
     for (const NodeShare<dim> &s : motions_[k]) {
       translation += s.value * u.row(s.node).transpose();
-      gradient += u.row(s.node).transpose() * s.gradient.transpose();
+      if (turns)
+        gradient += u.row(s.node).transpose() * s.gradient.transpose();
     }
-    polars.emplace_back(gradient);
     set(state_->displacement, int(k), translation);
+    if (!turns)
+      continue;
+    polars.emplace_back(gradient);
     particles::set_orientation<dim>(*state_, int(k), polars.back().matrix());
   }
   const double energy = discrete_->compute(*state_);
   for (std::size_t k = 0; k < motions_.size(); ++k) {
-    const auto &polar = polars[k];
     const Vector<dim> f = get(state_->force, int(k));
-    const Spin<dim> torque =
-        state_->turns ? get(state_->torque, int(k)) : Spin<dim>(Spin<dim>::Zero());
-    const Spin<dim> y = polar.conjugate(polar.to_body(torque));
     for (const NodeShare<dim> &s : motions_[k])
-      force.row(s.node) -= (s.value * f + polar.force(y, s.gradient)).transpose();
+      force.row(s.node) -= s.value * f.transpose();
+    if (!turns)
+      continue;
+    const auto &polar = polars[k];
+    const Spin<dim> y = polar.conjugate(polar.to_body(get(state_->torque, int(k))));
+    for (const NodeShare<dim> &s : motions_[k])
+      force.row(s.node) -= polar.force(y, s.gradient).transpose();
   }
   return energy;
 }

@@ -60,16 +60,18 @@ private:
 };
 
 /// Cells that turn one by one, minus the discrete energy itself on the interpolated motion, with
-/// the patch fit turning part by part (theory.md eq. (C14)).
+/// the patch fit turning part by part (theory.md eq. (C14)); where the force has a law of finite
+/// strain, cells obey it (eq. (C28)).
 template <int dim>
 class NonlinearCoarseEnergy : public CoarseEnergy<dim>
 {
 public:
-  /// `correction`: the patch fit, or empty. `parts` must live as long.
+  /// `correction`: the patch fit, or empty; dead_load: g in N, or empty. `parts` must live as long.
   NonlinearCoarseEnergy(const Overlap<dim> &overlap, const RigidFrames<dim> &parts,
                         const particles::Particles<dim> &particles,
                         const particles::ParticleForce<dim> &force, const fem::Body<dim> &body,
-                        const Eigen::SparseMatrix<double> &correction);
+                        const Eigen::SparseMatrix<double> &correction,
+                        const Nodal<dim> &dead_load = {});
   double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
 
 private:
@@ -78,14 +80,19 @@ private:
     std::array<int, fem::n_cell_nodes<dim>> nodes;
     int shape, stiffness; // indices
   };
+  void add_cells(const Overlap<dim> &overlap, const fem::Body<dim> &body);
+  void add_parts(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
+                 const particles::ParticleForce<dim> &force);
   double subtract_cells(const Nodal<dim> &u, Nodal<dim> &force) const;
   double add_discrete(const Nodal<dim> &u, Nodal<dim> &force) const;
 
   std::vector<Cell> cells_;
   std::vector<fem::CellShape<dim>> shapes_;
   std::vector<fem::CellMatrix<dim>> stiffness_;
+  std::shared_ptr<const core::HyperelasticLaw<dim>> law_; // null: cells are linear in turned axes
+  std::vector<fem::CellMean<dim>> means_;                 // with a law, beside `stiffness_`
   std::vector<InterpolatedMotion<dim>> motions_;
-  std::unique_ptr<CorotatedCoarseEnergy<dim>> correction_;
+  std::unique_ptr<CorotatedCoarseEnergy<dim>> correction_; // the fit, and what is left at rest
   std::unique_ptr<particles::PartialForce<dim>> discrete_;
   std::unique_ptr<particles::Particles<dim>> state_; // of the interpolated motion
 };

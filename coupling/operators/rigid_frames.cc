@@ -12,6 +12,13 @@ RigidFrames<dim>::RigidFrames(const Overlap<dim> &overlap)
     : position(overlap.n_nodes(), dim), gradient(overlap.n_nodes(), dim)
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
+  for (int c = 0; c < dim; ++c)
+    free_[c] = overlap.parameters.period[c] > 0 ? 0 : 1;
+  if constexpr (dim == 2)
+    free_spin_[0] = free_[0] * free_[1];
+  else
+    for (int c = 0; c < dim; ++c)
+      free_spin_[c] = free_[(c + 1) % dim] * free_[(c + 2) % dim];
   std::vector<int> parent(overlap.n_nodes());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
@@ -49,7 +56,7 @@ RigidFrames<dim>::RigidFrames(const Overlap<dim> &overlap)
     }
     const Matrix inverse = moment.inverse();
     for (const int i : part)
-      gradient.row(i) = position.row(i) * inverse;
+      gradient.row(i) = position.row(i) * inverse * free_.asDiagonal();
   }
 }
 
@@ -62,7 +69,7 @@ std::vector<typename RigidFrames<dim>::Frame> RigidFrames<dim>::frames(const Nod
     Matrix f = Matrix::Identity();
     Vector<dim> mean = Vector<dim>::Zero();
     for (const int i : part) {
-      f += u.row(i).transpose() * gradient.row(i);
+      f += free_.cwiseProduct(u.row(i).transpose()) * gradient.row(i);
       mean += u.row(i).transpose() / double(part.size());
     }
     frames.push_back({core::PolarRotation<dim>(f), mean});

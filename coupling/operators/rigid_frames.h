@@ -1,4 +1,5 @@
-// The connected parts of the near mesh, each with the rotation of its mean motion.
+// The connected parts of the near mesh, each with the rotation of its mean motion. Where the body
+// repeats itself along an axis, parts turn about that axis alone.
 #pragma once
 
 #include "core/polar_rotation.h"
@@ -21,6 +22,9 @@ public:
   };
   std::vector<Frame> frames(const Nodal<dim> &u) const;
 
+  /// Of a torque on a part, what turns it.
+  Spin<dim> turning(const Spin<dim> &torque) const { return torque.cwiseProduct(free_spin_); }
+
   NearMotion largest_motion(const Nodal<dim> &u) const;
 
   std::vector<std::vector<int>> nodes; // near nodes of each part
@@ -35,5 +39,7 @@ private:
     Eigen::Matrix<double, dim, fem::n_cell_nodes<dim>> gradient; // at the centre, 1/m
   };
   std::vector<Cell> cells_;
+  Vector<dim> free_;    // per axis 1, 0 where the body repeats itself along it
+  Spin<dim> free_spin_; // 1, 0 about axes that would turn such an axis
 };
 } // namespace ligament::coupling

@@ -50,10 +50,6 @@ void refuse_couplings(const Scene &scene, Findings &f)
                         coupling::scheme_names[std::size_t(c.scheme)]),
             "weights on the energies of bonds under stress leave forces behind",
             "choose \"fine_scale_split\"");
-  if (c.regime == RegimeChoice::nonlinear && f.sound({"/coupling/regime"}))
-    f.error("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\" beside \"atoms\"",
-            "the overlap of a crystal is linear or turns, it has no finite strains yet",
-            "choose \"automatic\", and keep the strains of the overlap below one per cent");
   if (scene.time.has_phases() && f.sound({"/time/loading"}))
     f.error(
         "/time/loading",

@@ -21,15 +21,16 @@ constexpr double degree = M_PI / 180;
 // 4e-5 at the limit of a fixed regime.
 constexpr double change_at = 0.1 * degree, limit = 0.5 * degree;
 
-// The linear matrices of a turning overlap err by the strain squared.
-constexpr double largest_corotated_strain = 0.01;
+// The linear matrices of a turning overlap err by the strain squared. Bonds between atoms are 2 to
+// 3 % stiffer or softer for each per cent of strain.
+constexpr double largest_corotated_strain = 0.01, largest_linear_strain = 1e-3;
 
-// The laws of both models are meant for strains up to here.
-constexpr double largest_strain = 0.1;
+// The laws of both models are meant for strains up to here; beyond the second a crystal is near to
+// where it is no longer stable.
+constexpr double largest_strain = 0.1, largest_crystal_strain = 0.08;
 
-// Bonds between atoms are 2 to 3 % stiffer or softer for each per cent of strain, of which an
-// overlap without finite strains knows nothing.
-constexpr double largest_linear_strain = 0.03;
+// Of an overlap that knows no finite strain but stands for bonds that do.
+constexpr double largest_strain_of_linear = 0.03;
 // Which errs by as much as a strain of 1e-3, phi^2/2.
 constexpr double largest_corotated_bending = 2.5 * degree;
 } // namespace
@@ -37,6 +38,7 @@ constexpr double largest_corotated_bending = 2.5 * degree;
 template <int dim>
 RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
     : can_turn_(body.coupler->can_turn()), can_strain_(body.coupler->can_strain()),
+      has_law_(body.force() && body.force()->finite_strain_law()),
       automatic_(choice == RegimeChoice::automatic && can_turn_)
 {
   if (!body.far)
@@ -59,9 +61,19 @@ void RegimeControl<dim>::set(Regime regime, CoupledBody<dim> &body)
 template <int dim>
 Regime RegimeControl<dim>::needed() const
 {
-  if (can_strain_ && (near_.bending > change_at || near_.strain > largest_corotated_strain))
+  const double strain = has_law_ ? std::max(near_.strain, far_.strain) : near_.strain,
+               most = has_law_ ? largest_linear_strain : largest_corotated_strain;
+  if (can_strain_ && (near_.bending > change_at || strain > most))
     return Regime::nonlinear;
   return std::max(near_.rotation, far_.rotation) > change_at ? Regime::corotated : Regime::linear;
+}
+
+template <int dim>
+double RegimeControl<dim>::largest_allowed_strain() const
+{
+  if (!can_strain_)
+    return largest_strain_of_linear;
+  return has_law_ ? largest_crystal_strain : largest_strain;
 }
 
 template <int dim>
@@ -69,7 +81,7 @@ std::optional<std::string> RegimeControl<dim>::excess() const
 {
   const double rotation = std::max(near_.rotation, far_.rotation);
   const double strain = std::max(near_.strain, far_.strain);
-  if (strain > (can_strain_ ? largest_strain : largest_linear_strain))
+  if (strain > largest_allowed_strain())
     return fmt::format("overlap or far field is strained by {:.1f} %, more than its law is for; "
                        "make /discrete_zone/region larger or end the run earlier",
                        100 * strain);

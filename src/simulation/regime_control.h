@@ -31,11 +31,13 @@ public:
 
 private:
   coupling::Regime needed() const;
+  double largest_allowed_strain() const;
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
 
   bool can_turn_;   // else the coupler is linear
   bool can_strain_; // else it is linear or turns
+  bool has_law_;    // of finite strain, which the cells obey in the nonlinear regime
   bool automatic_;
   coupling::Regime regime_ = coupling::Regime::linear;
   coupling::NearMotion near_; // at the last look

@@ -67,6 +67,7 @@ std::vector<Case> all_cases()
   add(face_life_cases());
   add(softening_flow_cases());
   add(atom_cases());
+  add(atom_strain_cases());
   add(random_scene_cases());
   return cases;
 }

@@ -6,4 +6,5 @@
 namespace ligament::program
 {
 std::vector<Case> atom_cases();
+std::vector<Case> atom_strain_cases();
 } // namespace ligament::program
