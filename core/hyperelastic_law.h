@@ -14,9 +14,10 @@ public:
 
   virtual ~HyperelasticLaw() = default;
 
-  /// Overwrites `stress` by P in Pa, the first Piola-Kirchhoff stress; returns the energy density W
-  /// in J/m^3, less that at rest. Rotations change neither W nor F^-1 P. Throws core::GuardStop
-  /// beyond the deformations that it knows.
-  virtual double evaluate(const Matrix &gradient, Matrix &stress) const = 0;
+  /// W in J/m^3, less that at rest. Both throw core::GuardStop beyond the deformations that they
+  /// know.
+  virtual double energy_density(const Matrix &gradient) const = 0;
+  /// P in Pa, the first Piola-Kirchhoff stress. Rotations change neither W nor F^-1 P.
+  virtual Matrix stress(const Matrix &gradient) const = 0;
 };
 } // namespace ligament::core

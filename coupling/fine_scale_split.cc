@@ -149,7 +149,7 @@ void FineScaleSplit<dim>::compute_mesh_force(const StepTime &step, Nodal<dim> &f
   force.setZero(overlap_.n_nodes(), dim);
   if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
     near_.add_force(parameters_.step_ratio, force);
-  coarse_->subtract_forces(near_.displacement(), force);
+  coarse_->subtract_only_forces(near_.displacement(), force);
 }
 
 template <int dim>

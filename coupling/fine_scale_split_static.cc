@@ -24,7 +24,7 @@ void FineScaleSplit<dim>::compute_trial(Bodies<dim> &bodies, double time, double
 {
   Coupler<dim>::compute_trial(bodies, time, noted_share, nodal_force);
   Nodal<dim> force = near_.of(nodal_force);
-  coarse_->subtract_forces(near_.displacement(), force);
+  coarse_->subtract_only_forces(near_.displacement(), force);
   near_.write(force, nodal_force);
 }
 

@@ -49,7 +49,7 @@ CorotatedKernel<dim>::CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &bo
 
 template <int dim>
 double CorotatedKernel<dim>::subtract_forces(const Components<dim> &displacement,
-                                             Components<dim> &force) const
+                                             Components<dim> &force, bool wants_energy) const
 {
   double energy = 0;
   CellVectors<dim> u, f;
@@ -87,7 +87,7 @@ void CorotatedKernel<dim>::subtract_product(const Components<dim> &displacement,
       for (std::size_t i = 0; i < u[c].size(); ++i)
         u[c][i] += sign * step * v[c][i];
     }
-    subtract_forces(u, f);
+    subtract_forces(u, f, false);
     for (int c = 0; c < dim; ++c)
       for (std::size_t i = 0; i < u[c].size(); ++i)
         force[c][i] += sign / (2 * step) * f[c][i];

@@ -15,8 +15,9 @@ public:
   CorotatedKernel(const Mesh<dim> &mesh, const Body<dim> &body, const std::vector<char> &is_own,
                   std::shared_ptr<const core::HyperelasticLaw<dim>> law = {});
 
-  /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J.
-  double subtract_forces(const Components<dim> &displacement, Components<dim> &force) const;
+  /// force -= dE/du, hanging nodes not yet condensed, in N; returns E in J where it is wanted.
+  double subtract_forces(const Components<dim> &displacement, Components<dim> &force,
+                         bool wants_energy = true) const;
 
   /// force -= K v, K the stiffness in the state `displacement`, by central differences: exact to
   /// about 1e-8 of it.

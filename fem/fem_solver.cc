@@ -424,7 +424,7 @@ void FemSolver<dim>::add_up_forces(double time)
   for (auto &f : force)
     std::fill(f.begin(), f.end(), 0.);
   if (corotated_)
-    corotated_->subtract_forces(displacement, force);
+    corotated_->subtract_forces(displacement, force, false);
   else
     kernel_->subtract_forces(displacement, force);
   jumps_.find_reactions(mesh_, force);

@@ -56,18 +56,20 @@ CellMatrix<dim> deviation_stiffness(const CellMatrix<dim> &stiffness, const Cell
 }
 
 /// Energy V W(F) + 1/2 u_R . K_d u_R in J, F of the mean, K_d the deviation's stiffness (theory.md
-/// eq. (C28)); forces (minus its derivative, in N) into `force`. Displacements u in m.
+/// eq. (C28)), without the first part unless it is wanted; forces (minus its derivative, in N) into
+/// `force`. Displacements u in m.
 template <int dim>
 double strained_cell(const core::HyperelasticLaw<dim> &law, const CellMean<dim> &mean,
                      const CellMatrix<dim> &deviation, const CellShape<dim> &shape,
-                     const CellVectors<dim> &u, CellVectors<dim> &force)
+                     const CellVectors<dim> &u, CellVectors<dim> &force, bool wants_energy)
 {
   double energy = corotated_cell<dim>(deviation, shape, u, force);
   if (mean.volume == 0)
     return energy;
-  Eigen::Matrix<double, dim, dim> stress;
-  energy += mean.volume * law.evaluate(u * mean.gradient.transpose(), stress);
-  force -= mean.volume * stress * mean.gradient;
+  const Eigen::Matrix<double, dim, dim> h = u * mean.gradient.transpose();
+  force -= mean.volume * law.stress(h) * mean.gradient;
+  if (wants_energy)
+    energy += mean.volume * law.energy_density(h);
   return energy;
 }
 } // namespace ligament::fem

@@ -3,25 +3,26 @@
 
 #include "core/hyperelastic_law.h"
 #include "md/crystal.h"
+#include "md/pair_table.h"
 
 namespace ligament::md
 {
-/// theory.md (M4) and (M5): W and P of Crystal in one go, for cells that ask often.
+/// theory.md (M4) and (M5), W and P of Crystal, for cells that ask in every step.
 template <int dim>
 class CauchyBornLaw : public core::HyperelasticLaw<dim>
 {
 public:
   explicit CauchyBornLaw(const Crystal<dim> &crystal);
-  double evaluate(const Matrix<dim> &gradient, Matrix<dim> &stress) const override;
+
+  double energy_density(const Matrix<dim> &gradient) const override
+  {
+    return crystal_.energy_density(gradient);
+  }
+  Matrix<dim> stress(const Matrix<dim> &gradient) const override;
 
 private:
-  struct HalfBond
-  {
-    Vector<dim> reference;        // m
-    double length, pair, density; // m, J, unit of the potential: at rest
-  };
-
   Crystal<dim> crystal_;
-  std::vector<HalfBond> bonds_;
+  std::vector<PairPiece> table_;
+  double cutoff2_, inverse_step_; // m^2, 1/m
 };
 } // namespace ligament::md

@@ -3,6 +3,7 @@
 #include "md/bond_view.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::md
 {
@@ -17,6 +18,95 @@ PartialAtoms<dim>::PartialAtoms(const Potential &potential, std::vector<SharedPa
         potential_.bond(atoms_[p.i].species, atoms_[p.j].species, p.reference.norm());
     rest_density_[p.i] += jets.density_at_i.value;
     rest_density_[p.j] += jets.density_at_j.value;
+  }
+  is_of_one_kind_ = std::all_of(atoms_.begin(), atoms_.end(), [&](const SharedAtom &a) {
+    return a.species == atoms_[0].species;
+  });
+  if (is_of_one_kind_ && !atoms_.empty())
+    lay_out();
+}
+
+template <int dim>
+void PartialAtoms<dim>::lay_out()
+{
+  const int n = int(atoms_.size());
+  table_ = make_pair_table(potential_, atoms_[0].species, atoms_[0].species);
+  passes_ = partial_passes<dim>();
+  std::stable_partition(pairs_.begin(), pairs_.end(), [&](const SharedPair &p) {
+    return p.reference.norm() < potential_.cutoff();
+  });
+  const auto add_pair = [&](const SharedPair &p) {
+    i_.push_back(p.i);
+    j_.push_back(p.j);
+    for (int c = 0; c < dim; ++c)
+      places_[c].push_back(p.reference[c]);
+    share_.push_back(p.share);
+    tilts_.push_back(p.tilt_i + p.tilt_j);
+  };
+  for (const SharedPair &p : pairs_)
+    add_pair(p);
+  while (i_.size() % 8 != 0)
+    add_pair({0, 0, Vector<dim>::Constant(2 * potential_.cutoff()), 0, 0, 0});
+  pull_.resize(i_.size());
+  pair_slope_.resize(i_.size());
+  atom_records_.assign(4 * n, 0.);
+  density_.resize(n);
+  force_.resize(4 * n);
+}
+
+template <int dim>
+PartialArrays PartialAtoms<dim>::arrays()
+{
+  PartialArrays k = {};
+  k.n_pairs = int(i_.size());
+  k.i = i_.data();
+  k.j = j_.data();
+  for (int c = 0; c < dim; ++c)
+    k.reference[c] = places_[c].data();
+  k.share = share_.data();
+  k.tilts = tilts_.data();
+  k.atoms = atom_records_.data();
+  k.table = table_.data();
+  const double step = potential_.cutoff() / double(table_.size() - 1);
+  k.cutoff2 = potential_.cutoff() * potential_.cutoff();
+  k.beyond2 = std::pow(potential_.cutoff() + step / 2, 2); // in the piece of zeros
+  k.inverse_step = 1 / step;
+  k.pull = pull_.data();
+  k.slope = pair_slope_.data();
+  k.density = density_.data();
+  k.force = force_.data();
+  return k;
+}
+
+template <int dim>
+void PartialAtoms<dim>::compute_forces(particles::Particles<dim> &atoms)
+{
+  if (!is_of_one_kind_ || atoms_.empty()) {
+    compute(atoms);
+    return;
+  }
+  const int n = int(atoms_.size());
+  for (int i = 0; i < n; ++i) {
+    for (int c = 0; c < dim; ++c)
+      atom_records_[4 * i + c] = atoms.displacement[c][i];
+    atom_records_[4 * i + 3] = 0;
+  }
+  std::fill(force_.begin(), force_.end(), 0.);
+  const PartialArrays k = arrays();
+  if (potential_.has_embedding()) {
+    std::fill(density_.begin(), density_.end(), 0.);
+    passes_.first(k);
+    for (int i = 0; i < n; ++i)
+      if (const SharedAtom &a = atoms_[i]; a.share != 0)
+        atom_records_[4 * i + 3] =
+            a.share * (potential_.embedding(a.species, density_[i]).slope - a.rest_slope);
+    passes_.second(k);
+  } else
+    passes_.pairs(k);
+  for (int c = 0; c < dim; ++c) {
+    atoms.force[c].resize(n);
+    for (int i = 0; i < n; ++i)
+      atoms.force[c][i] = force_[4 * i + c];
   }
 }
 

@@ -1,6 +1,7 @@
 // A part of the energy of atoms: every pair and every embedding with a share of its own.
 #pragma once
 
+#include "md/partial_kernel.h"
 #include "md/potential.h"
 #include "particles/particle_force.h"
 
@@ -9,7 +10,7 @@ namespace ligament::md
 /// sum_pairs s_b [phi + F'_i f_ij + F'_j f_ji] + sum_i s_i [F_i(rho_i) - F'_i rho_i], less the same
 /// at rest, with the F' that the atoms of the whole body have there: its second derivatives at rest
 /// are those of the terms (M6), each times its share; in the crystal F' = 0. At any deformation
-/// (theory.md (M9)). Plain loops over few atoms.
+/// (theory.md (M9)).
 template <int dim>
 class PartialAtoms : public particles::PartialForce<dim>
 {
@@ -33,13 +34,28 @@ public:
   PartialAtoms(const Potential &potential, std::vector<SharedPair> pairs,
                std::vector<SharedAtom> atoms);
 
+  /// By plain loops.
   double compute(particles::Particles<dim> &atoms) override;
+  /// By vectors of pairs, where all atoms are of one species.
+  void compute_forces(particles::Particles<dim> &atoms) override;
 
 private:
+  void lay_out();
+  PartialArrays arrays();
+
   Potential potential_;
   std::vector<SharedPair> pairs_;
   std::vector<SharedAtom> atoms_;
   std::vector<double> rest_density_;
   std::vector<double> denser_, slope_; // rho less that at rest; s (F' less that at rest)
+
+  // Of vectors of pairs, those in range at rest first.
+  bool is_of_one_kind_ = false;
+  PartialPasses passes_;
+  std::vector<PairPiece> table_;
+  std::vector<int> i_, j_;
+  std::array<std::vector<double>, 3> places_; // m
+  std::vector<double> share_, tilts_, pull_, pair_slope_;
+  std::vector<double> atom_records_, density_, force_;
 };
 } // namespace ligament::md

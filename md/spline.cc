@@ -3,6 +3,7 @@
 #include "core/check.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::md
 {
@@ -68,9 +69,12 @@ Jet Spline::operator()(double x) const
   return jet;
 }
 
-// From knot to knot, in each interval as a product with the way that is gone there.
+// From knot to knot, in each interval as a product with the way that is gone there. Over a long way
+// the difference of the values has the digits.
 double Spline::change(double x, double by) const
 {
+  if (std::abs(by) > 8 * step_)
+    return (*this)(x + by).value - (*this)(x).value;
   const int direction = by < 0 ? -1 : 1, last = int(pieces_.size()) - 1;
   int k = interval(x);
   double from = x / step_ - k, left = by / step_, sum = 0;

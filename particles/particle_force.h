@@ -82,6 +82,8 @@ public:
   /// Overwrites force and torque of all particles with those of the present state; returns the
   /// energy in J. Calling it again in the same state changes nothing more.
   virtual double compute(Particles<dim> &particles) = 0;
+  /// The same but for the energy, which may cost more.
+  virtual void compute_forces(Particles<dim> &particles) { compute(particles); }
 };
 
 /// Where a packing ends inside the body: what lies beyond is a mesh, which moves the outermost

@@ -68,7 +68,7 @@ NonlinearCoarseEnergy<dim>::NonlinearCoarseEnergy(const Overlap<dim> &overlap,
   add_parts(overlap, particles, force);
   Nodal<dim> load = dead_load;
   if (load.size() > 0) // the parts have forces at rest, too
-    add_discrete(Nodal<dim>::Zero(overlap.n_nodes(), dim), load);
+    add_discrete(Nodal<dim>::Zero(overlap.n_nodes(), dim), load, false);
   if (correction.nonZeros() > 0 || load.size() > 0)
     correction_ = std::make_unique<CorotatedCoarseEnergy<dim>>(correction, parts, load);
 }
@@ -132,7 +132,8 @@ void NonlinearCoarseEnergy<dim>::add_parts(const Overlap<dim> &overlap,
 }
 
 template <int dim>
-double NonlinearCoarseEnergy<dim>::subtract_cells(const Nodal<dim> &u, Nodal<dim> &force) const
+double NonlinearCoarseEnergy<dim>::subtract_cells(const Nodal<dim> &u, Nodal<dim> &force,
+                                                  bool wants_energy) const
 {
   double energy = 0;
   fem::CellVectors<dim> cell_u, cell_f;
@@ -152,7 +153,8 @@ double NonlinearCoarseEnergy<dim>::subtract_cells(const Nodal<dim> &u, Nodal<dim
 
 // force += dE/dU of the interpolated motion; returns E.
 template <int dim>
-double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> &force) const
+double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> &force,
+                                                bool wants_energy) const
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
   const bool turns = state_->turns;
@@ -172,7 +174,11 @@ double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> 
     polars.emplace_back(gradient);
     particles::set_orientation<dim>(*state_, int(k), polars.back().matrix());
   }
-  const double energy = discrete_->compute(*state_);
+  double energy = 0;
+  if (wants_energy)
+    energy = discrete_->compute(*state_);
+  else
+    discrete_->compute_forces(*state_);
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     const Vector<dim> f = get(state_->force, int(k));
     for (const NodeShare<dim> &s : motions_[k])
@@ -188,11 +194,12 @@ double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> 
 }
 
 template <int dim>
-double NonlinearCoarseEnergy<dim>::subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const
+double NonlinearCoarseEnergy<dim>::subtract(const Nodal<dim> &u, Nodal<dim> &force,
+                                            bool wants_energy) const
 {
-  const double cells = subtract_cells(u, force);
+  const double cells = subtract_cells(u, force, wants_energy);
   const double correction = correction_ ? correction_->subtract_forces(u, force) : 0;
-  return cells + correction - add_discrete(u, force);
+  return cells + correction - add_discrete(u, force, wants_energy);
 }
 
 template class LinearCoarseEnergy<2>;

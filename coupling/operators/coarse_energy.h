@@ -19,6 +19,11 @@ public:
   /// force -= dE/dU in N for the displacements U (m) of the near nodes; returns E in J. Calling it
   /// again with the same U changes nothing more.
   virtual double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const = 0;
+  /// The same but for the energy, which may cost more.
+  virtual void subtract_only_forces(const Nodal<dim> &u, Nodal<dim> &force) const
+  {
+    subtract_forces(u, force);
+  }
 };
 
 /// 1/2 U.K U + g.U (theory.md eqs. (C2), (C26)).
@@ -72,7 +77,14 @@ public:
                         const particles::ParticleForce<dim> &force, const fem::Body<dim> &body,
                         const Eigen::SparseMatrix<double> &correction,
                         const Nodal<dim> &dead_load = {});
-  double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override;
+  double subtract_forces(const Nodal<dim> &u, Nodal<dim> &force) const override
+  {
+    return subtract(u, force, true);
+  }
+  void subtract_only_forces(const Nodal<dim> &u, Nodal<dim> &force) const override
+  {
+    subtract(u, force, false);
+  }
 
 private:
   struct Cell
@@ -83,8 +95,9 @@ private:
   void add_cells(const Overlap<dim> &overlap, const fem::Body<dim> &body);
   void add_parts(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
                  const particles::ParticleForce<dim> &force);
-  double subtract_cells(const Nodal<dim> &u, Nodal<dim> &force) const;
-  double add_discrete(const Nodal<dim> &u, Nodal<dim> &force) const;
+  double subtract(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
+  double subtract_cells(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
+  double add_discrete(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
 
   std::vector<Cell> cells_;
   std::vector<fem::CellShape<dim>> shapes_;

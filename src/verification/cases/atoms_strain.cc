@@ -130,9 +130,7 @@ std::vector<Result> under_strain(const std::string &name, const AtomBody &b)
     double share = 0;
     for (const Matrix<dim> &h : gradients<dim>(size)) {
       move_by_gradient(body, h);
-      Matrix<dim> stress;
-      law->evaluate(h, stress);
-      keep_worst(share, residual(body).nodes / (stress.norm() * scale));
+      keep_worst(share, residual(body).nodes / (law->stress(h).norm() * scale));
     }
     return share;
   };
