@@ -33,13 +33,12 @@ void AtomForce<dim>::add_tangent(
 {
   using Term = particles::QuadraticTerm<dim>;
   AtomTangent<dim>(body_, atoms).add_terms(add, of);
-  constexpr int dofs = n_particle_dofs<dim>;
   for (int i = 0; i < atoms.size(); ++i) {
     Vector<dim> k = get(loads_.stiffnesses(), i);
     if (k.isZero(0) || (of && !std::binary_search(of->begin(), of->end(), i)))
       continue;
-    Term term{Term::Kind::wall, get(atoms.reference, i), {i}, Eigen::MatrixXd::Zero(dim, dofs), k};
-    term.rows.template leftCols<dim>().setIdentity();
+    Term term{
+        Term::Kind::wall, get(atoms.reference, i), {i}, Eigen::MatrixXd::Identity(dim, dim), k};
     add(term);
   }
 }
@@ -50,7 +49,7 @@ void AtomForce<dim>::for_each_neighbour(
     const std::vector<int> *of) const
 {
   const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
-  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
+  ReferenceBonds<dim>(body_, atoms).for_each([&](const Bond<dim> &b) {
     if (is_asked(b.i))
       visit({b.i, b.j, true});
     if (is_asked(b.j))
@@ -67,7 +66,7 @@ std::vector<int> AtomForce<dim>::open_particles(const Particles &atoms,
   const auto whole = 2 * std::count_if(bonds.begin(), bonds.end(),
                                        [&](const Vector<dim> &b) { return b.norm() < cutoff; });
   std::vector<int> n_neighbours(atoms.size(), 0);
-  AtomTangent<dim>(body_, atoms).for_each_bond([&](const Bond<dim> &b) {
+  ReferenceBonds<dim>(body_, atoms).for_each([&](const Bond<dim> &b) {
     ++n_neighbours[b.i];
     ++n_neighbours[b.j];
   });

@@ -44,18 +44,23 @@ Eigen::Matrix<double, dim, dim - 1> across(const Vector<dim> &n)
 } // namespace
 
 template <int dim>
-AtomTangent<dim>::AtomTangent(const AtomBody<dim> &body, const particles::Particles<dim> &atoms)
-    : body_(body), at_rest_(at_rest(atoms)), list_(body.potential.cutoff(), 0, body.period),
-      density_(atoms.size(), 0.)
+ReferenceBonds<dim>::ReferenceBonds(const AtomBody<dim> &body,
+                                    const particles::Particles<dim> &atoms)
+    : period_(body.period), at_rest_(at_rest(atoms)), list_(body.potential.cutoff(), 0, body.period)
 {
   list_.build<dim>(at_rest_.reference, at_rest_.displacement);
   body.screen.apply(list_);
-  const auto add = [&](const Bond<dim> &b) {
+}
+
+template <int dim>
+AtomTangent<dim>::AtomTangent(const AtomBody<dim> &body, const particles::Particles<dim> &atoms)
+    : body_(body), bonds_(body, atoms), density_(atoms.size(), 0.)
+{
+  bonds_.for_each([&](const Bond<dim> &b) {
     const BondJets jets = body.potential.bond(body.species[b.i], body.species[b.j], b.length);
     density_[b.i] += jets.density_at_i.value;
     density_[b.j] += jets.density_at_j.value;
-  };
-  for_each_bond(add);
+  });
   for (int i = 0; i < atoms.size(); ++i) {
     const Jet embedding = body.potential.embedding(body.species[i], density_[i]);
     slope_.push_back(embedding.slope);
@@ -86,7 +91,33 @@ template <int dim>
 template <typename Visit>
 void AtomTangent<dim>::for_each_pair(Visit &&visit) const
 {
-  for_each_bond([&](const Bond<dim> &bond) { visit(bond, stiffness(bond)); });
+  if (kept_.empty()) {
+    bonds_.for_each([&](const Bond<dim> &bond) { visit(bond, stiffness(bond)); });
+    return;
+  }
+  Bond<dim> bond;
+  bond.moved.setZero();
+  for (const KeptPair &k : kept_) {
+    bond.i = k.i;
+    bond.j = k.j;
+    bond.reference = bond.present = k.reference;
+    bond.length = k.length;
+    visit(bond, k.stiffness);
+  }
+}
+
+template <int dim>
+void AtomTangent<dim>::keep_stiffness()
+{
+  constexpr long most = 4'000'000; // 72 bytes each
+  if (bonds_.n_pairs() > most)
+    return;
+  std::vector<KeptPair> kept;
+  kept.reserve(bonds_.n_pairs());
+  for_each_pair([&](const Bond<dim> &b, const Stiffness &k) {
+    kept.push_back({b.i, b.j, b.reference, b.length, k});
+  });
+  kept_ = std::move(kept);
 }
 
 template <int dim>
@@ -95,7 +126,6 @@ void AtomTangent<dim>::add_terms(
     const std::vector<int> *of) const
 {
   using Term = particles::QuadraticTerm<dim>;
-  constexpr int dofs = n_particle_dofs<dim>;
   struct Arm
   {
     int atom;
@@ -111,15 +141,15 @@ void AtomTangent<dim>::add_terms(
     if (!is_asked(b.i, of) && !is_asked(b.j, of))
       return;
     Term term{Term::Kind::bond,
-              get(at_rest_.reference, b.i) + b.reference / 2,
+              bonds_.place(b.i) + b.reference / 2,
               {b.i, b.j},
-              Eigen::MatrixXd::Zero(dim, 2 * dofs),
+              Eigen::MatrixXd(dim, 2 * dim),
               Eigen::VectorXd::Constant(dim, k.across)};
     term.stiffness[0] = k.along;
     Matrix<dim> rows;
     rows << n.transpose(), across<dim>(n).transpose();
-    term.rows.template block<dim, dim>(0, 0) = -rows;
-    term.rows.template block<dim, dim>(0, dofs) = rows;
+    term.rows.template leftCols<dim>() = -rows;
+    term.rows.template rightCols<dim>() = rows;
     add(term);
   });
   for (int i = 0; i < int(arms.size()); ++i) {
@@ -128,12 +158,12 @@ void AtomTangent<dim>::add_terms(
         (!is_asked(i, of) && std::none_of(arms[i].begin(), arms[i].end(), enters)))
       continue;
     Term term{Term::Kind::volumetric,
-              get(at_rest_.reference, i),
+              bonds_.place(i),
               {i},
-              Eigen::MatrixXd::Zero(1, (1 + arms[i].size()) * dofs),
+              Eigen::MatrixXd::Zero(1, (1 + arms[i].size()) * dim),
               Eigen::VectorXd::Constant(1, embedding_stiffness(i))};
     for (const Arm &arm : arms[i]) {
-      const int column = int(term.members.size()) * dofs;
+      const int column = int(term.members.size()) * dim;
       term.members.push_back(arm.atom);
       term.rows.template block<1, dim>(0, column) += arm.slope.transpose();
       term.rows.template block<1, dim>(0, 0) -= arm.slope.transpose();
@@ -171,8 +201,9 @@ void AtomTangent<dim>::apply(const Components<dim> &u, Components<dim> &force) c
 }
 
 template <int dim>
-double stable_step(const AtomTangent<dim> &tangent, const particles::Particles<dim> &atoms)
+double stable_step(AtomTangent<dim> tangent, const particles::Particles<dim> &atoms)
 {
+  tangent.keep_stiffness();
   const int n = atoms.size(), size = dim * n;
   Components<dim> motion, force;
   for (auto &component : motion)
@@ -217,8 +248,9 @@ double stable_step(const AtomTangent<dim> &tangent, const particles::Particles<d
 }
 
 #define INSTANTIATE(dim)                                                                           \
+  template class ReferenceBonds<dim>;                                                              \
   template class AtomTangent<dim>;                                                                 \
-  template double stable_step(const AtomTangent<dim> &, const particles::Particles<dim> &);
+  template double stable_step(AtomTangent<dim>, const particles::Particles<dim> &);
 INSTANTIATE(2)
 INSTANTIATE(3)
 #undef INSTANTIATE

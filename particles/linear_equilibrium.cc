@@ -25,6 +25,8 @@ void solve_equilibrium(const Particles<dim> &particles, const ParticleForce<dim>
   for (int row = 0; row < n_unknown && load.size() > 0; ++row)
     right.segment<dofs>(dofs * row) = load.segment<dofs>(dofs * free[row]);
   const auto add_term = [&](const QuadraticTerm<dim> &term) {
+    core::require(term.rows.cols() == long(dofs * term.members.size()),
+                  "static equilibrium: the force has no rotations");
     const Eigen::MatrixXd k = term.rows.transpose() * term.stiffness.asDiagonal() * term.rows;
     for (std::size_t a = 0; a < term.members.size(); ++a) {
       const int row = unknown[term.members[a]];

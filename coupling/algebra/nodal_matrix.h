@@ -30,6 +30,13 @@ public:
     }
   }
 
+  /// The block of one pair of nodes.
+  template <typename Dense>
+  void add_block(int row, int column, const Dense &block)
+  {
+    rows_[row].try_emplace(column, Block::Zero()).first->second += block;
+  }
+
   /// Unknowns numbered component by component: c * n_nodes + node.
   Eigen::SparseMatrix<double> to_sparse() const
   {

@@ -3,6 +3,7 @@
 #include "core/check.h"
 #include "coupling/algebra/nodal_matrix.h"
 #include "coupling/operators/dead_load.h"
+#include "coupling/operators/member_terms.h"
 #include "fem/cell_map.h"
 #include "fem/cell_modes.h"
 
@@ -91,7 +92,8 @@ public:
            const particles::ParticleForce<dim> &force, const fem::Body<dim> &body,
            double coarse_mass)
       : stiffness(overlap.n_nodes()), coarse_mass_(coarse_mass), overlap_(overlap),
-        particles_(particles), body_(body), n_(overlap.n_nodes())
+        particles_(particles), body_(body), n_(overlap.n_nodes()),
+        terms_(overlap, particles, states_, motions_)
   {
     const int n_states = force.is_prestressed() ? dim * dim : n_strains<dim>;
     residual = Eigen::MatrixXd::Zero(dim * n_, n_states);
@@ -104,6 +106,12 @@ public:
   void add_cells();
   void add_masses();
   void add_term(const particles::QuadraticTerm<dim> &term);
+  /// Once they are all there.
+  void finish_terms()
+  {
+    terms_.add_residual(residual);
+    terms_.subtract_stiffness(stiffness);
+  }
 
   NodalMatrix<dim> stiffness;
   Triplets mass;
@@ -118,6 +126,7 @@ private:
   const int n_;
   std::vector<Eigen::Matrix<double, dim, dim>> states_; // columns of the residual
   std::vector<InterpolatedMotion<dim>> motions_;        // of the members
+  MemberTerms<dim> terms_;                              // without rotations
   std::vector<int> nodes_;                              // of the present term
 };
 
@@ -182,6 +191,10 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
   if (!touches)
     return;
   require(term.kind != particles::QuadraticTerm<dim>::Kind::wall, loaded_side);
+  if (!turns) {
+    terms_.add(term);
+    return;
+  }
 
   // Forces per unit state on the members, handed to the nodes: Phi^T f, and Psi^T T of the pads;
   // less the share subtracted, by the interpolated motion.
@@ -204,8 +217,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     const Eigen::MatrixXd force =
         term.rows.middleCols(i * nd, dim).transpose() * gradient; // minus the force
     const Eigen::MatrixXd torque =
-        turns ? (term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient).eval()
-              : Eigen::MatrixXd();
+        term.rows.middleCols(i * nd + dim, n_spins<dim>).transpose() * gradient;
     const auto add = [&](double factor, int node, double value, const Vector<dim> &gradient,
                          bool with_torque) {
       const auto spin = half_curl<dim>(gradient);
@@ -216,9 +228,9 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
       }
     };
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-      add(1, m.nodes[a], m.value[a], m.gradient.col(a), turns && m.pad);
+      add(1, m.nodes[a], m.value[a], m.gradient.col(a), m.pad);
     for (const NodeShare<dim> &s : motions_[index])
-      add(-share, s.node, s.value, s.gradient, turns);
+      add(-share, s.node, s.value, s.gradient, true);
   }
   if (share == 0)
     return;
@@ -234,12 +246,9 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
     for (const NodeShare<dim> &s : motions_[overlap_.member_of_particle[term.members[i]]]) {
       const int column =
           dim * int(std::find(nodes_.begin(), nodes_.end(), s.node) - nodes_.begin());
-      if (turns)
-        rows.middleCols(column, dim) +=
-            s.value * term.rows.middleCols(i * nd, dim) +
-            term.rows.middleCols(i * nd + dim, n_spins<dim>) * half_curl<dim>(s.gradient);
-      else
-        rows.middleCols(column, dim) += s.value * term.rows.middleCols(i * nd, dim);
+      rows.middleCols(column, dim) +=
+          s.value * term.rows.middleCols(i * nd, dim) +
+          term.rows.middleCols(i * nd + dim, n_spins<dim>) * half_curl<dim>(s.gradient);
     }
   stiffness.add(nodes_, (rows.transpose() * term.stiffness.asDiagonal() * rows).eval(), -share);
 }
@@ -430,6 +439,7 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
   force.add_tangent(
       particles, [&](const particles::QuadraticTerm<dim> &term) { assembly.add_term(term); },
       &members);
+  assembly.finish_terms();
 
   const int n = overlap.n_nodes();
   BlendedOperators<dim> result;

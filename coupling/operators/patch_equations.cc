@@ -45,14 +45,6 @@ constexpr int most_unknowns_of_hats = 20000;
 template <int dim>
 constexpr double coarse_shift = dim == 2 ? 1e-9 : 1e-6;
 
-void add_entries(int row, int column, const Eigen::Ref<const Eigen::MatrixXd> &values,
-                 std::vector<Eigen::Triplet<double>> &entries)
-{
-  for (int j = 0; j < values.cols(); ++j)
-    for (int i = 0; i < values.rows(); ++i)
-      entries.emplace_back(row + i, column + j, values(i, j));
-}
-
 double dot(const Eigen::Ref<const Eigen::MatrixXd> &a, const Eigen::Ref<const Eigen::MatrixXd> &b)
 {
   return a.cwiseProduct(b).sum();
@@ -137,18 +129,17 @@ void PatchEquations<dim, ns>::make_hats(const Overlap<dim> &overlap)
 template <int dim, int ns>
 void PatchEquations<dim, ns>::factorize_coarse_space()
 {
-  const int n = int(hats_.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int node = 0; node < n; ++node)
+  CoarseMatrix<dim * ns> sum(n_hats_);
+  for (std::size_t node = 0; node < hats_.size(); ++node)
     for (const auto &[i, value_i] : hats_[node])
       for (const auto &[j, value_j] : hats_[node])
-        for (int c = 0; c < dim; ++c)
-          add_entries((i * dim + c) * ns, (j * dim + c) * ns,
-                      diagonal_[node] * value_i * value_j * projectors_[node], entries);
+        if (i >= j)
+          for (int c = 0; c < dim; ++c)
+            sum.at(i, j).template block<ns, ns>(c * ns, c * ns) +=
+                diagonal_[node] * value_i * value_j * projectors_[node];
   for (const auto &block : blocks_)
-    add_coarse_share(block, entries);
-  Eigen::SparseMatrix<double> matrix(n_hats_ * dim * ns, n_hats_ * dim * ns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
+    add_coarse_share(block, sum);
+  Eigen::SparseMatrix<double> matrix = sum.lower_half();
   // Rigid motions and some affine ones do nothing to any block: only they feel the shift.
   const Eigen::VectorXd diagonal = matrix.diagonal();
   coarse_scale_ = diagonal.cwiseMax(1e-12 * diagonal.maxCoeff()).cwiseSqrt().cwiseInverse();
@@ -161,13 +152,24 @@ void PatchEquations<dim, ns>::factorize_coarse_space()
 
 template <int dim, int ns>
 void PatchEquations<dim, ns>::add_coarse_share(const PatchBlock<dim, ns> &block,
-                                               std::vector<Eigen::Triplet<double>> &entries) const
+                                               CoarseMatrix<dim * ns> &sum) const
 {
   std::vector<int> used;
   for (const int node : block.nodes)
     for (const auto &[j, value] : hats_[node])
       if (std::find(used.begin(), used.end(), j) == used.end())
         used.push_back(j);
+  if constexpr (ns == dim * dim)
+    add_share_of_gradients(block, used, sum);
+  else
+    add_share_of_strains(block, used, sum);
+}
+
+template <int dim, int ns>
+void PatchEquations<dim, ns>::add_share_of_strains(const PatchBlock<dim, ns> &block,
+                                                   const std::vector<int> &used,
+                                                   CoarseMatrix<dim * ns> &sum) const
+{
   const auto &q = block.basis->homogeneous;
   const int nq = int(q.cols()), n_columns = int(used.size()) * dim * ns;
   // Column by column the homogeneous part of a hat's field, and its moduli.
@@ -191,8 +193,41 @@ void PatchEquations<dim, ns>::add_coarse_share(const PatchBlock<dim, ns> &block,
                                 scale * scale * parts.transpose() * parts;
   for (std::size_t i = 0; i < used.size(); ++i)
     for (std::size_t j = 0; j < used.size(); ++j)
-      add_entries(used[i] * dim * ns, used[j] * dim * ns,
-                  share.template block<dim * ns, dim * ns>(i * dim * ns, j * dim * ns), entries);
+      if (used[i] >= used[j])
+        sum.at(used[i], used[j]) +=
+            share.template block<dim * ns, dim * ns>(i * dim * ns, j * dim * ns);
+}
+
+// Every node admits all gradients. A hat's field of component c and state k has then the
+// homogeneous part e_k (x) q and the moduli sym(e_k (x) g), with rows q of the basis, g = q strain;
+// products of two of these are (delta_kk' g.g' + g'_k g_k') / 2.
+template <int dim, int ns>
+void PatchEquations<dim, ns>::add_share_of_gradients(const PatchBlock<dim, ns> &block,
+                                                     const std::vector<int> &used,
+                                                     CoarseMatrix<dim * ns> &sum) const
+{
+  const auto &basis = *block.basis;
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(dim * used.size(), basis.homogeneous.cols());
+  for (std::size_t i = 0; i < block.nodes.size(); ++i)
+    for (const auto &[j, value] : hats_[block.nodes[i]]) {
+      const int hat = int(std::find(used.begin(), used.end(), j) - used.begin());
+      q.middleRows(dim * hat, dim) += value * basis.homogeneous.middleRows(dim * i, dim);
+    }
+  const Eigen::MatrixXd g = q * basis.strain;
+  const double squared = block.volume * block.volume, scale = squared / std::pow(block.length, 2);
+  const Eigen::MatrixXd diagonal = squared / 2 * g * g.transpose() - scale * q * q.transpose();
+  for (std::size_t i = 0; i < used.size(); ++i)
+    for (std::size_t j = 0; j < used.size(); ++j) {
+      if (used[i] < used[j])
+        continue;
+      auto &whole = sum.at(used[i], used[j]);
+      for (std::size_t a = 0; a < dim; ++a)
+        for (std::size_t b = 0; b < dim; ++b) {
+          auto part = whole.template block<ns, ns>(a * ns, b * ns);
+          part += squared / 2 * g.row(dim * j + b).transpose() * g.row(dim * i + a);
+          part.diagonal().array() += diagonal(dim * i + a, dim * j + b);
+        }
+    }
 }
 
 // G^T y added to the unknowns.

@@ -2,6 +2,7 @@
 // corrections, and the least-norm solution by conjugate gradients on two levels.
 #pragma once
 
+#include "coupling/operators/coarse_matrix.h"
 #include "coupling/overlap.h"
 
 #include <Eigen/SparseCholesky>
@@ -74,8 +75,11 @@ private:
   void make_coarse_space(const Overlap<dim> &overlap);
   void make_hats(const Overlap<dim> &overlap);
   void factorize_coarse_space();
-  void add_coarse_share(const PatchBlock<dim, ns> &block,
-                        std::vector<Eigen::Triplet<double>> &entries) const;
+  void add_coarse_share(const PatchBlock<dim, ns> &block, CoarseMatrix<dim * ns> &sum) const;
+  void add_share_of_strains(const PatchBlock<dim, ns> &block, const std::vector<int> &used,
+                            CoarseMatrix<dim * ns> &sum) const;
+  void add_share_of_gradients(const PatchBlock<dim, ns> &block, const std::vector<int> &used,
+                              CoarseMatrix<dim * ns> &sum) const;
   void add_transposed(const Field &y);
   Field forces() const;
   Field apply(const Field &y) const;

@@ -87,6 +87,8 @@ private:
   void visit_quadratic(const Quadratic &q)
   {
     constexpr int none = -1;
+    core::require(q.rows.cols() == long(block * q.members.size()),
+                  "an equilibrium: the force has no rotations");
     bool plain = true;
     for (const int i : q.members)
       plain = plain && !is_pad(i);

@@ -28,7 +28,7 @@ template <int dim>
 const double *set_displacement(particles::Particles<dim> &zone, const double *value)
 {
   value = write(value, zone.displacement);
-  for (int c = 0; c < n_spins<dim>; ++c)
+  for (int c = 0; c < n_spins<dim> && zone.turns; ++c)
     for (int i = 0; i < zone.size(); ++i, ++value) {
       if constexpr (dim == 2)
         zone.rotation[0][i] = *value;
@@ -44,7 +44,8 @@ const double *set_displacement(particles::Particles<dim> &zone, const double *va
 template <int dim>
 int state_size(const CoupledBody<dim> &body)
 {
-  return (body.zone ? n_particle_dofs<dim> * body.zone->state.size() : 0) +
+  const int dofs = !body.zone ? 0 : body.zone->state.turns ? n_particle_dofs<dim> : dim;
+  return (body.zone ? dofs * body.zone->state.size() : 0) +
          (body.far ? dim * body.far->mesh().n_nodes() : 0);
 }
 
@@ -66,7 +67,7 @@ Eigen::VectorXd displacement(const CoupledBody<dim> &body)
   if (body.zone) {
     const auto &zone = body.zone->state;
     value = read(zone.displacement, value);
-    for (int c = 0; c < n_spins<dim>; ++c)
+    for (int c = 0; c < n_spins<dim> && zone.turns; ++c)
       for (int i = 0; i < zone.size(); ++i)
         *value++ = dim == 2 ? zone.rotation[0][i] : 2 * zone.rotation[dim == 2 ? 0 : 1 + c][i];
   }

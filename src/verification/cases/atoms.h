@@ -7,4 +7,6 @@ namespace ligament::program
 {
 std::vector<Case> atom_cases();
 std::vector<Case> atom_strain_cases();
+std::vector<Case> atom_motion_cases();
+std::vector<Case> atom_wave_cases();
 } // namespace ligament::program

@@ -11,7 +11,7 @@ template <int dim>
 BlochWaves<dim>::BlochWaves(const particles::Particles<dim> &particles,
                             const particles::ParticleForce<dim> &force, int centre, int axis,
                             double period)
-    : mass_(dofs), axis_(axis)
+    : mass_(force.has_rotations() ? n_particle_dofs<dim> : dim), axis_(axis)
 {
   using Kind = typename particles::QuadraticTerm<dim>::Kind;
   force.add_tangent(particles, [&](const particles::QuadraticTerm<dim> &term) {
@@ -33,12 +33,13 @@ BlochWaves<dim>::BlochWaves(const particles::Particles<dim> &particles,
   });
   core::require(!terms_.empty(), "no bonds around the centre of the waves");
   mass_.template head<dim>().setConstant(particles.mass[centre]);
-  mass_.template tail<n_spins<dim>>().setConstant(particles.inertia(centre));
+  mass_.tail(mass_.size() - dim).setConstant(particles.inertia(centre));
 }
 
 template <int dim>
 WaveModes BlochWaves<dim>::modes(const Vector<dim> &wave_vector) const
 {
+  const int dofs = int(mass_.size());
   Eigen::MatrixXcd stiffness = Eigen::MatrixXcd::Zero(dofs, dofs);
   for (const Term &t : terms_) {
     Eigen::MatrixXcd rows = Eigen::MatrixXcd::Zero(t.rows.rows(), dofs);

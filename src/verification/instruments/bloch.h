@@ -11,8 +11,8 @@ namespace ligament::program
 template <int dim>
 struct BlochMode
 {
-  double frequency;                                                       // omega, rad/s
-  Eigen::Matrix<std::complex<double>, n_particle_dofs<dim>, 1> amplitude; // |displacement| = 1
+  double frequency;           // omega, rad/s
+  Eigen::VectorXcd amplitude; // |displacement| = 1
 };
 
 /// Modes of the infinite packing around particle `centre`, which has all its neighbours, and whose
@@ -26,7 +26,7 @@ public:
   BlochWaves(const particles::Particles<dim> &particles, const particles::ParticleForce<dim> &force,
              int centre, int axis, double period = 0);
 
-  /// All modes of a wave vector in rad/m.
+  /// All modes of a wave vector in rad/m; of displacements alone where the force has no rotations.
   WaveModes modes(const Vector<dim> &wave_vector) const;
 
   /// The slowest branch that moves along `polarisation` (a unit vector); of degenerate ones the
@@ -37,7 +37,6 @@ public:
   double group_velocity(double wave_number, const Vector<dim> &polarisation) const;
 
 private:
-  static constexpr int dofs = n_particle_dofs<dim>;
   struct Term
   {
     double share;                   // of its energy that belongs to the centre

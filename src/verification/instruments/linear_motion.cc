@@ -35,7 +35,8 @@ Eigen::Matrix<double, dim, dim + n_spins<dim>> rigid_motions(const Vector<dim> &
 template <int dim>
 LinearMotion<dim>::LinearMotion(CoupledBody<dim> &body)
     : body_(body), n_particles_(body.zone ? body.zone->state.size() : 0),
-      n_particle_values_(n_particle_dofs<dim> * n_particles_)
+      n_particle_values_(
+          (body.zone && !body.zone->state.turns ? dim : n_particle_dofs<dim>)*n_particles_)
 {
   core::require(body.coupler->step_ratio() == 1, "linear motion needs the step ratio 1");
   if (body.far)
@@ -121,7 +122,7 @@ double LinearMotion<dim>::inner(const Eigen::VectorXd &x, const Eigen::VectorXd 
     }
     const auto &zone = body_.zone->state;
     sum += zone.mass[i] * u.dot(v);
-    for (int c = 0; c < n_spins<dim>; ++c) {
+    for (int c = 0; c < n_spins<dim> && zone.turns; ++c) {
       const int k = (dim + c) * n_particles_ + i;
       sum += zone.inertia(i) * x[k] * y[k];
     }

@@ -68,6 +68,6 @@ private:
   CoupledBody<dim> &body_;
   int n_particles_, n_particle_values_, n_nodes_ = 0;
   Eigen::SparseMatrix<double> near_mass_;
-  Eigen::VectorXd rest_;                      // accelerations by dead loads of the coupler
+  Eigen::VectorXd rest_; // accelerations by dead loads of the coupler
 };
 } // namespace ligament::program

@@ -118,7 +118,6 @@ TEST(PartialAtomsTest, ForcesAreSlopesOfTheEnergy)
 template <int dim>
 void expect_shared_tangent(Body<dim> body)
 {
-  constexpr int dofs = n_particle_dofs<dim>;
   const auto force = body.force();
   std::vector<int> members;
   for (int i = 0; i < body.atoms.size(); ++i)
@@ -132,7 +131,7 @@ void expect_shared_tangent(Body<dim> body)
   force.add_tangent(body.atoms, [&](const particles::QuadraticTerm<dim> &term) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(term.rows.rows(), n);
     for (std::size_t m = 0; m < term.members.size(); ++m)
-      rows.middleCols(dim * term.members[m], dim) += term.rows.middleCols(int(m) * dofs, dim);
+      rows.middleCols(dim * term.members[m], dim) += term.rows.middleCols(int(m) * dim, dim);
     k += share(term.location, term.members) * rows.transpose() * term.stiffness.asDiagonal() * rows;
   });
   const double h = 1e-5 * body.crystal.spacing();
