@@ -4,6 +4,7 @@
 #include "coupling/scheme.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 namespace ligament::coupling
@@ -17,6 +18,10 @@ struct FineScaleSplitParameters
   Solver solver = Solver::eigen;
   /// Factor on the particles' share of M_c; the far field's density carries it already.
   double coarse_mass = 1;
+  /// kT in J; above 0 the fine damper is the friction of a heat bath for w, and no damper.
+  double thermal_energy = 0;
+  std::int64_t seed = 1;    // of its random numbers
+  double zone_friction = 0; // 1/s, of a bath for the particles outside the overlap; 0: none
 };
 
 struct BridgingDomainParameters

@@ -105,6 +105,7 @@ void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
           continue;
         slot.mass.value[l] = particles.mass[m.particle];
         slot.damping[l] = float(damping(m.position));
+        ++n_free_members_;
       }
       lanes_.slots.push_back(slot);
       lanes_.n_members.push_back(n_members);
@@ -271,6 +272,8 @@ void FineMotion<dim>::save(core::State &state, const particles::Particles<dim> &
     table.add("velocity_" + std::to_string(c), motion[c]);
   state["fluctuation"] = std::move(table);
   core::save_value(state, "fine_motion", "damper_energy", damper_energy_);
+  if (has_bath())
+    core::save_value(state, "fine_motion", "bath_energy", bath_energy_);
 }
 
 template <int dim>
@@ -289,6 +292,8 @@ void FineMotion<dim>::load(const core::State &state, const particles::Particles<
       }
   }
   damper_energy_ = core::load_real(state, "fine_motion", "damper_energy");
+  if (has_bath())
+    bath_energy_ = core::load_real(state, "fine_motion", "bath_energy");
 }
 
 template <int dim>

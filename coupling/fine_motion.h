@@ -2,6 +2,7 @@
 // hand each other in a step.
 #pragma once
 
+#include "core/thermal_noise.h"
 #include "coupling/algebra/scalar_matrix.h"
 #include "coupling/member_batches.h"
 #include "coupling/operators/coarse_projection.h"
@@ -43,6 +44,21 @@ public:
 
   void scale(double factor);
 
+  /// From now on exchange_heat() acts; kept: exp(-c_f dt) for a member's position s. For a motion
+  /// without damper.
+  void join_bath(const Overlap<dim> &overlap, const std::function<double(double)> &kept);
+  bool has_bath() const { return !kept_.empty(); }
+  /// Friction and its noise, theory.md eq. (C28), after finish_kick(dt) and as it leaves off;
+  /// thermal_energy: kT in J. Streams 0 and 1 of the noise.
+  void exchange_heat(double thermal_energy, const core::ThermalNoise &noise, double dt,
+                     const Nodal<dim> &coarse, particles::Particles<dim> &particles);
+  /// What the bath has taken so far, less what it has given, in J.
+  double bath_energy() const { return bath_energy_; }
+  void reset_bath_energy() { bath_energy_ = 0; }
+  /// Free components of w: those of the members that are not pad less those of the nodes that carry
+  /// them.
+  long n_free() const { return dim * (n_free_members_ - carrier_.n_unknowns()); }
+
   /// w, as the table "fluctuation", and what the damper has taken.
   void save(core::State &state, const particles::Particles<dim> &particles) const;
   /// Velocities of the particles are not touched.
@@ -75,6 +91,9 @@ private:
   /// visit(particle, mass, 1 - damping/2, nodes, values) for every member; pads have no mass.
   template <typename Visit>
   void for_each_member(Visit &&visit) const;
+  /// visit(slot, lane, nodes) of the members that are not pad; nodes[a][lane].
+  template <typename Visit>
+  void for_each_free(Visit &&visit) const;
   void turn_with_mesh(const Nodal<dim> &coarse, particles::Particles<dim> &particles) const;
   void add_pad_torques(const particles::Particles<dim> &particles, Nodal<dim> &force) const;
 
@@ -86,6 +105,9 @@ private:
   ScalarMatrix<dim> loss_;           // Phi^T M damping (1 - damping/2) Phi
   std::vector<LaneArray> cell_loss_; // of the members' part of (C20), per batch
   double damper_energy_ = 0;
+  std::vector<LaneArray> kept_; // exp(-c_f dt) per slot; empty: no heat bath
+  double bath_energy_ = 0;
+  long n_free_members_ = 0;
   std::vector<Pad> pads_;
 };
 } // namespace ligament::coupling

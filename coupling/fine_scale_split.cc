@@ -14,7 +14,7 @@ namespace ligament::coupling
 template <int dim>
 FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
                                     const FineScaleSplitParameters &parameters, double dt,
-                                    core::Timers &timers)
+                                    core::Timers &timers, const fem::Body<dim> *still)
     : Coupler<dim>(timers), parameters_(parameters),
       overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
       near_(*bodies.far, overlap_.near_nodes),
@@ -23,18 +23,19 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
           [&, speed = bodies.zone->force->elastic_constants().wave_speed_p](double s) {
             const double rate =
                 fine_damper_rate(parameters.fine_damper, speed, overlap_.cell_size, s);
-            return 1 - std::exp(-rate * dt);
+            return parameters.thermal_energy > 0 ? 0 : 1 - std::exp(-rate * dt);
           },
           parameters.solver),
       parts_(overlap_), mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
   const int n = overlap_.n_nodes();
+  const fem::Body<dim> &near_body = still ? *still : far.body();
   const auto operators = make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force,
-                                                far.body(), parameters.coarse_mass);
+                                                near_body, parameters.coarse_mass);
   stiffness_ = operators.stiffness;
   if (parameters.patch_fit) {
-    const PatchFit fit = fit_patch(overlap_, operators, far.body());
+    const PatchFit fit = fit_patch(overlap_, operators, near_body);
     correction_ = fit.correction;
     stiffness_ += correction_;
     report_.patch_residual_before = fit.residual_before;
@@ -46,6 +47,8 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                               "keep the overlap away from corners, holes and loads",
                               fit.residual));
   }
+  if (still)
+    stiffness_ += change_of_cells_alone(overlap_, *still, far.body());
   dead_load_ = operators.dead_load;
   coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_, dead_load_);
   linear_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_);
@@ -68,6 +71,10 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
   report_.pad_particles = fine_.n_pads();
   report_.near_nodes = n;
   bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(far.displacement));
+  for (const double period : overlap.period)
+    is_periodic_ = is_periodic_ || period > 0;
+  if (parameters.thermal_energy > 0)
+    join_bath(bodies, dt);
   take_velocities(bodies);
 }
 
@@ -251,6 +258,8 @@ void FineScaleSplit<dim>::kick(Bodies<dim> &bodies, const StepTime &step)
   fine_.begin_kick(bodies.zone->state, step.dt, force_);
   kick_coarse(step);
   fine_.finish_kick(near_.velocity(), bodies.zone->state);
+  if (zone_bath_)
+    exchange_heat(bodies, step);
 }
 
 // V += M_c^-1 dt F. Between two impulses of the far field V swings about its mean, most where the
@@ -369,6 +378,8 @@ CoupledEnergy FineScaleSplit<dim>::energy(const Bodies<dim> &bodies, const StepT
   CoupledEnergy e;
   e.fine_damper = fine_.damper_energy();
   e.gap_filter = gap_filter_energy_;
+  if (zone_bath_)
+    e.thermostat = fine_.bath_energy() + zone_bath_->taken;
   e.potential_discrete = bodies.zone->potential_energy();
   e.potential_far = bodies.far->potential_energy();
   Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
@@ -392,6 +403,8 @@ void FineScaleSplit<dim>::save(core::State &state, const Bodies<dim> &bodies) co
   core::save_value(state, "split", "kicks", std::int64_t(kicks_));
   core::save_value(state, "split", "rested", std::int64_t(rested_));
   core::save_value(state, "split", "far_rested", std::int64_t(far_rested_));
+  if (zone_bath_)
+    save_bath(state);
 }
 
 // Velocities and orientations of the members are those of the particles' state: nothing is written
@@ -413,6 +426,8 @@ void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
   kicks_ = load("kicks");
   rested_ = load("rested");
   far_rested_ = load("far_rested");
+  if (zone_bath_)
+    load_bath(state, bodies);
 }
 
 template class FineScaleSplit<2>;

@@ -9,6 +9,9 @@
 #include "coupling/near_nodes.h"
 #include "coupling/operators/coarse_energy.h"
 #include "coupling/operators/patch_fit.h"
+#include "coupling/zone_bath.h"
+
+#include <optional>
 
 namespace ligament::coupling
 {
@@ -23,6 +26,19 @@ struct SplitReport
   double patch_modulus = 0; // max |S|/(C11 V_b)
 };
 
+/// Of a run with the mesh held, theory.md eq. (C30).
+struct HeldRun
+{
+  double equilibration = 0, averaging = 0; // s
+  double friction = 0;                     // 1/s, on the particles outside the overlap
+};
+struct HeldReport
+{
+  long steps = 0;
+  double load = 0, change = 0; // largest |g| of a node, and by how much it is another one, in N
+  double error = 0;            // standard error of the mean, root mean square over the nodes, in N
+};
+
 /// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
 ///
 /// The fluctuation damper acts on w before the kick, so that one projection serves both; the
@@ -31,9 +47,12 @@ template <int dim>
 class FineScaleSplit : public Coupler<dim>
 {
 public:
-  /// Takes the overlap's and the transition's cells over from the far field. dt in s.
+  /// Takes the overlap's and the transition's cells over from the far field. dt in s. `still`: the
+  /// body without thermal motion, by whose constants the discrete energy is subtracted; null: the
+  /// far field's own.
   FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
-                 const FineScaleSplitParameters &parameters, double dt, core::Timers &timers);
+                 const FineScaleSplitParameters &parameters, double dt, core::Timers &timers,
+                 const fem::Body<dim> *still = nullptr);
 
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
@@ -80,6 +99,16 @@ public:
   std::vector<RestShare> shares_at_rest() const override;
   std::vector<core::SkippedPart> skipped_parts() const override;
 
+  /// Particles move at their temperature about the mesh at rest, far field and loads as at time 0;
+  /// their mean force takes the place of the dead load. From velocities drawn anew, to the state
+  /// that a run at this temperature begins with.
+  HeldReport find_thermal_load(Bodies<dim> &bodies, const HeldRun &run, double dt);
+  /// kT in J of the velocities of this moment: of w, of the particles outside the overlap.
+  double thermal_energy_of_fine(const Bodies<dim> &bodies) const;
+  double thermal_energy_of_zone(const Bodies<dim> &bodies) const;
+  /// g in N on the near nodes; empty: no bond bears forces at first.
+  const Nodal<dim> &dead_load() const { return dead_load_; }
+
   const SplitReport &report() const { return report_; }
   const Overlap<dim> *overlap() const override { return &overlap_; }
   /// Coarse stiffness K_near including the patch fit, N/m.
@@ -91,6 +120,13 @@ public:
 private:
   bool is_far_step(const StepTime &step) const { return step.step % parameters_.step_ratio == 0; }
   void kick_coarse(const StepTime &step);
+  void join_bath(const Bodies<dim> &bodies, double dt);
+  void exchange_heat(Bodies<dim> &bodies, const StepTime &step);
+  void save_bath(core::State &state) const;
+  void load_bath(const core::State &state, const Bodies<dim> &bodies);
+  void set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies);
+  /// Without net force, and without moment where no axis repeats itself.
+  Nodal<dim> balanced(Nodal<dim> load, const fem::Mesh<dim> &mesh) const;
   bool far_rests(const Bodies<dim> &bodies, const StepTime &step);
   /// Whether a wave has come; then particles and nodes of the overlap move from now on.
   void look(Bodies<dim> &bodies, const StepTime &step);
@@ -143,6 +179,8 @@ private:
   Nodal<dim> middle_, lost_;    // V half-way through it, and what the filter takes there
   Nodal<dim> undamped_, swing_; // mean of V before mass damping; what V differs by from it
   double gap_filter_energy_ = 0;
+  std::optional<ZoneBath<dim>> zone_bath_; // at a temperature
+  bool is_periodic_ = false;
 
   bool rests_ = false, far_rests_ = false;
   double waking_force_ = 0; // N, on a component of a near node

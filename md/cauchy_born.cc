@@ -157,7 +157,19 @@ particles::ElasticConstants<dim> Crystal<dim>::elastic_constants() const
 {
   const Moduli<dim> a = moduli(Matrix<dim>::Zero());
   particles::ElasticConstants<dim> constants;
-  const auto &c = constants.stiffness = stiffness_of<dim>(a);
+  Moduli<dim> without_stress = a; // (C23)
+  if (parameters_.lattice_parameter > 0) {
+    const Matrix<dim> sigma = stress(Matrix<dim>::Zero());
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        for (int l = 0; l < dim; ++l)
+          without_stress(i * dim + j, i * dim + l) -= sigma(j, l);
+    for (int p = 0; p < n_strains<dim>; ++p) {
+      const auto [i, j] = voigt<dim>(p);
+      constants.stress[p] = (sigma(i, j) + sigma(j, i)) / 2;
+    }
+  }
+  const auto &c = constants.stiffness = stiffness_of<dim>(without_stress);
   constants.density = mass_density();
   // Voigt's average keeps both linear invariants of C. In 2D: plane strain of the same E and nu.
   double bulk = 0, trace = 0; // C_iijj, C_ijij

@@ -170,6 +170,13 @@ Crystal<dim>::Crystal(const Potential &potential, const CrystalParameters<dim> &
   // In the search the nearest neighbours come down to a fifth of the cut-off.
   half_bonds_ = lattice_vectors<dim>(unit, 5 * unit.col(0).norm());
   lattice_parameter_ = find_lattice_parameter(potential);
+  if (const double given = parameters_.lattice_parameter; given > 0) {
+    core::require(std::abs(given / lattice_parameter_ - 1) < 0.1,
+                  fmt::format("a lattice parameter of {:.4g} m is far from the {:.4g} m of the "
+                              "crystal without stress; give one within a tenth of it",
+                              given, lattice_parameter_));
+    lattice_parameter_ = given;
+  }
   const double a = lattice_parameter_;
   cohesive_energy_ = energy_of(a, potential).value;
   basis_ = a * unit;

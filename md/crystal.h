@@ -31,14 +31,16 @@ struct CrystalParameters
   int species = 0;
   /// Turns crystal axes into those of space: cube axes (3D); a close-packed row and its normal.
   Matrix<dim> orientation = Matrix<dim>::Identity();
-  double thickness = 1; // m, 2D only: volumes include it
+  double thickness = 1;         // m, 2D only: volumes include it
+  double lattice_parameter = 0; // m; 0: that without stress
 };
 
 /// The rotation that brings these two perpendicular directions of the crystal to x and y. Throws
 /// core::InputError where they are not.
 Matrix<3> orientation_of(const Vector<3> &along_x, const Vector<3> &along_y);
 
-/// One kind of atoms on a Bravais lattice, without stress at rest.
+/// One kind of atoms on a Bravais lattice, without stress at rest unless it was given a lattice
+/// parameter.
 template <int dim>
 class Crystal
 {
@@ -73,7 +75,7 @@ public:
   /// F; throws likewise.
   Matrix<dim> deformation(const Matrix<dim> &gradient) const;
 
-  /// C in the axes of space. Young's modulus and Poisson's ratio are those of Voigt's average over
+  /// C and stress in the axes of space, theory.md (C23). Young's modulus and Poisson's ratio are those of Voigt's average over
   /// all orientations, wave speeds the largest (P) and smallest (S) along high symmetry directions.
   particles::ElasticConstants<dim> elastic_constants() const;
 

@@ -402,6 +402,36 @@ fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
 }
 
 template <int dim>
+Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<dim> &overlap,
+                                                  const fem::Body<dim> &from,
+                                                  const fem::Body<dim> &to)
+{
+  NodalMatrix<dim> change(overlap.n_nodes());
+  for (const auto &cell : overlap.cells) {
+    const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
+    const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
+    fem::CellMatrix<dim> k;
+    k.setZero();
+    if (cell.layer > 0)
+      k = whole_cell_stiffness(cell.shape, size, to) - whole_cell_stiffness(cell.shape, size, from);
+    else {
+      for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
+        if (overlap.distance_to_edge(x) >= overlap.depth)
+          return;
+        w *= (1 - overlap.weight(x)) * to.thickness;
+        const auto gradients = overlap.shape_gradients(cell, x);
+        const auto b = fem::strain_matrix<dim>(gradients);
+        k += w * b.transpose() * (to.stiffness - from.stiffness) * b;
+        k += fem::stress_stiffness<dim>(gradients, Strain<dim>(to.stress - from.stress), w);
+      });
+      k -= relief_by_modes(overlap, cell, to) - relief_by_modes(overlap, cell, from);
+    }
+    change.add({cell.nodes.begin(), cell.nodes.end()}, k);
+  }
+  return change.to_sparse();
+}
+
+template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k)
 {
   Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
@@ -515,6 +545,10 @@ template BlendedOperators<3> make_blended_operators(const Overlap<3> &,
                                                     const particles::Particles<3> &,
                                                     const particles::ParticleForce<3> &,
                                                     const fem::Body<3> &, double);
+template Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<2> &, const fem::Body<2> &,
+                                                           const fem::Body<2> &);
+template Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<3> &, const fem::Body<3> &,
+                                                           const fem::Body<3> &);
 template fem::CellMatrix<2> blended_cell_stiffness(const Overlap<2> &, const Overlap<2>::Cell &,
                                                    const fem::Body<2> &);
 template fem::CellMatrix<3> blended_cell_stiffness(const Overlap<3> &, const Overlap<3>::Cell &,

@@ -55,6 +55,13 @@ fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
                                      const typename Overlap<dim>::Cell &cell,
                                      const fem::Body<dim> &body);
 
+/// Change of the coarse stiffness in N/m where the near cells are alone, in the transition and
+/// beyond the particles that have a motion of their own, when one body takes the place of another.
+template <int dim>
+Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<dim> &overlap,
+                                                  const fem::Body<dim> &from,
+                                                  const fem::Body<dim> &to);
+
 /// The cells' part alone: stiffness weighted by 1 - a, without the subtracted terms, and mass,
 /// without the particles' share. Residual, mass bound and normals stay empty. Throws
 /// core::InputError where the overlap reaches a loaded or held side.

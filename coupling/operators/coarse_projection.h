@@ -21,6 +21,8 @@ public:
 
   /// Phi^T M w in, x out; rows are near nodes.
   void solve(Nodal<dim> &nodal) const;
+  /// Near nodes that carry a motion of their own: the rank of Phi.
+  int n_unknowns() const { return int(nodes_.size()); }
 
 private:
   std::vector<int> nodes_; // near nodes that are unknowns

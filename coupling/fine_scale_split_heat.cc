@@ -1,0 +1,211 @@
+// The default coupler at a temperature: its heat baths, and the load that thermal motion adds.
+#include "coupling/fine_scale_split.h"
+#include "coupling/operators/fine_damper.h"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ligament::coupling
+{
+namespace
+{
+constexpr int n_blocks = 20; // whose means tell the error of the whole mean
+} // namespace
+
+template <int dim>
+void FineScaleSplit<dim>::join_bath(const Bodies<dim> &bodies, double dt)
+{
+  zone_bath_.emplace(overlap_, bodies.zone->state.size());
+  if (parameters_.fine_damper == 0)
+    return;
+  const double speed = bodies.zone->force->elastic_constants().wave_speed_p;
+  fine_.join_bath(overlap_, [&](double s) {
+    return std::exp(-dt * fine_damper_rate(parameters_.fine_damper, speed, overlap_.cell_size, s));
+  });
+}
+
+template <int dim>
+void FineScaleSplit<dim>::exchange_heat(Bodies<dim> &bodies, const StepTime &step)
+{
+  auto &zone = bodies.zone->state;
+  const core::ThermalNoise noise(parameters_.seed, step.step);
+  fine_.exchange_heat(parameters_.thermal_energy, noise, step.dt, near_.velocity(), zone);
+  if (parameters_.zone_friction > 0)
+    zone_bath_->exchange_heat(std::exp(-parameters_.zone_friction * step.dt),
+                              parameters_.thermal_energy, noise, step.dt, zone);
+}
+
+template <int dim>
+double FineScaleSplit<dim>::thermal_energy_of_fine(const Bodies<dim> &bodies) const
+{
+  const long n = fine_.n_free();
+  return n > 0 ? 2 * fine_.kinetic_energy(bodies.zone->state, 0) / double(n) : 0;
+}
+
+template <int dim>
+double FineScaleSplit<dim>::thermal_energy_of_zone(const Bodies<dim> &bodies) const
+{
+  const long n = zone_bath_ ? zone_bath_->n_free() : 0;
+  return n > 0 ? 2 * zone_bath_->kinetic_energy(bodies.zone->state) / double(n) : 0;
+}
+
+// The steps before the first one have numbers below 0, and noise of their own.
+template <int dim>
+HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const HeldRun &run,
+                                                  double dt)
+{
+  const auto timing = this->timers_.scope(this->timers_.section("thermal load"));
+  auto &zone = *bodies.zone;
+  const double energy = parameters_.thermal_energy;
+  const int n = overlap_.n_nodes();
+  const Nodal<dim> still = Nodal<dim>::Zero(n, dim);
+  const long per_block = std::max(1l, std::lround(run.averaging / dt / n_blocks)),
+             n_first = std::lround(run.equilibration / dt),
+             n_steps = n_first + n_blocks * per_block;
+  zone_bath_->draw(2 * energy, core::ThermalNoise(parameters_.seed, -n_steps - 1), zone.state);
+  fine_.take_velocities(still, zone.state);
+
+  Nodal<dim> block = still, mean = still, square = still, force = still;
+  for (long k = 0; k < n_steps; ++k) {
+    zone.compute_forces(0);
+    zone.kick(dt);
+    force.setZero();
+    fine_.begin_kick(zone.state, dt, force);
+    fine_.finish_kick(still, zone.state);
+    const core::ThermalNoise noise(parameters_.seed, k - n_steps);
+    fine_.exchange_heat(energy, noise, dt, still, zone.state);
+    zone_bath_->exchange_heat(std::exp(-run.friction * dt), energy, noise, dt, zone.state);
+    zone.drift(dt);
+    zone.update_ghosts();
+    if (k < n_first)
+      continue;
+    block += force / double(per_block);
+    if ((k + 1 - n_first) % per_block == 0) {
+      mean += block / n_blocks;
+      square += block.cwiseProduct(block) / n_blocks;
+      block.setZero();
+    }
+  }
+  fine_.reset_bath_energy();
+  zone_bath_->taken = 0;
+
+  HeldReport report;
+  report.steps = n_steps;
+  const double variance = (square - mean.cwiseProduct(mean)).cwiseMax(0).sum() / (n_blocks - 1);
+  const double n_loaded = (mean.rowwise().norm().array() > 0).template cast<double>().sum();
+  report.error = n_loaded > 0 ? std::sqrt(variance / n_loaded) : 0;
+  const Nodal<dim> load = balanced(mean, bodies.far->mesh());
+  report.load = load.rowwise().norm().maxCoeff();
+  report.change =
+      (dead_load_.size() > 0 ? Nodal<dim>(load - dead_load_) : load).rowwise().norm().maxCoeff();
+  set_dead_load(load, bodies);
+  return report;
+}
+
+// Action and reaction leave no net force on the mean; what a finite time has left of it would move
+// the body. Taken from all loaded nodes, with the smallest change of their loads.
+template <int dim>
+Nodal<dim> FineScaleSplit<dim>::balanced(Nodal<dim> load, const fem::Mesh<dim> &mesh) const
+{
+  std::vector<int> loaded;
+  for (int i = 0; i < load.rows(); ++i)
+    if (!load.row(i).isZero(0))
+      loaded.push_back(i);
+  if (loaded.empty())
+    return load;
+  const int n_spin = is_periodic_ ? 0 : n_spins<dim>, n = int(loaded.size());
+  Vector<dim> centre = Vector<dim>::Zero();
+  for (const int i : loaded)
+    centre += mesh.nodes[overlap_.near_nodes[i]] / n;
+  Eigen::MatrixXd rigid(dim * n, dim + n_spin);
+  Eigen::VectorXd values(dim * n);
+  for (int k = 0; k < n; ++k) {
+    const Vector<dim> x =
+        (mesh.nodes[overlap_.near_nodes[loaded[k]]] - centre) / overlap_.cell_size;
+    values.segment<dim>(dim * k) = load.row(loaded[k]).transpose();
+    rigid.block<dim, dim>(dim * k, 0).setIdentity();
+    for (int s = 0; s < n_spin; ++s) {
+      Vector<dim> turned = Vector<dim>::Zero();
+      if constexpr (dim == 2)
+        turned = Vector<2>(-x[1], x[0]);
+      else
+        turned = Vector<3>::Unit(s).cross(x);
+      rigid.block<dim, 1>(dim * k, dim + s) = turned;
+    }
+  }
+  const Eigen::VectorXd share = rigid.colPivHouseholderQr().solve(values);
+  values -= rigid * share;
+  for (int k = 0; k < n; ++k)
+    load.row(loaded[k]) = values.segment<dim>(dim * k).transpose();
+  return load;
+}
+
+template <int dim>
+void FineScaleSplit<dim>::set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies)
+{
+  dead_load_ = load;
+  if (regime_ == Regime::linear)
+    coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_, dead_load_);
+  else
+    make_coarse_energy(regime_, bodies);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::save_bath(core::State &state) const
+{
+  core::save_value(state, "split", "zone_bath_energy", zone_bath_->taken);
+  if (dead_load_.size() == 0)
+    return;
+  std::map<std::int64_t, int> rows;
+  for (int i = 0; i < overlap_.n_nodes(); ++i)
+    rows[overlap_.near_nodes[i]] = i;
+  std::vector<std::int64_t> keys;
+  Components<dim> force;
+  for (const auto &[key, i] : rows) {
+    keys.push_back(key);
+    for (int c = 0; c < dim; ++c)
+      force[c].push_back(dead_load_(i, c));
+  }
+  core::Table table(std::move(keys));
+  for (int c = 0; c < dim; ++c)
+    table.add("force_" + std::to_string(c), force[c]);
+  state["dead_load"] = std::move(table);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::load_bath(const core::State &state, const Bodies<dim> &bodies)
+{
+  zone_bath_->taken = core::load_real(state, "split", "zone_bath_energy");
+  if (dead_load_.size() == 0)
+    return;
+  const core::Table &table = core::table(state, "dead_load");
+  std::map<std::int64_t, std::size_t> rows;
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    rows[table.keys()[r]] = r;
+  Nodal<dim> load = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  for (int c = 0; c < dim; ++c) {
+    const auto force = table.reals("force_" + std::to_string(c));
+    for (int i = 0; i < overlap_.n_nodes(); ++i)
+      load(i, c) = force[rows.at(overlap_.near_nodes[i])];
+  }
+  set_dead_load(load, bodies);
+}
+
+template void FineScaleSplit<2>::join_bath(const Bodies<2> &, double);
+template void FineScaleSplit<3>::join_bath(const Bodies<3> &, double);
+template void FineScaleSplit<2>::exchange_heat(Bodies<2> &, const StepTime &);
+template void FineScaleSplit<3>::exchange_heat(Bodies<3> &, const StepTime &);
+template double FineScaleSplit<2>::thermal_energy_of_fine(const Bodies<2> &) const;
+template double FineScaleSplit<3>::thermal_energy_of_fine(const Bodies<3> &) const;
+template double FineScaleSplit<2>::thermal_energy_of_zone(const Bodies<2> &) const;
+template double FineScaleSplit<3>::thermal_energy_of_zone(const Bodies<3> &) const;
+template HeldReport FineScaleSplit<2>::find_thermal_load(Bodies<2> &, const HeldRun &, double);
+template HeldReport FineScaleSplit<3>::find_thermal_load(Bodies<3> &, const HeldRun &, double);
+template void FineScaleSplit<2>::save_bath(core::State &) const;
+template void FineScaleSplit<3>::save_bath(core::State &) const;
+template void FineScaleSplit<2>::load_bath(const core::State &, const Bodies<2> &);
+template void FineScaleSplit<3>::load_bath(const core::State &, const Bodies<3> &);
+} // namespace ligament::coupling

@@ -1,0 +1,264 @@
+// The heat bath of the overlap: its stationary covariance, what it does to a harmonic crystal, and
+// that it is part of a run's state.
+#include "tests/support/crystal_strip.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include <numeric>
+
+namespace ligament
+{
+namespace
+{
+using namespace tests;
+using Dense = Eigen::MatrixXd;
+
+constexpr double thermal_energy = 1e-6; // the harmonic crystal knows no large or small
+constexpr double share_of_step = 0.1;   // of the critical one
+// Velocities half a step after the force have kT/(1 - (omega dt/2)^2) in each mode.
+constexpr double warmest = 1 / (1 - share_of_step * share_of_step);
+
+/// The step's matrices on the members that are not pad, one component.
+struct DenseBath
+{
+  std::vector<int> particles;
+  Eigen::VectorXd mass, kept;
+  Dense carried; // P
+
+  DenseBath(const coupling::Overlap<2> &overlap, const particles::Particles<2> &atoms,
+            const std::function<double(double)> &kept_at)
+  {
+    for (const auto &m : overlap.members)
+      if (!m.pad)
+        particles.push_back(m.particle);
+    const auto n = Eigen::Index(particles.size());
+    mass.resize(n);
+    kept.resize(n);
+    Dense shapes = Dense::Zero(n, overlap.n_nodes());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto &m = overlap.members[overlap.member_of_particle[particles[i]]];
+      mass[i] = atoms.mass[m.particle];
+      kept[i] = kept_at(m.position);
+      for (int a = 0; a < 4; ++a)
+        shapes(i, m.nodes[a]) += m.value[a];
+    }
+    // The M-orthogonal projection onto the columns, whatever their rank.
+    const Eigen::VectorXd root = mass.cwiseSqrt();
+    const Dense scaled = root.asDiagonal() * shapes;
+    const Eigen::ColPivHouseholderQR<Dense> qr(scaled);
+    const Dense basis = Dense(qr.householderQ()).leftCols(qr.rank());
+    carried = root.cwiseInverse().asDiagonal() * basis * basis.transpose() * root.asDiagonal();
+  }
+  Dense fine() const { return Dense::Identity(carried.rows(), carried.rows()) - carried; }
+  Eigen::VectorXd noise_share() const { return (1 - kept.array().square()).sqrt().matrix(); }
+};
+
+/// By which one step changes the covariance Q M^-1 Q^T, over that of a free atom.
+double change_of_covariance(const DenseBath &b, bool with_carried, bool with_noise)
+{
+  const Dense q = b.fine(), inverse = b.mass.cwiseInverse().asDiagonal(),
+              c = q * inverse * q.transpose(), g = b.kept.asDiagonal(),
+              s = b.noise_share().asDiagonal();
+  Dense next = g * c * g;
+  if (with_carried)
+    next += g * b.carried * inverse * b.carried.transpose() * g;
+  if (with_noise)
+    next += s * inverse * s;
+  return (q * next * q.transpose() - c).cwiseAbs().maxCoeff() * b.mass.minCoeff();
+}
+
+CrystalParameters<2> warm(double fine_damper)
+{
+  CrystalParameters<2> p;
+  p.split.fine_damper = fine_damper;
+  p.split.thermal_energy = thermal_energy;
+  p.split.seed = 5;
+  return p;
+}
+
+double kept_by(double strength, double dt, double s)
+{
+  return std::exp(-strength * dt * std::pow(1 - s, 1.5));
+}
+
+TEST(Heat, CovarianceOfTheFineMotionIsStationary)
+{
+  const CrystalStrip<2> strip(warm(8), 6, 30, 8);
+  for (const double strength : {0.01, 0.5, 20.}) {
+    const DenseBath bath(*strip.body.split->overlap(), strip.body.zone->state,
+                         [&](double s) { return kept_by(strength, 1, s); });
+    EXPECT_LT(change_of_covariance(bath, true, true), 1e-10) << strength;
+    EXPECT_GT(change_of_covariance(bath, true, false), 1e-2) << strength;
+    std::printf("friction %g: covariance changes by %.1e; without the carried noise %.1e, without "
+                "noise %.1e\n",
+                strength, change_of_covariance(bath, true, true),
+                change_of_covariance(bath, false, true), change_of_covariance(bath, true, false));
+    if (strength > 0.1)
+      EXPECT_GT(change_of_covariance(bath, false, true), 1e-4) << strength;
+  }
+}
+
+// The program's step against the matrices, with the numbers of the same streams.
+TEST(Heat, TheStepIsThatOfTheFormula)
+{
+  CrystalStrip<2> strip(warm(8), 6, 30, 8);
+  const auto &overlap = *strip.body.split->overlap();
+  auto &atoms = strip.body.zone->state;
+  const auto kept = [](double s) { return kept_by(0.7, 1, s); };
+  const DenseBath bath(overlap, atoms, kept);
+  coupling::FineMotion<2> fine(
+      overlap, atoms, [](double) { return 0.; }, coupling::Solver::eigen);
+  fine.join_bath(overlap, kept);
+  const core::ThermalNoise noise(3, 11);
+  const coupling::Nodal<2> still = coupling::Nodal<2>::Zero(overlap.n_nodes(), 2);
+  for (const double energy : {0., 4.}) {
+    for (int i = 0; i < atoms.size(); ++i)
+      for (int c = 0; c < 2; ++c)
+        atoms.velocity[c][i] = core::ThermalNoise(1, 1)(i, c, 0);
+    fine.take_velocities(still, atoms);
+    const auto n = Eigen::Index(bath.particles.size());
+    Dense before(n, 2), first(n, 2), second(n, 2), after(n, 2);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (int c = 0; c < 2; ++c) {
+        const int k = bath.particles[i];
+        before(i, c) = atoms.velocity[c][k];
+        first(i, c) = std::sqrt(energy / bath.mass[i]) * noise(atoms.global_id[k], c, 0);
+        second(i, c) = std::sqrt(energy / bath.mass[i]) * noise(atoms.global_id[k], c, 1);
+      }
+    fine.exchange_heat(energy, noise, 0, still, atoms);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (int c = 0; c < 2; ++c)
+        after(i, c) = atoms.velocity[c][bath.particles[i]];
+    const Dense expected = bath.fine() * (bath.kept.asDiagonal() * (before + bath.carried * first) +
+                                          bath.noise_share().asDiagonal() * second);
+    EXPECT_LT((after - expected).cwiseAbs().maxCoeff(), 1e-12) << energy;
+    EXPECT_LT((bath.carried * after).cwiseAbs().maxCoeff(), 1e-13 * after.cwiseAbs().maxCoeff());
+    // What the bath has taken is what the motion has lost.
+    const double lost =
+        (bath.mass.asDiagonal() * (before.cwiseAbs2() - after.cwiseAbs2())).sum() / 2;
+    EXPECT_NEAR(fine.bath_energy(), lost, 1e-12 * before.cwiseAbs2().sum());
+    fine.reset_bath_energy();
+  }
+}
+
+double total(const CoupledBodies<2> &body, const coupling::StepTime &time)
+{
+  const auto e = body.split->energy(body.bodies(), time);
+  return e.kinetic_discrete + e.kinetic_far + e.potential_discrete + e.potential_far + e.blended +
+         e.impulses + e.thermostat;
+}
+
+/// Mean and its standard error, from the means of 20 blocks.
+struct Mean
+{
+  double value, error;
+};
+Mean mean_of(const std::vector<double> &values)
+{
+  constexpr int n_blocks = 20;
+  const std::size_t n = values.size() / n_blocks;
+  double sum = 0, squares = 0;
+  for (int b = 0; b < n_blocks; ++b) {
+    double block = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      block += values[b * n + k] / double(n);
+    sum += block / n_blocks;
+    squares += block * block / n_blocks;
+  }
+  return {sum, std::sqrt((squares - sum * sum) / (n_blocks - 1))};
+}
+
+/// A body whose particles and nodes start at twice kT, from positions at rest.
+CrystalStrip<2> hot_strip(double zone_friction)
+{
+  auto p = warm(8);
+  p.step_fraction = share_of_step;
+  p.split.zone_friction = zone_friction;
+  CrystalStrip<2> strip(p, 10, 8, 8);
+  auto &body = strip.body;
+  const core::ThermalNoise noise(2, 0);
+  auto &atoms = body.zone->state;
+  for (int c = 0; c < 2; ++c) {
+    for (int i = 0; i < atoms.size(); ++i)
+      atoms.velocity[c][i] = std::sqrt(2 * thermal_energy / atoms.mass[i]) * noise(i, c, 0);
+    for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
+      body.far->velocity[c][i] = std::sqrt(2 * thermal_energy / 16) * noise(i, c, 1);
+  }
+  body.far->distribute();
+  auto bodies = body.bodies();
+  body.split->take_velocities(bodies);
+  return strip;
+}
+
+TEST(Heat, AHarmonicCrystalHasItsTemperature)
+{
+  auto strip = hot_strip(0);
+  auto &body = strip.body;
+  auto bodies = body.bodies();
+  coupling::StepTime time;
+  time.dt = body.dt;
+  body.split->compute_forces(bodies, time);
+  const double first = total(body, time);
+  double largest = 0;
+  std::vector<double> fine, zone;
+  const int n_first = 20000, n = 80000;
+  for (int k = 0; k < n_first + n; ++k) {
+    advance(body, time);
+    if (k % 50 == 0) {
+      body.split->compute_forces(bodies, time);
+      largest = std::max(largest, std::abs(total(body, time) - first));
+    }
+    if (k < n_first)
+      continue;
+    fine.push_back(body.split->thermal_energy_of_fine(bodies) / thermal_energy);
+    zone.push_back(body.split->thermal_energy_of_zone(bodies) / thermal_energy);
+  }
+  const Mean f = mean_of(fine), z = mean_of(zone);
+  std::printf("kinetic energy over kT/2: w %.4f +- %.4f, zone %.4f +- %.4f; ledger %.1e\n", f.value,
+              f.error, z.value, z.error, largest / first);
+  EXPECT_LT(f.error, 0.01);
+  EXPECT_GT(f.value, 1 - 5 * f.error);
+  EXPECT_LT(f.value, warmest + 5 * f.error);
+  EXPECT_LT(z.error, 0.02);
+  EXPECT_GT(z.value, 1 - 5 * z.error);
+  EXPECT_LT(z.value, warmest + 5 * z.error);
+  EXPECT_LT(largest, 1e-10 * first);
+}
+
+TEST(Heat, ARunIsTakenUpAgainToTheBit)
+{
+  const auto run = [](bool breaks) {
+    auto strip = std::make_unique<CrystalStrip<2>>(hot_strip(0.01));
+    coupling::StepTime time;
+    time.dt = strip->body.dt;
+    for (int k = 0; k < 40; ++k) {
+      if (k == 20 && breaks) {
+        core::State state;
+        strip->body.zone->save(state);
+        std::vector<std::int64_t> numbers_of(strip->body.far->mesh().n_nodes());
+        std::iota(numbers_of.begin(), numbers_of.end(), 0);
+        const core::Names numbers(numbers_of);
+        strip->body.far->save(state, numbers);
+        strip->body.split->save(state, strip->body.bodies());
+        strip = std::make_unique<CrystalStrip<2>>(hot_strip(0.01));
+        strip->body.zone->load(state);
+        strip->body.far->load(state, numbers);
+        auto bodies = strip->body.bodies();
+        strip->body.split->load(state, bodies);
+      }
+      advance(strip->body, time);
+    }
+    auto bodies = strip->body.bodies();
+    strip->body.split->compute_forces(bodies, time);
+    return std::pair(strip->body.zone->state.velocity,
+                     strip->body.split->energy(bodies, time).thermostat);
+  };
+  const auto whole = run(false), broken = run(true);
+  EXPECT_EQ(whole.first, broken.first);
+  EXPECT_EQ(whole.second, broken.second);
+  EXPECT_NE(whole.second, 0);
+}
+} // namespace
+} // namespace ligament
