@@ -56,7 +56,7 @@ CellMatrix<dim> deviation_stiffness(const CellMatrix<dim> &stiffness, const Cell
 }
 
 /// Energy V W(F) + 1/2 u_R . K_d u_R in J, F of the mean, K_d the deviation's stiffness (theory.md
-/// eq. (C28)), without the first part unless it is wanted; forces (minus its derivative, in N) into
+/// eq. (C31)), without the first part unless it is wanted; forces (minus its derivative, in N) into
 /// `force`. Displacements u in m.
 template <int dim>
 double strained_cell(const core::HyperelasticLaw<dim> &law, const CellMean<dim> &mean,

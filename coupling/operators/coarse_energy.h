@@ -66,7 +66,7 @@ private:
 
 /// Cells that turn one by one, minus the discrete energy itself on the interpolated motion, with
 /// the patch fit turning part by part (theory.md eq. (C14)); where the force has a law of finite
-/// strain, cells obey it (eq. (C28)).
+/// strain, cells obey it (eq. (C31)).
 template <int dim>
 class NonlinearCoarseEnergy : public CoarseEnergy<dim>
 {

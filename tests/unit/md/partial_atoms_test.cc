@@ -41,6 +41,18 @@ particles::Particles<dim> of_part(const particles::Particles<dim> &atoms,
   return p;
 }
 
+/// With the energy and without.
+template <int dim>
+void expect_same_forces(const Body<dim> &body, particles::PartialForce<dim> &part,
+                        particles::Particles<dim> &atoms)
+{
+  part.compute(atoms);
+  const auto plain = atoms.force;
+  atoms.force[0].assign(atoms.size(), 1.);
+  part.compute_forces(atoms);
+  EXPECT_LT(difference(atoms.force, plain, body.stiffness() * body.crystal.spacing()), 1e-13);
+}
+
 // Also where a compression brings the next shell into range.
 template <int dim>
 void expect_whole(Body<dim> body, double stretch)
@@ -66,6 +78,7 @@ void expect_whole(Body<dim> body, double stretch)
   EXPECT_NEAR(energy, force.potential_energy(body.atoms),
               1e-14 * body.atoms.size() * std::abs(body.crystal.cohesive_energy()));
   EXPECT_EQ(part->compute(p), energy);
+  expect_same_forces(body, *part, p);
 }
 
 TEST(PartialAtomsTest, ShareOneEverywhereIsTheWhole)
@@ -90,6 +103,7 @@ void expect_slopes(Body<dim> body)
   EXPECT_EQ(part->compute(body.atoms), 0); // the reference is where energies begin
   body.disturb(0.03 * d);
   auto p = of_part(body.atoms, members);
+  expect_same_forces(body, *part, p);
   part->compute(p);
   const auto forces = p.force;
   for (int i = 0; i < p.size(); i += 7)
