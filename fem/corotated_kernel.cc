@@ -58,7 +58,8 @@ double CorotatedKernel<dim>::subtract_forces(const Components<dim> &displacement
       for (int a = 0; a < n_cell_nodes<dim>; ++a)
         for (int c = 0; c < dim; ++c)
           u(c, a) = displacement[c][nodes[a]];
-      energy += law_ ? strained_cell<dim>(*law_, group.mean, group.stiffness, group.shape, u, f)
+      energy += law_ ? strained_cell<dim>(*law_, group.mean, group.stiffness, group.shape, u, f,
+                                          wants_energy)
                      : corotated_cell<dim>(group.stiffness, group.shape, u, f);
       for (int a = 0; a < n_cell_nodes<dim>; ++a)
         for (int c = 0; c < dim; ++c)

@@ -73,7 +73,7 @@ Jet Spline::operator()(double x) const
 // the difference of the values has the digits.
 double Spline::change(double x, double by) const
 {
-  if (std::abs(by) > 8 * step_)
+  if (std::abs(by) > 2 * step_)
     return (*this)(x + by).value - (*this)(x).value;
   const int direction = by < 0 ? -1 : 1, last = int(pieces_.size()) - 1;
   int k = interval(x);

@@ -129,6 +129,18 @@ void NonlinearCoarseEnergy<dim>::add_parts(const Overlap<dim> &overlap,
       set(state_->rotation, int(k), get(particles.rotation, members[k]));
     state_->volume[k] = particles.volume[members[k]];
   }
+  if (particles.turns)
+    return;
+  shares_begin_.push_back(0);
+  for (const InterpolatedMotion<dim> &motion : motions_) {
+    for (const NodeShare<dim> &s : motion) {
+      share_node_.push_back(s.node);
+      share_value_.push_back(s.value);
+    }
+    shares_begin_.push_back(int(share_node_.size()));
+  }
+  motions_.clear();
+  motions_.shrink_to_fit();
 }
 
 template <int dim>
@@ -142,53 +154,73 @@ double NonlinearCoarseEnergy<dim>::subtract_cells(const Nodal<dim> &u, Nodal<dim
       cell_u.col(a) = u.row(cell.nodes[a]);
     const auto &k = stiffness_[cell.stiffness];
     const auto &shape = shapes_[cell.shape];
-    energy += law_
-                  ? fem::strained_cell<dim>(*law_, means_[cell.stiffness], k, shape, cell_u, cell_f)
-                  : fem::corotated_cell<dim>(k, shape, cell_u, cell_f);
+    energy += law_ ? fem::strained_cell<dim>(*law_, means_[cell.stiffness], k, shape, cell_u,
+                                             cell_f, wants_energy)
+                   : fem::corotated_cell<dim>(k, shape, cell_u, cell_f);
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
       force.row(cell.nodes[a]) += cell_f.col(a).transpose();
   }
   return energy;
 }
 
-// force += dE/dU of the interpolated motion; returns E.
+template <int dim>
+double NonlinearCoarseEnergy<dim>::compute_parts(bool wants_energy) const
+{
+  if (wants_energy)
+    return discrete_->compute(*state_);
+  discrete_->compute_forces(*state_);
+  return 0;
+}
+
+// force += dE/dU of the interpolated motion; returns E where it is wanted.
 template <int dim>
 double NonlinearCoarseEnergy<dim>::add_discrete(const Nodal<dim> &u, Nodal<dim> &force,
                                                 bool wants_energy) const
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
-  const bool turns = state_->turns;
+  if (!state_->turns)
+    return add_places(u, force, wants_energy);
   std::vector<core::PolarRotation<dim>> polars;
-  polars.reserve(turns ? motions_.size() : 0);
+  polars.reserve(motions_.size());
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     Matrix gradient = Matrix::Identity();
     Vector<dim> translation = Vector<dim>::Zero();
     for (const NodeShare<dim> &s : motions_[k]) {
       translation += s.value * u.row(s.node).transpose();
-      if (turns)
-        gradient += u.row(s.node).transpose() * s.gradient.transpose();
+      gradient += u.row(s.node).transpose() * s.gradient.transpose();
     }
-    set(state_->displacement, int(k), translation);
-    if (!turns)
-      continue;
     polars.emplace_back(gradient);
+    set(state_->displacement, int(k), translation);
     particles::set_orientation<dim>(*state_, int(k), polars.back().matrix());
   }
-  double energy = 0;
-  if (wants_energy)
-    energy = discrete_->compute(*state_);
-  else
-    discrete_->compute_forces(*state_);
+  const double energy = compute_parts(wants_energy);
   for (std::size_t k = 0; k < motions_.size(); ++k) {
-    const Vector<dim> f = get(state_->force, int(k));
-    for (const NodeShare<dim> &s : motions_[k])
-      force.row(s.node) -= s.value * f.transpose();
-    if (!turns)
-      continue;
     const auto &polar = polars[k];
+    const Vector<dim> f = get(state_->force, int(k));
     const Spin<dim> y = polar.conjugate(polar.to_body(get(state_->torque, int(k))));
     for (const NodeShare<dim> &s : motions_[k])
-      force.row(s.node) -= polar.force(y, s.gradient).transpose();
+      force.row(s.node) -= (s.value * f + polar.force(y, s.gradient)).transpose();
+  }
+  return energy;
+}
+
+// The same of members that have a place alone.
+template <int dim>
+double NonlinearCoarseEnergy<dim>::add_places(const Nodal<dim> &u, Nodal<dim> &force,
+                                              bool wants_energy) const
+{
+  const int n = state_->size();
+  for (int k = 0; k < n; ++k) {
+    Vector<dim> translation = Vector<dim>::Zero();
+    for (int s = shares_begin_[k]; s < shares_begin_[k + 1]; ++s)
+      translation += share_value_[s] * u.row(share_node_[s]).transpose();
+    set(state_->displacement, k, translation);
+  }
+  const double energy = compute_parts(wants_energy);
+  for (int k = 0; k < n; ++k) {
+    const Vector<dim> f = get(state_->force, k);
+    for (int s = shares_begin_[k]; s < shares_begin_[k + 1]; ++s)
+      force.row(share_node_[s]) -= share_value_[s] * f.transpose();
   }
   return energy;
 }

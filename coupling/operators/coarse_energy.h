@@ -98,13 +98,18 @@ private:
   double subtract(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
   double subtract_cells(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
   double add_discrete(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
+  double compute_parts(bool wants_energy) const;
+  double add_places(const Nodal<dim> &u, Nodal<dim> &force, bool wants_energy) const;
 
   std::vector<Cell> cells_;
   std::vector<fem::CellShape<dim>> shapes_;
   std::vector<fem::CellMatrix<dim>> stiffness_;
   std::shared_ptr<const core::HyperelasticLaw<dim>> law_; // null: cells are linear in turned axes
   std::vector<fem::CellMean<dim>> means_;                 // with a law, beside `stiffness_`
-  std::vector<InterpolatedMotion<dim>> motions_;
+  std::vector<InterpolatedMotion<dim>> motions_;          // of members that turn
+  /// Of members that don't: the nodes of member k and their shares from shares_begin_[k] on.
+  std::vector<int> shares_begin_, share_node_;
+  std::vector<double> share_value_;
   std::unique_ptr<CorotatedCoarseEnergy<dim>> correction_; // the fit, and what is left at rest
   std::unique_ptr<particles::PartialForce<dim>> discrete_;
   std::unique_ptr<particles::Particles<dim>> state_; // of the interpolated motion
