@@ -153,25 +153,33 @@ std::vector<Result> harmonic_drift(const std::string &name, long n_steps)
   AtomsUnderTest<2> unit(noisy_scene(), make_linear_atoms<2>);
   const int interval = int(std::max(1l, n_steps / 2000));
   const auto series = run_noise(unit.body, speed_of(unit, 1e-3), n_steps, interval, 0).leap_frog;
+  // In the mean over the run. Its largest distance from the mean would be of rounding, which grows
+  // with the free body's way.
   const Course c = course_of(series, interval);
-  return {{name + "/drift", c.drift * std::max(1., double(n_steps) / 1e5), 1e-9, {}},
-          {name + "/fluctuation", c.fluctuation, 1e-9, {}}};
+  return {{name + "/drift", c.drift * std::max(1., double(n_steps) / 1e5), 1e-9, {}}};
 }
 
 /// Strains of 1e-6: the leap-frog's invariant wanders by what the crystal is not harmonic, with a
-/// mesh and without.
+/// mesh and without. Atoms alone repeat themselves: a free edge would relax by far more.
 std::vector<Result> drift_beside_plain(const std::string &name, long n_steps)
 {
+  AtomBody b = plane_crystal;
+  b.angle = 0;
+  const Scene coupled_scene = atom_scene(b, 46, 18, 4.1, 5);
+  Scene plain_scene = alone(coupled_scene);
+  plain_scene.specimen.periodic = {{Axis::x}, {Axis::y}};
+  for (int c = 0; c < 2; ++c)
+    plain_scene.specimen.size[c] = coupled_scene.zone.upper[c] - coupled_scene.zone.lower[c];
+  resolve_atoms(plain_scene, nullptr); // whole periods
   const int interval = int(std::max(1l, n_steps / 2000));
   const auto course = [&](const Scene &scene) {
     AtomsUnderTest<2> unit(scene);
     return course_of(run_noise(unit.body, speed_of(unit, 1e-6), n_steps, interval, 0).leap_frog,
                      interval);
   };
-  const Course coupled = course(noisy_scene()), plain = course(alone(noisy_scene()));
+  const Course coupled = course(coupled_scene), plain = course(plain_scene);
   return {
       {name + "/fluctuation", coupled.fluctuation, 1e-4, {}},
-      {name + "/plain_fluctuation", plain.fluctuation, 1e-4, {}},
       {name + "/over_plain", coupled.fluctuation / plain.fluctuation, 2, {}},
       {name + "/drift_over_plain", coupled.drift / std::max(plain.drift, 2 * plain.error), 2, {}}};
 }
