@@ -138,6 +138,11 @@ public:
   /// What its parameters switch off.
   virtual std::vector<core::SkippedPart> skipped_parts() const { return {}; }
 
+  /// Twice the mean kinetic energy in J of a component of the velocities of this moment: of the
+  /// particles outside the overlap, of what the mesh cannot carry, of the near nodes. Known to
+  /// couplers with a heat bath.
+  virtual std::array<double, 3> thermal_energies(const Bodies<dim> &) const { return {}; }
+
   /// Null when the halves don't overlap.
   virtual const Overlap<dim> *overlap() const { return nullptr; }
   /// Scalar mass of the overlap's near nodes including the far field's share, kg.

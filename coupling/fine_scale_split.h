@@ -106,6 +106,7 @@ public:
   /// kT in J of the velocities of this moment: of w, of the particles outside the overlap.
   double thermal_energy_of_fine(const Bodies<dim> &bodies) const;
   double thermal_energy_of_zone(const Bodies<dim> &bodies) const;
+  std::array<double, 3> thermal_energies(const Bodies<dim> &bodies) const override;
   /// g in N on the near nodes; empty: no bond bears forces at first.
   const Nodal<dim> &dead_load() const { return dead_load_; }
 

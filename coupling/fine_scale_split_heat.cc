@@ -52,6 +52,14 @@ double FineScaleSplit<dim>::thermal_energy_of_zone(const Bodies<dim> &bodies) co
   return n > 0 ? 2 * zone_bath_->kinetic_energy(bodies.zone->state) / double(n) : 0;
 }
 
+template <int dim>
+std::array<double, 3> FineScaleSplit<dim>::thermal_energies(const Bodies<dim> &bodies) const
+{
+  const Nodal<dim> v = near_.velocity(), momentum = mass_ * v;
+  return {thermal_energy_of_zone(bodies), thermal_energy_of_fine(bodies),
+          v.cwiseProduct(momentum).sum() / double(dim * overlap_.n_nodes())};
+}
+
 // The steps before the first one have numbers below 0, and noise of their own.
 template <int dim>
 HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const HeldRun &run,
@@ -202,6 +210,8 @@ template double FineScaleSplit<2>::thermal_energy_of_fine(const Bodies<2> &) con
 template double FineScaleSplit<3>::thermal_energy_of_fine(const Bodies<3> &) const;
 template double FineScaleSplit<2>::thermal_energy_of_zone(const Bodies<2> &) const;
 template double FineScaleSplit<3>::thermal_energy_of_zone(const Bodies<3> &) const;
+template std::array<double, 3> FineScaleSplit<2>::thermal_energies(const Bodies<2> &) const;
+template std::array<double, 3> FineScaleSplit<3>::thermal_energies(const Bodies<3> &) const;
 template HeldReport FineScaleSplit<2>::find_thermal_load(Bodies<2> &, const HeldRun &, double);
 template HeldReport FineScaleSplit<3>::find_thermal_load(Bodies<3> &, const HeldRun &, double);
 template void FineScaleSplit<2>::save_bath(core::State &) const;

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace ligament::program
 {
@@ -116,9 +118,36 @@ void fit_periods(const md::Crystal<dim> &crystal, Scene &scene)
   }
 }
 
+md::ThermalRun thermal_run_of(const Scene &scene)
+{
+  md::ThermalRun run;
+  run.thermal_energy = thermal_energy_of(scene);
+  run.seed = scene.atoms->seed;
+  return run;
+}
+
+/// All that a thermal figure depends on.
+std::string thermal_name(const Scene &scene)
+{
+  const AtomsParameters &a = *scene.atoms;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.dimension,
+                     int(kind_of(scene)), int(a.potential), a.species, a.file, a.energy, a.distance,
+                     a.decay, a.mass, a.taper_begin, a.cutoff, a.temperature, a.seed,
+                     scene.specimen.thickness);
+}
+
 template <int dim>
 void derive(Scene &scene)
 {
+  if (scene.is_warm()) {
+    if (scene.atoms->lattice_parameter == 0)
+      scene.atoms->lattice_parameter =
+          core::at_key(section + "/temperature", "choose a lower one, or another potential",
+                       [&] { return thermal_lattice_of<dim>(scene).parameter; });
+    // About the mean positions a static overlap feels how it is turned.
+    if (scene.coupling.regime == RegimeChoice::automatic)
+      scene.coupling.regime = RegimeChoice::corotated;
+  }
   const auto crystal = crystal_of<dim>(scene);
   const auto constants = crystal.elastic_constants();
   scene.zone.spacing = crystal.spacing();
@@ -222,6 +251,7 @@ md::Crystal<dim> crystal_of(const Scene &scene)
   p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
                                [&] { return orientation_of<dim>(scene); });
   p.thickness = dim == 2 ? scene.specimen.thickness : 1;
+  p.lattice_parameter = scene.is_warm() ? a.lattice_parameter : 0;
   return core::at_key(section + "/potential", "choose another potential or packing",
                       [&] { return md::Crystal<dim>(potential, p); });
 }
@@ -255,6 +285,40 @@ void resolve_atoms(Scene &scene, Findings *f)
       f->derive(key);
 }
 
+double thermal_energy_of(const Scene &scene)
+{
+  constexpr double boltzmann = 1.380649e-23; // J/K
+  return scene.is_warm() ? boltzmann * scene.atoms->temperature : 0;
+}
+
+template <int dim>
+md::ThermalLattice thermal_lattice_of(const Scene &scene)
+{
+  static std::map<std::string, md::ThermalLattice> known;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const std::string name = thermal_name(scene);
+  if (const auto found = known.find(name); found != known.end())
+    return found->second;
+  Scene still = scene;
+  still.atoms->temperature = still.atoms->lattice_parameter = 0;
+  const auto crystal = crystal_of<dim>(still);
+  return known[name] = md::thermal_lattice<dim>(crystal.potential(), crystal.parameters(),
+                                                thermal_run_of(scene));
+}
+
+template <int dim>
+md::CubicConstants thermal_constants_of(const Scene &scene)
+{
+  const auto crystal = crystal_of<dim>(scene);
+  return md::thermal_constants<dim>(crystal.potential(), crystal.parameters(),
+                                    thermal_run_of(scene));
+}
+
+template md::ThermalLattice thermal_lattice_of<2>(const Scene &);
+template md::ThermalLattice thermal_lattice_of<3>(const Scene &);
+template md::CubicConstants thermal_constants_of<2>(const Scene &);
+template md::CubicConstants thermal_constants_of<3>(const Scene &);
 template md::Crystal<2> crystal_of(const Scene &);
 template md::Crystal<3> crystal_of(const Scene &);
 } // namespace ligament::program

@@ -1,7 +1,7 @@
 // A scene whose particles are atoms: the crystal that it means, and what follows from it.
 #pragma once
 
-#include "md/crystal.h"
+#include "md/thermal_crystal.h"
 #include "src/scene/findings.h"
 #include "src/scene/scene.h"
 
@@ -10,6 +10,15 @@ namespace ligament::program
 /// The crystal of a scene with "atoms". Throws core::KeyedError where there is none.
 template <int dim>
 md::Crystal<dim> crystal_of(const Scene &scene);
+
+/// kT in J of a scene with "atoms"; 0: no heat.
+double thermal_energy_of(const Scene &scene);
+
+/// What its crystal does at its temperature, from runs of a periodic one: once in a process.
+template <int dim>
+md::ThermalLattice thermal_lattice_of(const Scene &scene);
+template <int dim>
+md::CubicConstants thermal_constants_of(const Scene &scene);
 
 /// Where the particles are atoms: checks the keys of the crystal and sets what follows from it, the
 /// spacing, the constants of the material, and the lengths of periodic sides, which become whole

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::program
 {
@@ -57,17 +58,78 @@ void refuse_couplings(const Scene &scene, Findings &f)
         "equilibria of atoms are not sought yet",
         "choose \"dynamic\", with /damping for slow tests");
 }
+
+/// Heat comes from the overlap's bath, and what it needs is looked for before the run.
+void check_temperature(const Scene &scene, Findings &f)
+{
+  const AtomsParameters &a = *scene.atoms;
+  const std::string key = "/atoms/temperature";
+  if (!f.sound({"/atoms", "/coupling", "/discrete_zone", "/time"}))
+    return;
+  if (!scene.is_warm()) {
+    const std::pair<const char *, double> without_meaning[] = {
+        {"lattice_parameter", a.lattice_parameter},
+        {"zone_friction", a.zone_friction},
+        {"averaging", a.averaging}};
+    for (const auto &[name, value] : without_meaning)
+      if (value > 0)
+        f.error(fmt::format("/atoms/{}", name),
+                fmt::format("\"{}\" in /atoms without a temperature", name),
+                "it belongs to atoms that move by heat", "remove it, or give a \"temperature\"");
+    return;
+  }
+  const auto refuse = [&](const std::string &at, const std::string &what, const std::string &reason,
+                          const std::string &remedy) {
+    f.error(at, what + " beside a \"temperature\" of atoms", reason, remedy);
+  };
+  if (scene.zone.extent != DiscreteZone::Extent::box)
+    refuse(key, "no overlap", "the overlap's heat bath keeps the temperature",
+           "put the atoms inside a mesh, or remove it");
+  if (scene.coupling.gap_filter > 0)
+    refuse("/coupling/gap_filter",
+           fmt::format("\"gap_filter\" in /coupling is {}", scene.coupling.gap_filter),
+           "it would cool the nodes, which have their temperature from the atoms", "give 0");
+  if (scene.coupling.regime == RegimeChoice::linear)
+    refuse("/coupling/regime", "\"regime\" in /coupling is \"linear\"",
+           "the load of thermal motion must turn with the body",
+           "choose \"automatic\", which is \"corotated\" then");
+  if (!scene.initial_motion.empty())
+    refuse("/initial_motion", "\"initial_motion\"", "atoms start with the velocities of their heat",
+           "remove one of the two");
+  if (scene.coupling.fine_damper == 0)
+    f.warning(
+        "/coupling/fine_damper",
+        "\"fine_damper\" in /coupling is 0 beside a \"temperature\" of atoms",
+        "then nothing keeps the temperature once the run has begun, and short waves come back",
+        "give 8, unless that is meant");
+  if (a.lattice_parameter > 0 && a.lattice_parameter != 0 && !f.given("/atoms/lattice_parameter") &&
+      f.sound({key}))
+  {
+    const double mean = scene.dimension == 2 ? thermal_lattice_of<2>(scene).squared_displacement
+                                             : thermal_lattice_of<3>(scene).squared_displacement;
+    if (mean > 0.01 * scene.zone.spacing * scene.zone.spacing)
+      f.warning(key,
+                fmt::format("\"temperature\" in /atoms is {} K: atoms move by {:.3f} spacings",
+                            a.temperature, std::sqrt(mean) / scene.zone.spacing),
+                "crystals melt at some 0.1, and the overlap knows small motions alone",
+                "choose a lower temperature");
+  }
+}
+
 /// The stable step is that of small motions; where bonds part atoms are thrown against each other.
 void doubt_step(const Scene &scene, Findings &f)
 {
-  constexpr double largest = 0.25;
+  const double largest = scene.is_warm() ? 0.1 : 0.25;
   if (scene.time.step || !f.sound({"/time"}) || scene.time.step_fraction <= largest)
     return;
   f.warning("/time/step_fraction",
             fmt::format("\"step_fraction\" in /time is {} for atoms", scene.time.step_fraction),
-            "the largest stable step is known for small motions; energy was seen to grow without "
-            "bound at 0.9 as soon as bonds parted, and to be kept to 1e-4 at 0.2",
-            fmt::format("give at most {}, unless nothing is to break", largest));
+            scene.is_warm()
+                ? "the fastest atoms are too warm by the square of it, and thermal motion is large"
+                : "the largest stable step is known for small motions; energy was seen to grow "
+                  "without bound at 0.9 as soon as bonds parted, and to be kept to 1e-4 at 0.2",
+            scene.is_warm() ? fmt::format("give at most {}", largest)
+                            : fmt::format("give at most {}, unless nothing is to break", largest));
 }
 } // namespace
 
@@ -78,6 +140,7 @@ void check_atoms(const Scene &scene, Findings &f)
   refuse_other_laws(scene, f);
   refuse_loads(scene, f);
   refuse_couplings(scene, f);
+  check_temperature(scene, f);
   doubt_step(scene, f);
   for (std::size_t k = 0; k < scene.gauges.size(); ++k)
     if (const std::string key = fmt::format("/gauges/{}", k);

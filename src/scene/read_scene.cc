@@ -198,12 +198,15 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   core::read_parameters(table, json, "", dimension, table, result.errors, &result.warnings);
   result.keys_are_right = result.errors.empty();
   apply_far_field_word(json, scene);
+  double found_lattice = 0; // m
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
     check_choice_of_zone(scene.zone, dimension, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
     locate_files(name, enclosed);
     resolve_atoms(enclosed, &findings);
+    if (enclosed.is_warm())
+      found_lattice = enclosed.atoms->lattice_parameter;
     try {
       if (findings.sound({"/specimen", "/dimension"}))
         enclose_body(enclosed.specimen, dimension);
@@ -241,6 +244,10 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     result.resolved["discrete_zone"].erase("spacing");
     if (!scene.atoms->file.empty())
       result.resolved["atoms"]["file"] = std::filesystem::absolute(scene.atoms->file).string();
+  }
+  if (found_lattice > 0) { // whoever resumes the run need not look for it again
+    scene.atoms->lattice_parameter = found_lattice;
+    result.resolved["atoms"]["lattice_parameter"] = found_lattice;
   }
   complete(scene);
   result.scene = std::move(scene);

@@ -221,10 +221,11 @@ struct AtomsParameters
   /// 3D: directions of the crystal's cube that lie along x and y; all 0: the cube lies along the
   /// axes.
   Point along_x = {0, 0, 0}, along_y = {0, 0, 0};
-  double temperature = 0;   // K
-  int seed = 1;             // of its random numbers
-  double zone_friction = 0; // 1/s, of a thermostat on the zone's atoms outside the overlap
-  double averaging = 0;     // s, over which thermal means are taken; 0: as long as they need
+  double temperature = 0;       // K
+  double lattice_parameter = 0; // m, at this temperature; 0: to be found
+  int seed = 1;                 // of its random numbers
+  double zone_friction = 0;     // 1/s, of a thermostat on the zone's atoms outside the overlap
+  double averaging = 0;         // s, over which thermal means are taken; 0: as long as they need
 };
 
 /// m; sides as those of DiscreteZone.
@@ -493,6 +494,8 @@ struct Scene
 
   /// Whether any material may flow, or is viscous.
   bool flows() const { return any_has(&MaterialParameters::plasticity); }
+  /// Atoms at a temperature.
+  bool is_warm() const { return atoms && atoms->temperature > 0; }
   bool is_viscous() const { return any_has(&MaterialParameters::viscosity); }
   /// Whether faces of any may be bonded again.
   bool rebonds() const

@@ -167,6 +167,11 @@ void declare_atoms(Section &s, AtomsParameters &a)
   s.add("cutoff", a.cutoff, "lennard_jones, morse: where it is 0; 0: 2.5 sigma, 2 distances").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
   s.add("along_x", a.along_x, "direction of the crystal's cube that lies along x, as [1, 1, 0]; not given, with along_y: the cube lies along the axes").usually(-20, 20, "").only_in(3);
   s.add("along_y", a.along_y, "that along y, across the first").usually(-20, 20, "").only_in(3);
+  s.add("temperature", a.temperature, "of the crystal, kept by the overlap's friction and its noise; 0: atoms start at rest and nothing heats them").in("K").usually(1, 5e3, "").at_least(0);
+  s.add("lattice_parameter", a.lattice_parameter, "at this temperature without stress (hexagonal: the spacing); 0: found by runs of a small periodic crystal").in("m").usually(1e-10, 1e-8, "angstrom nm pm").at_least(0);
+  s.add("seed", a.seed, "of the random numbers of its heat").at_least(0);
+  s.add("zone_friction", a.zone_friction, "of a heat bath on the atoms outside the overlap, too; 0: none").in("1/s").usually(1e9, 1e14, "1/ps").at_least(0);
+  s.add("averaging", a.averaging, "over which the forces of atoms at this temperature are averaged, the mesh held, before the run; 0: 150 periods of the fastest vibration").in("s").usually(1e-13, 1e-7, "ps ns").at_least(0);
 }
 
 void declare_ball(Section &s, Hole &h)

@@ -6,9 +6,11 @@
 #include "coupling/fine_scale_split.h"
 #include "fem/import_mesh.h"
 #include "fem/join_sides.h"
+#include "src/scene/atoms.h"
 #include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/heat.h"
 #include "src/simulation/make_loads.h"
 #include "src/simulation/make_zone.h"
 #include "src/simulation/tools/make_tools.h"
@@ -85,7 +87,7 @@ fem::Mesh<dim> joined(const Scene &scene, const fem::MeshParameters<dim> &p, fem
 }
 
 template <int dim>
-void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+void make_far(const Scene &scene, Reference &reference, CoupledBody<dim> &body, core::Log &log)
 {
   fem::MeshParameters<dim> p;
   p.lower = body.lower;
@@ -106,7 +108,8 @@ void make_far(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   p.outline = mesh_outline_of<dim>(scene.specimen, along / 20, core::BoxUnion<dim>{p.inner});
   const auto constants = elastic_constants_of<dim>(scene);
   fem::Body<dim> material;
-  material.stiffness = constants.stiffness;
+  material.stiffness =
+      scene.is_warm() ? thermal_stiffness<dim>(scene, reference, log) : constants.stiffness;
   material.density = scene.coupling.coarse_mass * constants.density;
   material.thickness = body.thickness;
   body.far = std::make_unique<fem::FemSolver<dim>>(joined(scene, p, make_cells(scene, p)), material,
@@ -220,9 +223,18 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
   p.patch_fit = scene.coupling.patch_fit;
   p.solver = scene.coupling.solver;
   p.coarse_mass = scene.coupling.coarse_mass;
+  fem::Body<dim> still = body.far->body(); // as atoms would be without heat
+  if (scene.is_warm()) {
+    p.thermal_energy = thermal_energy_of(scene);
+    p.seed = scene.atoms->seed;
+    p.zone_friction = scene.atoms->zone_friction;
+    const auto constants = body.force()->elastic_constants();
+    still.stiffness = constants.stiffness;
+    still.stress = constants.stress;
+  }
   auto bodies = body.bodies();
-  auto split = std::make_unique<coupling::FineScaleSplit<dim>>(bodies, overlap_of<dim>(scene), p,
-                                                               body.dt, timers);
+  auto split = std::make_unique<coupling::FineScaleSplit<dim>>(
+      bodies, overlap_of<dim>(scene), p, body.dt, timers, scene.is_warm() ? &still : nullptr);
   const auto &report = split->report();
   log.info(
       "overlap: {} particles ({} pad), {} nodes; patch residual {:.1e} before and {:.1e} after "
@@ -275,9 +287,11 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
 }
 
 template <int dim>
-std::vector<SkippedPart> skipped_parts(const CoupledBody<dim> &body)
+std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim> &body)
 {
   std::vector<SkippedPart> skipped;
+  if (scene.atoms && !scene.is_warm() && body.coupler->overlap())
+    skipped.push_back({"heat bath of the overlap", "/atoms/temperature is 0"});
   if (!body.far)
     skipped.push_back({"far field and overlap", "the whole specimen is discrete"});
   if (!body.zone)
@@ -313,7 +327,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
                  [&] { make_zone(scene, make_force, reference, body, surface, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
     core::at_key("/far_field", "change cell_size, levels or the zone",
-                 [&] { make_far(scene, body, log); });
+                 [&] { make_far(scene, reference, body, log); });
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
   if (!coupled) {
@@ -338,7 +352,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
       add_cells(scene, body, surface);
     body.tools = make_tools(scene, body, std::move(surface), log);
   }
-  body.skipped = skipped_parts(body);
+  body.skipped = skipped_parts(scene, body);
   return body;
 }
 

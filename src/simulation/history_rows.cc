@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/keyed_error.h"
+#include "src/scene/atoms.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,9 @@ constexpr int rows_per_flush = 50;
 const Column viscous = {"viscous", "J"};
 /// Where faces may be bonded again.
 const Column rebonding = {"rebonding", "J"};
+/// Of atoms at a temperature.
+const Column thermostat = {"thermostat", "J"};
+const char *const temperatures[] = {"temperature_zone", "temperature_overlap", "temperature_nodes"};
 
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
@@ -31,6 +35,11 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
     columns.push_back(viscous);
   if (scene.rebonds())
     columns.push_back(rebonding);
+  if (scene.is_warm()) {
+    columns.push_back(thermostat);
+    for (const char *name : temperatures)
+      columns.push_back({name, "K"});
+  }
   for (const auto &servo : servos)
     columns.push_back(servo.column());
   for (const Column &column : gauges.columns()) {
@@ -50,6 +59,7 @@ HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
                               const CoupledBody<dim> &body, bool goes_on)
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
       has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()), has_rebonding_(scene.rebonds()),
+      kelvin_(scene.is_warm() ? thermal_energy_of(scene) / scene.atoms->temperature : 0),
       gauges_(scene, body), servos_(servo_targets(scene, body, gauges_)),
       writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
 {
@@ -75,6 +85,12 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
     writer_.set(viscous.name, row.ledger.force.viscous);
   if (has_rebonding_)
     writer_.set(rebonding.name, row.ledger.force.rebonding);
+  if (kelvin_ > 0) {
+    writer_.set(thermostat.name, row.ledger.body.thermostat);
+    const auto energies = body.coupler->thermal_energies(body.bodies());
+    for (int k = 0; k < 3; ++k)
+      writer_.set(temperatures[k], energies[k] / kelvin_);
+  }
   if (has_phases_)
     writer_.set("static", row.is_static);
   writer_.set("broken_bonds", double(row.n_broken));

@@ -36,6 +36,7 @@ public:
 
 private:
   bool has_phases_, has_tools_, has_flow_, has_viscosity_, has_rebonding_;
+  double kelvin_; // k in J/K where atoms have a temperature
   GaugeSet<dim> gauges_;
   std::vector<ServoTarget<dim>> servos_;
   HistoryWriter writer_;

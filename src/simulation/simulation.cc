@@ -6,6 +6,7 @@
 #include "particles/instruction_set.h"
 #include "src/analysis/verdict.h"
 #include "src/simulation/body_state.h"
+#include "src/simulation/heat.h"
 #include "src/simulation/initial_motion.h"
 
 #include <fmt/chrono.h>
@@ -38,6 +39,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
   setup_seconds_ = timers_.total();
   if (!from)
     start_motion(scene_, body_);
+  if (!from && scene_.is_warm())
+    start_heat(scene_, body_, log_);
   if (from)
     go_on_from(*from);
   else if (body_.seeds)
