@@ -31,7 +31,7 @@ std::string small_setfl(const std::string &names = "2 Aa Bb")
 std::string path_of(const std::string &text)
 {
   static int number = 0;
-  const std::string path = fmt::format("table_{}.txt", number++);
+  const std::string path = ::testing::TempDir() + fmt::format("table_{}.txt", number++);
   std::ofstream(path) << text;
   return path;
 }
