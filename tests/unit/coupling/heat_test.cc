@@ -260,5 +260,58 @@ TEST(Heat, ARunIsTakenUpAgainToTheBit)
   EXPECT_EQ(whole.second, broken.second);
   EXPECT_NE(whole.second, 0);
 }
+
+/// Of a box of crystal held for so many steps.
+coupling::HeldReport hold(CoupledBodies<2> &body)
+{
+  coupling::HeldRun run;
+  run.equilibration = 1000 * body.dt;
+  run.averaging = 8000 * body.dt;
+  run.friction = 0.1 / body.dt_zone;
+  auto bodies = body.bodies();
+  return body.split->find_thermal_load(bodies, run, body.dt);
+}
+
+CrystalParameters<2> warm_box(double energy, bool is_harmonic)
+{
+  auto p = warm(8);
+  p.turn = 0.4;
+  p.cell_size = 3.1;
+  p.size = {56, 55};
+  p.zone_size = {29.2, 28.7};
+  p.is_harmonic = is_harmonic;
+  p.step_fraction = 0.2;
+  p.split.thermal_energy = energy;
+  return p;
+}
+
+// Linear forces have the mean of their places: the load is the one at rest. Others push.
+TEST(Heat, TheLoadOfAHeldMeshIsTheMeanForce)
+{
+  for (const bool is_harmonic : {true, false}) {
+    auto body = make_crystal(warm_box(1e-3, is_harmonic));
+    const auto still = body.split->dead_load();
+    const auto report = hold(body);
+    const coupling::Nodal<2> change = body.split->dead_load() - still;
+    std::printf("%s: largest change %.1e, error %.1e, over C11 h\n",
+                is_harmonic ? "harmonic" : "anharmonic", report.change / force_scale(body),
+                report.error / force_scale(body));
+    EXPECT_LT(body.split->dead_load().colwise().sum().cwiseAbs().maxCoeff(), 1e-12 * report.load);
+    // Of some hundred nodes the largest is within 4 of its own errors, which differ by a factor.
+    if (is_harmonic)
+      EXPECT_LT(report.change, 10 * report.error);
+    else
+      EXPECT_GT(report.change, 20 * report.error);
+    auto bodies = body.bodies();
+    EXPECT_EQ(body.split->energy(bodies, {0, 0, body.dt}).thermostat, 0);
+    // Another body takes it from the state.
+    core::State state;
+    body.split->save(state, bodies);
+    auto other = make_crystal(warm_box(1e-3, is_harmonic));
+    auto others = other.bodies();
+    other.split->load(state, others);
+    EXPECT_EQ(other.split->dead_load(), body.split->dead_load());
+  }
+}
 } // namespace
 } // namespace ligament
