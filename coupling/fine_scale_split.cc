@@ -60,7 +60,8 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
 
   const auto &force = *bodies.zone->force;
   can_strain_ =
-      !force.is_prestressed() || (force.finite_strain_law() && far.body().stress.isZero(0));
+      !force.is_prestressed() ||
+      (force.finite_strain_law() && near_body.stress.isZero(0) && parameters.thermal_energy == 0);
   const auto constants = force.elastic_constants();
   if (parameters.gap_filter > 0)
     filter_ =

@@ -1,7 +1,5 @@
 #include "md/partial_atoms.h"
 
-#include "md/bond_view.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -111,30 +109,49 @@ void PartialAtoms<dim>::compute_forces(particles::Particles<dim> &atoms)
 }
 
 template <int dim>
+Bond<dim> PartialAtoms<dim>::bond_of(const SharedPair &p,
+                                     const particles::Particles<dim> &atoms) const
+{
+  Bond<dim> b;
+  b.i = p.i;
+  b.j = p.j;
+  b.reference = p.reference;
+  b.moved = get(atoms.displacement, p.j) - get(atoms.displacement, p.i);
+  b.present = b.reference + b.moved;
+  b.length = b.present.norm();
+  return b;
+}
+
+template <int dim>
 double PartialAtoms<dim>::compute(particles::Particles<dim> &atoms)
+{
+  const double energy = change_densities(atoms);
+  if (is_of_one_kind_)
+    compute_forces(atoms);
+  else
+    compute_plainly(atoms);
+  return energy;
+}
+
+// To be followed by compute_plainly where that finds the forces; returns the energy.
+template <int dim>
+double PartialAtoms<dim>::change_densities(const particles::Particles<dim> &atoms)
 {
   const int n = int(atoms_.size());
   double energy = 0;
-  const auto bond_of = [&](const SharedPair &p) {
-    Bond<dim> b;
-    b.i = p.i;
-    b.j = p.j;
-    b.reference = p.reference;
-    b.moved = get(atoms.displacement, p.j) - get(atoms.displacement, p.i);
-    b.present = b.reference + b.moved;
-    b.length = b.present.norm();
-    return b;
-  };
   denser_.assign(n, 0.);
   slope_.assign(n, 0.);
   for (const SharedPair &p : pairs_) {
-    const Bond<dim> b = bond_of(p);
+    const Bond<dim> b = bond_of(p, atoms);
+    const double from = b.reference.norm();
+    if (std::min(from, b.length) >= potential_.cutoff())
+      continue;
     const int s = atoms_[p.i].species, t = atoms_[p.j].species;
-    const double from = b.reference.norm(), longer = b.longer();
+    const double longer = b.longer();
     energy += p.share * potential_.pair_spline(s, t).change(from, longer);
     if (potential_.has_embedding()) {
       const double at_i = potential_.density_spline(s, t).change(from, longer),
-                   at_j = potential_.density_spline(t, s).change(from, longer);
+                   at_j = s == t ? at_i : potential_.density_spline(t, s).change(from, longer);
       energy += p.tilt_i * at_i + p.tilt_j * at_j;
       denser_[p.i] += at_i;
       denser_[p.j] += at_j;
@@ -150,12 +167,16 @@ double PartialAtoms<dim>::compute(particles::Particles<dim> &atoms)
     slope_[i] = a.share * (potential_.embedding(a.species, rest_density_[i] + denser_[i]).slope -
                            a.rest_slope);
   }
+  return energy;
+}
+
+template <int dim>
+void PartialAtoms<dim>::compute_plainly(particles::Particles<dim> &atoms) const
+{
   for (auto &component : atoms.force)
     std::fill(component.begin(), component.end(), 0.);
-  for (auto &component : atoms.torque)
-    std::fill(component.begin(), component.end(), 0.);
   for (const SharedPair &p : pairs_) {
-    const Bond<dim> b = bond_of(p);
+    const Bond<dim> b = bond_of(p, atoms);
     const BondJets jets = potential_.bond(atoms_[p.i].species, atoms_[p.j].species, b.length);
     const double tension = p.share * jets.pair.slope +
                            (p.tilt_i + slope_[p.i]) * jets.density_at_i.slope +
@@ -164,7 +185,6 @@ double PartialAtoms<dim>::compute(particles::Particles<dim> &atoms)
     add(atoms.force, p.i, f);
     add(atoms.force, p.j, Vector<dim>(-f));
   }
-  return energy;
 }
 
 template class PartialAtoms<2>;

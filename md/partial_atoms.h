@@ -1,6 +1,7 @@
 // A part of the energy of atoms: every pair and every embedding with a share of its own.
 #pragma once
 
+#include "md/bond_view.h"
 #include "md/partial_kernel.h"
 #include "md/potential.h"
 #include "particles/particle_force.h"
@@ -34,12 +35,14 @@ public:
   PartialAtoms(const Potential &potential, std::vector<SharedPair> pairs,
                std::vector<SharedAtom> atoms);
 
-  /// By plain loops.
   double compute(particles::Particles<dim> &atoms) override;
-  /// By vectors of pairs, where all atoms are of one species.
+  /// By vectors of pairs, where all atoms are of one species; else by plain loops.
   void compute_forces(particles::Particles<dim> &atoms) override;
 
 private:
+  Bond<dim> bond_of(const SharedPair &p, const particles::Particles<dim> &atoms) const;
+  double change_densities(const particles::Particles<dim> &atoms);
+  void compute_plainly(particles::Particles<dim> &atoms) const;
   void lay_out();
   PartialArrays arrays();
 

@@ -93,6 +93,10 @@ void check_temperature(const Scene &scene, Findings &f)
     refuse("/coupling/regime", "\"regime\" in /coupling is \"linear\"",
            "the load of thermal motion must turn with the body",
            "choose \"automatic\", which is \"corotated\" then");
+  if (scene.coupling.regime == RegimeChoice::nonlinear)
+    refuse("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\"",
+           "cells under finite strain do not know the stress that heat makes",
+           "choose \"automatic\", which is \"corotated\" then");
   if (!scene.initial_motion.empty())
     refuse("/initial_motion", "\"initial_motion\"", "atoms start with the velocities of their heat",
            "remove one of the two");
