@@ -123,6 +123,8 @@ private:
   void kick_coarse(const StepTime &step);
   void join_bath(const Bodies<dim> &bodies, double dt);
   void exchange_heat(Bodies<dim> &bodies, const StepTime &step);
+  /// Velocities of all nodes, kT in J.
+  void draw_nodes(Bodies<dim> &bodies, double thermal_energy);
   void save_bath(core::State &state) const;
   void load_bath(const core::State &state, const Bodies<dim> &bodies);
   void set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies);

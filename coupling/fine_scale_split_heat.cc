@@ -3,6 +3,7 @@
 #include "coupling/operators/fine_damper.h"
 
 #include <Eigen/QR>
+#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +98,8 @@ HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const Hel
       block.setZero();
     }
   }
+  // Nodes stand where they are at rest: half of what they move with becomes strain.
+  draw_nodes(bodies, 2 * energy);
   fine_.reset_bath_energy();
   zone_bath_->taken = 0;
 
@@ -111,6 +114,49 @@ HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const Hel
       (dead_load_.size() > 0 ? Nodal<dim>(load - dead_load_) : load).rowwise().norm().maxCoeff();
   set_dead_load(load, bodies);
   return report;
+}
+
+// Scaled to the very energy of so many: some hundreds of nodes that are hotter by chance stay so
+// for long.
+template <int dim>
+void FineScaleSplit<dim>::draw_nodes(Bodies<dim> &bodies, double thermal_energy)
+{
+  auto &far = *bodies.far;
+  const core::ThermalNoise noise(parameters_.seed, 0);
+  constexpr int stream = 4; // of nodes
+  std::vector<char> is_near(far.mesh().n_nodes(), 0);
+  for (const int node : overlap_.near_nodes)
+    is_near[node] = 1;
+  double twice = 0, n_drawn = 0; // m v^2 in J, and of how many numbers
+  for (auto &component : far.velocity)
+    std::fill(component.begin(), component.end(), 0.);
+  for (int node = 0; node < far.mesh().n_nodes(); ++node)
+    for (int c = 0; c < dim; ++c)
+      if (const double m = far.lumped_mass()[node];
+          m > 0 && !is_near[node] && !far.is_held(node, c)) {
+        const double number = noise(node, c, stream);
+        far.velocity[c][node] = std::sqrt(thermal_energy / m) * number;
+        twice += thermal_energy * number * number;
+        ++n_drawn;
+      }
+  for (auto &component : far.velocity)
+    for (double &v : component)
+      v *= n_drawn > 0 ? std::sqrt(n_drawn * thermal_energy / twice) : 0;
+  // Of the covariance kT M_c^-1: M_c is not diagonal.
+  const int n = overlap_.n_nodes();
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor{
+      Eigen::SparseMatrix<double>(mass_)};
+  Nodal<dim> v(n, dim);
+  for (int c = 0; c < dim; ++c) {
+    Eigen::VectorXd numbers(n);
+    for (int i = 0; i < n; ++i)
+      numbers[i] = std::sqrt(thermal_energy) * noise(overlap_.near_nodes[i], c, stream);
+    v.col(c) = factor.permutationPinv() * Eigen::VectorXd(factor.matrixU().solve(numbers));
+  }
+  const double found = v.cwiseProduct(Nodal<dim>(mass_ * v)).sum();
+  near_.set_velocity(std::sqrt(dim * n * thermal_energy / found) * v);
+  far.follow_masters(far.velocity);
+  fine_.write_velocities(near_.velocity(), bodies.zone->state);
 }
 
 // Action and reaction leave no net force on the mean; what a finite time has left of it would move
@@ -214,6 +260,8 @@ template std::array<double, 3> FineScaleSplit<2>::thermal_energies(const Bodies<
 template std::array<double, 3> FineScaleSplit<3>::thermal_energies(const Bodies<3> &) const;
 template HeldReport FineScaleSplit<2>::find_thermal_load(Bodies<2> &, const HeldRun &, double);
 template HeldReport FineScaleSplit<3>::find_thermal_load(Bodies<3> &, const HeldRun &, double);
+template void FineScaleSplit<2>::draw_nodes(Bodies<2> &, double);
+template void FineScaleSplit<3>::draw_nodes(Bodies<3> &, double);
 template void FineScaleSplit<2>::save_bath(core::State &) const;
 template void FineScaleSplit<3>::save_bath(core::State &) const;
 template void FineScaleSplit<2>::load_bath(const core::State &, const Bodies<2> &);

@@ -1,7 +1,6 @@
 #include "src/simulation/heat.h"
 
 #include "coupling/fine_scale_split.h"
-#include "src/scene/atoms.h"
 #include "src/simulation/energy_ledger.h"
 
 #include <chrono>
@@ -14,29 +13,6 @@ namespace
 // In periods of the fastest vibration.
 constexpr double first_periods = 40, mean_periods = 150;
 } // namespace
-
-template <int dim>
-Stiffness<dim> thermal_stiffness(const Scene &scene, Reference &reference, core::Log &log)
-{
-  std::optional<md::CubicConstants> found;
-  const auto value = [&](const char *name, double md::CubicConstants::*member) {
-    return reference.value(name, [&] {
-      if (!found)
-        found = thermal_constants_of<dim>(scene);
-      return (*found).*member;
-    });
-  };
-  md::CubicConstants c;
-  c.c11 = value("thermal_c11", &md::CubicConstants::c11);
-  c.c12 = value("thermal_c12", &md::CubicConstants::c12);
-  c.c44 = value("thermal_c44", &md::CubicConstants::c44);
-  c.error = value("thermal_c_error", &md::CubicConstants::error);
-  const auto crystal = crystal_of<dim>(scene);
-  log.info("crystal at {} K: lattice parameter {:.6g} m, C11, C12, C44 of its cube {:.4g}, {:.4g}, "
-           "{:.4g} Pa (+- {:.1g}); the overlap turns with the body from the start",
-           scene.atoms->temperature, crystal.lattice_parameter(), c.c11, c.c12, c.c44, c.error);
-  return md::stiffness_of<dim>(c, crystal.parameters().orientation);
-}
 
 template <int dim>
 void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
@@ -67,8 +43,6 @@ void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   body.started += read_ledger(body, first, 0).residual();
 }
 
-template Stiffness<2> thermal_stiffness<2>(const Scene &, Reference &, core::Log &);
-template Stiffness<3> thermal_stiffness<3>(const Scene &, Reference &, core::Log &);
 template void start_heat(const Scene &, CoupledBody<2> &, core::Log &);
 template void start_heat(const Scene &, CoupledBody<3> &, core::Log &);
 } // namespace ligament::program

@@ -6,7 +6,7 @@
 namespace ligament::program
 {
 /// C of the crystal at its temperature, in the axes of space; what is not known yet is found by
-/// runs of a periodic crystal.
+/// runs of a periodic crystal (make_atoms.cc).
 template <int dim>
 Stiffness<dim> thermal_stiffness(const Scene &scene, Reference &reference, core::Log &log);
 

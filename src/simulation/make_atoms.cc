@@ -2,6 +2,7 @@
 #include "md/atom_force.h"
 #include "md/crystal_packing.h"
 #include "src/scene/atoms.h"
+#include "src/simulation/heat.h"
 #include "src/simulation/make_force.h"
 #include "src/simulation/make_packing.h"
 
@@ -62,6 +63,31 @@ make_atom_force(const Scene &scene, packings::Packing<dim> packing,
   return std::make_unique<md::AtomForce<dim>>(crystal, packing, md::AtomForceOptions(), loads);
 }
 
+template <int dim>
+Stiffness<dim> thermal_stiffness(const Scene &scene, Reference &reference, core::Log &log)
+{
+  std::optional<md::CubicConstants> found;
+  const auto value = [&](const char *name, double md::CubicConstants::*member) {
+    return reference.value(name, [&] {
+      if (!found)
+        found = thermal_constants_of<dim>(scene);
+      return (*found).*member;
+    });
+  };
+  md::CubicConstants c;
+  c.c11 = value("thermal_c11", &md::CubicConstants::c11);
+  c.c12 = value("thermal_c12", &md::CubicConstants::c12);
+  c.c44 = value("thermal_c44", &md::CubicConstants::c44);
+  c.error = value("thermal_c_error", &md::CubicConstants::error);
+  const auto crystal = crystal_of<dim>(scene);
+  log.info("crystal at {} K: lattice parameter {:.6g} m, C11, C12, C44 of its cube {:.4g}, {:.4g}, "
+           "{:.4g} Pa (+- {:.1g}); the overlap turns with the body from the start",
+           scene.atoms->temperature, crystal.lattice_parameter(), c.c11, c.c12, c.c44, c.error);
+  return md::stiffness_of<dim>(c, crystal.parameters().orientation);
+}
+
+template Stiffness<2> thermal_stiffness<2>(const Scene &, Reference &, core::Log &);
+template Stiffness<3> thermal_stiffness<3>(const Scene &, Reference &, core::Log &);
 template packings::Packing<2> make_crystal_packing(const Scene &);
 template packings::Packing<3> make_crystal_packing(const Scene &);
 template std::unique_ptr<particles::ParticleForce<2>>
