@@ -1,5 +1,6 @@
 // The heat bath of the overlap: its stationary covariance, what it does to a harmonic crystal, and
 // that it is part of a run's state.
+#include "coupling/zone_bath.h"
 #include "tests/support/crystal_strip.h"
 
 #include <gtest/gtest.h>
@@ -225,6 +226,31 @@ TEST(Heat, AHarmonicCrystalHasItsTemperature)
   EXPECT_GT(z.value, 1 - 5 * z.error);
   EXPECT_LT(z.value, warmest + 5 * z.error);
   EXPECT_LT(largest, 1e-10 * first);
+}
+
+// Without forces: after some exchanges nothing is left of how velocities were, and what the bath
+// gives is what they have. Squares of near-normal numbers have the variance 1.7, three exchanges
+// with half of the velocity kept make new ones.
+TEST(Heat, TheZoneBathAloneHasItsTemperature)
+{
+  const CrystalStrip<2> strip(hot_strip(0.01));
+  auto atoms = strip.body.zone->state;
+  for (int c = 0; c < 2; ++c) {
+    std::fill(atoms.velocity[c].begin(), atoms.velocity[c].end(), 0.);
+    std::fill(atoms.force[c].begin(), atoms.force[c].end(), 0.);
+  }
+  coupling::ZoneBath<2> bath(*strip.body.split->overlap(), atoms.size());
+  const int n_first = 20, n = 300;
+  double sum = 0;
+  for (int k = 0; k < n_first + n; ++k) {
+    bath.exchange_heat(0.5, thermal_energy, core::ThermalNoise(3, k), 1, atoms);
+    if (k >= n_first)
+      sum += 2 * bath.kinetic_energy(atoms) / double(bath.n_free()) / n;
+  }
+  const double error = std::sqrt(1.7 / (double(bath.n_free()) * n / 3));
+  EXPECT_LT(error, 0.01);
+  EXPECT_NEAR(sum / thermal_energy, 1, 5 * error);
+  EXPECT_NEAR(-bath.taken, bath.kinetic_energy(atoms), 1e-12 * bath.kinetic_energy(atoms));
 }
 
 TEST(Heat, ARunIsTakenUpAgainToTheBit)
