@@ -12,11 +12,9 @@ template <int dim>
 ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double face_area,
                                   const PeriodicImages<dim> *images)
     : images_(images), flanks_(packing), spacing_(packing.spacing), skin_(packing.spacing / 4),
-      face_area_(face_area), largest_(packing.spacing), diameter_(packing.diameter),
-      on_surface_(packing.size(), 0)
+      face_area_(face_area), largest_(packings::largest_diameter(packing)),
+      diameter_(packing.diameter), on_surface_(packing.size(), 0)
 {
-  for (const double diameter : diameter_)
-    largest_ = std::max(largest_, diameter);
   for (const auto &face : packing.boundary_faces)
     add_surface_particle(face.i);
   for (const auto &face : packing.faces)
@@ -76,6 +74,7 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
   for (const int i : surface_)
     searched_at_.push_back(get(p.displacement, i));
   const double reach = largest_ + 2 * skin_;
+  stop_at_strangers(p, contacts);
   contacts.drop_distant(p, reach);
   flanks_.pass_on_joints(p, contacts);
 

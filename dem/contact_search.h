@@ -20,6 +20,12 @@ public:
   ContactSearch(const packings::Packing<dim> &packing, double face_area,
                 const PeriodicImages<dim> *images = nullptr);
 
+  /// From now on other ranks hold other parts of the body; they call update() together. `owners`
+  /// must outlive it.
+  void join(const particles::Owners &owners) { owners_ = &owners; }
+  bool is_due() const { return due_; }
+  void set_due(bool due) { due_ = due; }
+
   /// Particle i lies on a surface from now on; the next search is due at once.
   void add_surface_particle(int i);
 
@@ -27,7 +33,8 @@ public:
   /// bond nor contact, in the call after the one that saw a surface particle moved by the skin of
   /// d/4 since the last search; drops those found before that went apart. The order depends on
   /// global ids alone. Particles across the same initial cut meet in its joints only, which go on
-  /// from particle to particle.
+  /// from particle to particle. Of a body in parts: core::GuardStop on all ranks where a particle
+  /// comes near one that its rank doesn't see.
   void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
   /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
@@ -49,6 +56,10 @@ private:
   };
 
   bool has_moved(const Particles &particles) const;
+  /// Of a body in parts: whether contacts need particles that are not at hand.
+  void stop_at_strangers(const Particles &particles, const Contacts<dim> &contacts) const;
+  bool meets_strangers(const Particles &particles) const;
+  bool slides_to_strangers(const Particles &particles, const Contacts<dim> &contacts) const;
   double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
   /// Centre distance at which two particles touch.
   double rest_distance(const Particles &particles, int i, const Partner &partner) const;
@@ -63,5 +74,6 @@ private:
   std::vector<int> surface_;             // particles on surfaces
   std::vector<Vector<dim>> searched_at_; // of the first of them, displacements at the last search
   bool due_ = true;
+  const particles::Owners *owners_ = nullptr; // null: all are one's own
 };
 } // namespace ligament::dem

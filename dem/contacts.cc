@@ -61,21 +61,22 @@ struct Outlook
   double compliance; // m/N, less so much per newton of pressure
 };
 
-template <int dim>
-Outlook outlook(const particles::Particles<dim> &p, int i, int j, const Vector<dim> &normal,
-                const Vector<dim> &lever_i, const Vector<dim> &lever_j, double dt)
+template <int dim, typename Motion>
+Outlook outlook(const particles::Particles<dim> &p, int i, int j, const Motion &of_i,
+                const Motion &of_j, const Vector<dim> &normal, const Vector<dim> &lever_i,
+                const Vector<dim> &lever_j, double dt)
 {
   Outlook o{0, 0};
-  const auto add = [&](int k, const Vector<dim> &lever, double sign) {
+  const auto add = [&](int k, const Motion &of, const Vector<dim> &lever, double sign) {
     const Spin<dim> arm = cross(lever, normal);
     const double mass = p.inverse_mass(k), inertia = p.inverse_inertia(k);
-    const double v = normal.dot(get(p.velocity, k) + dt * mass * get(p.force, k)) +
-                     arm.dot(get(p.spin, k) + dt * inertia * get(p.torque, k));
+    const double v = normal.dot(of.velocity + dt * mass * of.force) +
+                     arm.dot(of.spin + dt * inertia * of.torque);
     o.moves += sign * dt * v;
     o.compliance += dt * dt * (mass + inertia * arm.squaredNorm());
   };
-  add(i, lever_i, 1);
-  add(j, lever_j, -1);
+  add(i, of_i, lever_i, 1);
+  add(j, of_j, lever_j, -1);
   return o;
 }
 
@@ -213,47 +214,106 @@ void Contacts<dim>::add_force(const Contact<dim> &c, const State &s, const Vecto
   }
 }
 
+template <int dim>
+typename Contacts<dim>::Motion Contacts<dim>::motion_of(const Particles &p, int i)
+{
+  return {get(p.velocity, i), get(p.force, i), get(p.spin, i), get(p.torque, i)};
+}
+
 // A contact that opens or closes between two steps: over that step the leap-frog's work (the mean
 // of both forces) and the energy differ by k/2 |o1 o2|. The force of this step is chosen so that it
 // makes good half of it in the step before and half in the next; what it misses there is booked.
 template <int dim>
-void Contacts<dim>::correct_step(Contact<dim> &c, const State &s, double dt, const Particles &p)
+void Contacts<dim>::correct(const std::vector<Change> &changed, const Particles &p, double dt)
 {
-  if (c.last_overlap && *c.last_overlap != s.overlap) {
-    const double last = *c.last_overlap, moved = s.overlap - last;
-    step_error_.add(0.5 * c.correction * moved);
-    c.correction = 0;
-    if ((s.overlap > 0) != (last > 0)) {
-      const double error = std::copysign(0.5, s.overlap) * s.stiffness * s.overlap * last;
-      const Vector<dim> lever_j = s.lever - s.between;
-      c.correction = correcting_force(
-          error, moved, outlook<dim>(p, c.face.i, c.face.j, s.normal, s.lever, lever_j, dt),
-          s.stiffness * std::max(std::abs(last), std::abs(s.overlap)));
+  const std::map<int, Motion> foreign = foreign_motions(changed, p);
+  const auto motion = [&](int i) {
+    const auto found = foreign.find(i);
+    return found == foreign.end() ? motion_of(p, i) : found->second;
+  };
+  for (const auto &[k, s, last] : changed) {
+    Contact<dim> &c = contacts_[k];
+    const int i = c.face.i, j = c.face.j;
+    const double moved = s.overlap - last;
+    const double error = std::copysign(0.5, s.overlap) * s.stiffness * s.overlap * last;
+    const Vector<dim> lever_j = s.lever - s.between;
+    c.correction = correcting_force(
+        error, moved,
+        outlook<dim>(p, i, j, motion(i), motion(j), s.normal, s.lever, lever_j, dt),
+        s.stiffness * std::max(std::abs(last), std::abs(s.overlap)));
+    if (p.part.owns(i))
       step_error_.add(0.5 * c.correction * moved - error);
-    }
   }
-  c.last_overlap = s.overlap;
 }
 
 template <int dim>
-void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
+void Contacts<dim>::press(std::size_t k, Particles &p, std::vector<Change> &changed,
+                          std::vector<std::size_t> &corrected)
 {
   Contact<dim> &c = contacts_[k];
   if (c.is_bonded)
     return;
   const State s = state(c, p);
-  if (const double taken = follow_slip(c, s, p); taken != 0)
+  const bool is_own = p.part.owns(c.face.i);
+  if (const double taken = follow_slip(c, s, p); taken != 0 && is_own)
     frictional_work_.add(taken);
   if (s.overlap > 0) // on i
     add_force(c, s, s.stiffness * (c.slip - s.overlap * s.normal), p);
-  correct_step(c, s, dt, p);
-  if (c.correction != 0)
-    add_force(c, s, -c.correction * s.normal, p);
+  if (c.last_overlap && *c.last_overlap != s.overlap) {
+    const double last = *c.last_overlap;
+    if (is_own)
+      step_error_.add(0.5 * c.correction * (s.overlap - last));
+    c.correction = 0;
+    if ((s.overlap > 0) != (last > 0))
+      changed.push_back({k, s, last});
+  }
+  c.last_overlap = s.overlap;
+  if (c.correction != 0) // the same state again
+    corrected.push_back(k);
   const double shift = c.own_distance - c.face.distance;
   if (shift != 0 && s.overlap <= 0 && s.overlap + shift <= 0) { // open either way
     c.face.distance = c.own_distance;
     c.last_overlap = state(c, p).overlap;
   }
+}
+
+template <int dim>
+void Contacts<dim>::add_corrections(const std::vector<std::size_t> &corrected, Particles &p) const
+{
+  for (const std::size_t k : corrected) {
+    const Contact<dim> &c = contacts_[k];
+    if (c.correction == 0)
+      continue;
+    const State s = state(c, p);
+    add_force(c, s, -c.correction * s.normal, p);
+  }
+}
+
+template <int dim>
+void Contacts<dim>::add_forces(Particles &p, double dt)
+{
+  std::vector<Change> changed;
+  std::vector<std::size_t> corrected;
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    press(k, p, changed, corrected);
+  correct(changed, p, dt);
+  for (const Change &change : changed)
+    corrected.push_back(change.contact);
+  std::sort(corrected.begin(), corrected.end());
+  add_corrections(corrected, p);
+}
+
+template <int dim>
+void Contacts<dim>::add_force(std::size_t k, Particles &p, double dt)
+{
+  std::vector<Change> changed;
+  std::vector<std::size_t> corrected;
+  press(k, p, changed, corrected);
+  if (!changed.empty()) {
+    correct(changed, p, dt);
+    corrected.push_back(k);
+  }
+  add_corrections(corrected, p);
 }
 
 template <int dim>
@@ -271,13 +331,6 @@ void Contacts<dim>::take_over(std::size_t k, const Vector<dim> &force, const Par
   const double most = c.friction * pressure / stiffness, carried = c.slip.norm();
   if (carried > most)
     c.slip *= most / carried;
-}
-
-template <int dim>
-void Contacts<dim>::add_forces(Particles &p, double dt)
-{
-  for (std::size_t k = 0; k < contacts_.size(); ++k)
-    add_force(k, p, dt);
 }
 
 template <int dim>
@@ -382,11 +435,15 @@ template <int dim>
 void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
 {
   Contact<dim> &c = contacts_[k];
+  const auto book = [&, is_own = p.part.owns(c.face.i)](double taken) {
+    if (is_own)
+      frictional_work_.add(taken);
+  };
   if (c.known)
-    frictional_work_.add(update_slip(c, state(c, p), p));
+    book(update_slip(c, state(c, p), p));
   const double before = compression_energy(c, p);
   if (j < 0) {
-    frictional_work_.add(before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm());
+    book(before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm());
     contacts_.erase(contacts_.begin() + k);
     return;
   }
@@ -398,7 +455,7 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
   if (c.known)
     remember(c, s, p);
   c.last_overlap = s.overlap;
-  frictional_work_.add(before - compression_energy(c, p));
+  book(before - compression_energy(c, p));
 }
 
 template class Contacts<2>;

@@ -6,9 +6,11 @@
 #include "dem/bond.h"
 #include "dem/materials.h"
 #include "dem/periodic_images.h"
+#include "particles/halo.h"
 
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 
 namespace ligament::dem
@@ -91,6 +93,10 @@ public:
   /// Valid until the next one comes.
   Contact<dim> &add(const Bond<dim> &face, bool from_face);
 
+  /// Ranks that hold other parts of the body step some of the particles from now on (must outlive
+  /// it). All call add_forces() together; contacts whose first particle is one's own are booked.
+  void join(const particles::Owners &owners) { owners_ = &owners; }
+
   /// A face of initial cut number `cut`, whose unit normal is given (either sense); centre of j in
   /// the reference (m).
   void add_joint(const Bond<dim> &face, int cut, const Vector<dim> &cut_normal,
@@ -98,7 +104,8 @@ public:
 
   /// Adds forces and torques; updates slips and books the work of friction and the step error. The
   /// forces of everything else are there already; dt (s) is the step. Calling it again in the same
-  /// state changes neither.
+  /// state changes neither. What corrects a contact that opened or closed goes by the forces of all
+  /// contacts without their corrections: it has no order.
   void add_forces(Particles &particles, double dt);
   /// A contact whose bond broke while `force` (N, on its first particle) pressed it together bears
   /// of it what friction can. It presses so until it opens for the first time.
@@ -128,11 +135,11 @@ public:
   double slip_energy(const Contact<dim> &contact, const Particles &particles) const;
   double energy(const Contact<dim> &contact, const Particles &particles) const;
 
-  double frictional_work() const { return frictional_work_.value(); }
+  const core::ExactSum &frictional_work() const { return frictional_work_; }
 
   /// Energy in J that the leap-frog lost (above 0) where contacts opened and closed between two
   /// steps, after the correction: exactly what (E1) misses.
-  double step_error() const { return step_error_.value(); }
+  const core::ExactSum &step_error() const { return step_error_; }
 
   /// visit(i, a, f): lever (m) and force (N) on particle i of every contact that is closed.
   template <typename Visit>
@@ -180,7 +187,29 @@ private:
   double follow_slip(Contact<dim> &contact, const State &state, const Particles &particles) const;
   void add_force(const Contact<dim> &contact, const State &state, const Vector<dim> &force,
                  Particles &particles) const;
-  void correct_step(Contact<dim> &contact, const State &state, double dt, const Particles &p);
+  /// A contact that has opened or closed since the last step.
+  struct Change
+  {
+    std::size_t contact;
+    State state;
+    double last; // m, its overlap then
+  };
+  /// What a particle is about to do.
+  struct Motion
+  {
+    Vector<dim> velocity, force; // m/s, N
+    Spin<dim> spin, torque;      // rad/s, N m
+  };
+  /// Adds the force of one without its correction; the last ones are looked at here.
+  void press(std::size_t k, Particles &particles, std::vector<Change> &changed,
+             std::vector<std::size_t> &corrected);
+  /// Finds their corrections.
+  void correct(const std::vector<Change> &changed, const Particles &particles, double dt);
+  void add_corrections(const std::vector<std::size_t> &corrected, Particles &particles) const;
+  /// Of the particles of these contacts that other ranks step.
+  std::map<int, Motion> foreign_motions(const std::vector<Change> &changed,
+                                        const Particles &particles) const;
+  static Motion motion_of(const Particles &particles, int i);
   Contact<dim> &insert(Contact<dim> contact);
   Contact<dim> make(const Bond<dim> &face, bool from_face) const;
 
@@ -189,6 +218,7 @@ private:
   std::vector<Contact<dim>> contacts_;
   bool grips_at_touch_ = false;
   core::ExactSum frictional_work_, step_error_;
+  const particles::Owners *owners_ = nullptr; // null: all are one's own
 };
 
 template <int dim>

@@ -7,17 +7,13 @@ namespace ligament::dem
 {
 template <int dim>
 CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
-    : spacing_(packing.spacing), largest_(packing.spacing), cuts_(packing.cuts.size())
+    : spacing_(packing.spacing), largest_(packings::largest_diameter(packing)),
+      planes_(packing.cuts), cuts_(packing.cuts.size())
 {
-  for (const double diameter : packing.diameter)
-    largest_ = std::max(largest_, diameter);
   for (std::size_t c = 0; c < cuts_.size(); ++c)
-    for (int i = 0; i < packing.size(); ++i) {
-      const Vector<dim> x = get(packing.centre, i);
-      const double height = packing.cuts[c].height(x);
-      if (std::abs(height) < 1.5 * largest_ && packing.cuts[c].is_beside(x))
-        cuts_[c].positive[i] = height > 0;
-    }
+    for (int i = 0; i < packing.size(); ++i)
+      if (const int at = side(c, get(packing.centre, i)); at != 0)
+        cuts_[c].positive[i] = at > 0;
   for (const auto &face : packing.faces) {
     if (face.cut < 0)
       continue;
@@ -33,6 +29,24 @@ CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
       std::sort(facing.begin(), facing.end());
       facing.erase(std::unique(facing.begin(), facing.end()), facing.end());
     }
+}
+
+template <int dim>
+int CutFlanks<dim>::side(std::size_t c, const Vector<dim> &x) const
+{
+  const double height = planes_[c].height(x);
+  if (std::abs(height) >= 1.5 * largest_ || !planes_[c].is_beside(x))
+    return 0;
+  return height > 0 ? 1 : -1;
+}
+
+template <int dim>
+bool CutFlanks<dim>::lie_beside(const Vector<dim> &a, const Vector<dim> &b) const
+{
+  for (std::size_t c = 0; c < planes_.size(); ++c)
+    if (side(c, a) * side(c, b) < 0)
+      return true;
+  return false;
 }
 
 template <int dim>

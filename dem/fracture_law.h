@@ -72,6 +72,16 @@ struct FractureLaw
     const auto [slow, fast] = std::minmax(crack_velocities[a], crack_velocities[b]);
     return slow > 0 ? slow : fast;
   }
+  /// Bonds break by the stresses of their two particles.
+  bool reads_stresses() const
+  {
+    const auto reads = [](const Criterion &c) {
+      return !(c == Criterion::none) && c.template in<2>().needs_stress;
+    };
+    return criteria.empty() ? reads(criterion)
+                            : std::any_of(criteria.begin(), criteria.end(), reads);
+  }
+
   /// Faces may stay bonds after they have reached their strength.
   bool faces_open() const { return softens() || falls(); }
 

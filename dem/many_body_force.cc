@@ -222,7 +222,7 @@ void ManyBodyForce<dim>::book_work(const Particles &p)
 template <int dim>
 void ManyBodyForce<dim>::add_contacts(Particles &p)
 {
-  if (contacts_.all().empty())
+  if (contacts_.none())
     return;
   contacts_.act(p, dt());
   jumps_.find_reactions(stressed(p, evaluation_), contacts_.contacts(), evaluation_);
@@ -279,9 +279,12 @@ void ManyBodyForce<dim>::look_for_breaks(Particles &p)
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
   std::vector<BondId> breaking = cohesive_.torn();
-  const auto at_once = begin_softening(p, search_.exceeding_bonds(state));
+  std::vector<std::int64_t> places;
+  const auto at_once = begin_softening(p, breaking_bonds(state, places));
   breaking.insert(breaking.end(), at_once.begin(), at_once.end());
   break_bonds(p, breaking, rebonded_.torn(p, evaluation_.pressure));
+  if (n_breaking_ > 0)
+    follow_break(places);
 }
 
 template <int dim>
@@ -295,12 +298,11 @@ double ManyBodyForce<dim>::potential_energy(const Particles &p) const
   interfaces_.follow_flow(p, e);
   for (const auto *part : parts_)
     part->add_energies(p, e, energy_);
-  return particles::block_sum(p.part.owned,
-                              [&](int i) {
-                                return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
-                                       (own_energy_.empty() ? 0 : own_energy_[i]);
-                              })
-      .value();
+  const core::ExactSum sum = particles::block_sum(p.part.owned, [&](int i) {
+    return energy_[i] + body_.volume_energy(i, e.pressure[i]) +
+           (own_energy_.empty() ? 0 : own_energy_[i]);
+  });
+  return ranks().sum(sum).value();
 }
 
 template <int dim>

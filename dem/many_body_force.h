@@ -43,6 +43,14 @@ public:
   /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;
 
+  /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains of
+  /// the particles' own, faces that soften, fall or are bonded again, several materials whose faces
+  /// meet, joined sides, pressures that follow the surface.
+  void join(const particles::Owners &owners) override;
+  /// Rings of ghosts around the particles of a rank: forces need two, criteria that read the stress
+  /// of both particles of a bond one more.
+  static int n_rings(const FractureLaw &law) { return law.reads_stresses() ? 3 : 2; }
+
   /// 2 / omega, omega the largest frequency by Lanczos iteration about the reference, raised by
   /// 1 %; deterministic. Held particles don't move.
   double stable_step(const Particles &particles) const override;
@@ -109,11 +117,11 @@ public:
 
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
-  Vector<dim> reaction(int load) const override { return evaluation_.reactions[load]; }
+  Vector<dim> reaction(int load) const override;
   /// Work in J of supports and tractions since the last reset_work, booked by compute().
   double external_work() const override
   {
-    return surface_.external_work() + jumps_.external_work();
+    return ranks().sum(surface_.external_work()).value() + jumps_.external_work();
   }
   void reset_work() override
   {
@@ -122,7 +130,7 @@ public:
   }
 
   /// Energy in J that breaking bonds released.
-  double fracture_energy() const { return broken_.energy(); }
+  double fracture_energy() const { return ranks().sum(broken_.energy()).value(); }
   /// Energy in J that opened faces which soften.
   double cohesive_work() const { return cohesive_.work(); }
   const CohesiveFaces<dim> &cohesive() const { return cohesive_; }
@@ -132,9 +140,9 @@ public:
   /// Energy in J by which the leap-frog's invariant fell because forces jumped, theory.md (E10):
   /// where bonds broke, and where contacts opened or closed. Belongs to the energy balance; second
   /// order in the step.
-  double breaking_step_error() const { return broken_.step_error() + contacts_.step_error(); }
+  double breaking_step_error() const;
   /// Energy in J that friction took.
-  double frictional_work() const { return contacts_.frictional_work(); }
+  double frictional_work() const { return ranks().sum(contacts_.frictional_work()).value(); }
   particles::ForceLosses losses() const override
   {
     return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
@@ -142,7 +150,11 @@ public:
             rebonding_energy()};
   }
 
+  /// Those at hand.
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
+  /// Of the body, on every rank, in the order of breaking; particles by their names only, the
+  /// indices are -1.
+  std::vector<BrokenBond<dim>> broken_bonds_of_body(const Particles &particles) const;
   bool softens() const override { return fracture().softens(); }
   double last_softening() const override { return began_at_; }
   void softening(const Particles &particles, std::vector<double> &share,
@@ -181,6 +193,18 @@ public:
   std::vector<core::SkippedPart> skipped_parts() const override;
 
 private:
+  const core::Ranks &ranks() const { return owners_->ranks; }
+  /// What breaks now of the bonds at hand, in the order of the body's; `places` of theirs among these
+  /// where others have some, too. All ranks call it.
+  std::vector<BondId> breaking_bonds(const StressedBody<dim> &state,
+                                     std::vector<std::int64_t> &places);
+  /// On every rank, where bonds broke on some.
+  void follow_break(const std::vector<std::int64_t> &places);
+  /// Of the bonds that the body has: where they are at hand.
+  std::vector<BondId> bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
+                                 const Particles &particles, std::vector<std::int64_t> &places);
+  std::optional<BondId> bond_between(const std::array<std::int64_t, 2> &name,
+                                     const Particles &particles);
   StressedBody<dim> stressed(const Particles &particles, const Evaluation<dim> &evaluation) const
   {
     return {particles, evaluation, strains_, parts_};
@@ -279,6 +303,10 @@ private:
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
+  std::shared_ptr<const particles::Owners> owners_ = std::make_shared<particles::Owners>();
+  // Of a body in parts.
+  core::Names names_;
+  std::int64_t n_broken_ = 0, n_breaking_ = 0; // in all of them: before, and now
   double thickness_;                // m, 2D
   double time_ = 0, last_time_ = 0; // s
   double began_at_ = -1;            // s, softening of faces, last

@@ -29,6 +29,8 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
     body_.add_other_particle(i);
     strains_.open_cell(i, p.volume[i]);
   }
+  if (!ranks().is_one())
+    contacts_.agree_after_load();
   time_ = core::load_real(state, "force", "time");
   last_time_ = core::load_real(state, "force", "last_time");
   if (core::table(state, "force").has("began_at"))
@@ -43,6 +45,7 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
   const core::Table &table = core::table(state, "broken");
   const auto i = table.integers("i"), j = table.integers("j");
   const auto time = table.reals("time"), energy = table.reals("energy");
+  std::vector<std::int64_t> numbers;
   for (std::size_t r = 0; r < table.n_rows(); ++r) {
     const int here = names.index(i[r]), there = names.index(j[r]);
     if (here < 0 || there < 0)
@@ -57,7 +60,12 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
     drop_bond(*id, b, p);
     contacts_.add_broken(b);
     broken_.add(b, p, time[r], energy[r]);
+    numbers.push_back(table.keys()[r]);
   }
+  if (ranks().is_one())
+    return;
+  broken_.set_numbers(std::move(numbers));
+  n_broken_ = std::int64_t(table.n_rows());
 }
 
 template void ManyBodyForce<2>::save(core::State &, const core::Names &, const Particles &) const;

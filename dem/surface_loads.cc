@@ -204,25 +204,35 @@ Wrench<dim> SurfaceLoads<dim>::wrench(const TractionFace<dim> &face, const Parti
 }
 
 template <int dim>
-void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) const
+std::vector<core::ExactSum> SurfaceLoads<dim>::reaction_sums(const Particles &p,
+                                                             const Evaluation<dim> &e) const
 {
-  std::vector<std::array<core::ExactSum, dim>> reactions(loads_.size());
-  e.wall_forces.clear();
-  for (const auto &wall : walls_) {
-    e.wall_forces.push_back(force(wall, p, e));
-    for (int c = 0; c < dim; ++c)
-      if (wall.load[c] >= 0)
-        reactions[wall.load[c]][c].add(e.wall_forces.back()[c]);
-  }
+  std::vector<core::ExactSum> reactions(dim * loads_.size());
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    for (int c = 0; c < dim && p.part.owns(walls_[w].i); ++c)
+      if (walls_[w].load[c] >= 0)
+        reactions[dim * walls_[w].load[c] + c].add(e.wall_forces[w][c]);
   for (const auto &face : tractions_) {
+    if (!p.part.owns(face.i))
+      continue;
     const Vector<dim> f = law_of(face).force(traction(face, e.has_loads));
     for (int c = 0; c < dim; ++c)
-      reactions[face.load][c].add(f[c]);
+      reactions[dim * face.load + c].add(f[c]);
   }
+  return reactions;
+}
+
+template <int dim>
+void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) const
+{
+  e.wall_forces.clear();
+  for (const auto &wall : walls_)
+    e.wall_forces.push_back(force(wall, p, e));
+  e.reaction_sums = reaction_sums(p, e);
   e.reactions.resize(loads_.size());
   for (std::size_t l = 0; l < loads_.size(); ++l)
     for (int c = 0; c < dim; ++c)
-      e.reactions[l][c] = reactions[l][c].value();
+      e.reactions[l][c] = e.reaction_sums[dim * l + c].value();
   pressed_.add_reactions(p, e);
 }
 
@@ -322,12 +332,14 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
   if (booked_) {
     const Booked &old = *booked_;
     for (std::size_t w = 0; w < walls_.size(); ++w)
-      for (int c = 0; c < dim; ++c)
+      for (int c = 0; c < dim && p.part.owns(walls_[w].i); ++c)
         if (const int l = walls_[w].load[c]; l >= 0)
           if (const double moved = now.displacement[l][c] - old.displacement[l][c]; moved != 0)
             work_.add(0.5 * (now.wall_force[w][c] + old.wall_force[w][c]) * moved);
     for (std::size_t f = 0; f < tractions_.size(); ++f) {
       const auto &face = tractions_[f];
+      if (!p.part.owns(face.i))
+        continue;
       const Vector<dim> t = now.traction[face.load], t_old = old.traction[face.load];
       work_.add(0.5 * face.area *
                 face.acting.cwiseProduct(t + t_old).dot(now.place[f] - old.place[f]));

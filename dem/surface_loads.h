@@ -42,10 +42,10 @@ public:
   void for_each_moment(const Particles &particles, const Evaluation<dim> &evaluation,
                        const VisitMoment<dim> &visit) const override;
 
-  /// Adds to external_work() what the loads did on every face since the last call: trapezoidal
-  /// rule.
+  /// Adds to external_work() what the loads did on every face of one's own since the last call:
+  /// trapezoidal rule.
   void book_work(const Particles &particles, const Evaluation<dim> &evaluation);
-  double external_work() const { return work_.value(); }
+  const core::ExactSum &external_work() const { return work_; }
   void reset_work() { work_ = {}; }
 
   /// What the next work is booked against, as the tables "loads", "walls" and "loaded_faces".
@@ -54,11 +54,16 @@ public:
 
   const std::vector<WallFace<dim>> &walls() const { return walls_; }
   int n_loads() const { return int(loads_.size()); }
+  /// Whether pressures that follow the surface act.
+  bool presses() const { return !pressed_.empty(); }
 
 private:
   /// What the loads make of it.
   void add_faces(const packings::OuterFace<dim> &face, double shear_modulus);
   Vector<dim> relative(const WallFace<dim> &wall, const Particles &p, bool has_loads) const;
+  /// Component by component, load by load, on one's own particles; of known forces of walls.
+  std::vector<core::ExactSum> reaction_sums(const Particles &particles,
+                                            const Evaluation<dim> &evaluation) const;
   /// What the particle's own strain takes from Du of a wall, and how far it moves a loaded face.
   Vector<dim> stretch(const WallFace<dim> &wall, const Evaluation<dim> &evaluation) const;
   Vector<dim> stretch(const TractionFace<dim> &face, const Particles &particles,

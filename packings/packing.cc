@@ -2,8 +2,37 @@
 
 #include "core/check.h"
 
+#include <algorithm>
+
 namespace ligament::packings
 {
+template <int dim>
+double mean_face_area(const Packing<dim> &packing)
+{
+  if (packing.whole)
+    return packing.whole->face_area;
+  core::ExactSum sum;
+  if (!packing.directions.empty()) {
+    for (const auto &d : packing.directions)
+      sum.add(d.area);
+    return sum.value() / double(packing.directions.size());
+  }
+  for (const auto &face : packing.faces)
+    sum.add(face.area);
+  return packing.faces.empty() ? 0. : sum.value() / double(packing.faces.size());
+}
+
+template <int dim>
+double largest_diameter(const Packing<dim> &packing)
+{
+  if (packing.whole)
+    return packing.whole->diameter;
+  double largest = packing.spacing;
+  for (const double diameter : packing.diameter)
+    largest = std::max(largest, diameter);
+  return largest;
+}
+
 template <int dim>
 void cut_faces(Packing<dim> &packing, const std::vector<CrackPlane<dim>> &cracks)
 {
@@ -34,6 +63,10 @@ void fill_particles(const Packing<dim> &packing, const std::vector<double> &dens
   }
 }
 
+template double mean_face_area(const Packing<2> &);
+template double mean_face_area(const Packing<3> &);
+template double largest_diameter(const Packing<2> &);
+template double largest_diameter(const Packing<3> &);
 template void cut_faces(Packing<2> &, const std::vector<CrackPlane<2>> &);
 template void cut_faces(Packing<3> &, const std::vector<CrackPlane<3>> &);
 template void fill_particles(const Packing<2> &, const std::vector<double> &,

@@ -4,6 +4,8 @@
 #include "packings/specimen_shape.h"
 #include "particles/particles.h"
 
+#include <optional>
+
 namespace ligament::packings
 {
 /// Plane face between the cells of particles i and j (docs/theory.md, section 1.1).
@@ -49,6 +51,13 @@ struct LatticeDirection
   double area;        // m^2
 };
 
+/// Sizes of a whole packing, of which what is at hand may be a part.
+struct WholeSizes
+{
+  double face_area = 0; // m^2, see mean_face_area()
+  double diameter = 0;  // m, the largest one
+};
+
 template <int dim>
 struct Packing
 {
@@ -69,9 +78,18 @@ struct Packing
   /// Gap-free runs along the close-packed direction: run r holds particles
   /// row_begin[r] .. row_begin[r + 1] - 1. Empty for random packings.
   std::vector<int> row_begin;
+  /// Of the packing that this is a part of; none: it is the whole.
+  std::optional<WholeSizes> whole;
 
   int size() const { return int(volume.size()); }
 };
+
+/// Mean face of the whole cells of a lattice, of all cells where there is none, in m^2; and the
+/// largest diameter at which particles touch, in m. Of the whole packing.
+template <int dim>
+double mean_face_area(const Packing<dim> &packing);
+template <int dim>
+double largest_diameter(const Packing<dim> &packing);
 
 /// Marks the faces whose centres' segment crosses one of the cracks, and keeps these.
 template <int dim>

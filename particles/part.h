@@ -23,6 +23,13 @@ inline int count(const ParticleRanges &ranges)
   return n;
 }
 
+inline bool contains(const ParticleRanges &ranges, int i)
+{
+  const auto after = std::upper_bound(ranges.begin(), ranges.end(), i,
+                                      [](int k, const ParticleRange &r) { return k < r.begin; });
+  return after != ranges.begin() && i < (after - 1)->end;
+}
+
 /// What is in both.
 inline ParticleRanges intersection(const ParticleRanges &a, const ParticleRanges &b)
 {
@@ -71,5 +78,7 @@ struct Part : AwakeRanges
   static Part whole(int n) { return {AwakeRanges::of_all(n), {{0, n}}}; }
   /// Of n particles at hand.
   bool is_whole(int n) const { return count(owned) == n; }
+  /// Whether sums and decisions of this part are about particle i.
+  bool owns(int i) const { return contains(owned, i); }
 };
 } // namespace ligament::particles

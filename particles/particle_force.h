@@ -4,6 +4,7 @@
 #include "core/check.h"
 #include "core/hyperelastic_law.h"
 #include "particles/force_report.h"
+#include "particles/halo.h"
 #include "particles/rest_blocks.h"
 
 #include <functional>
@@ -118,6 +119,14 @@ public:
 
   /// Elastic (and contact) energy of the present state, in J.
   virtual double potential_energy(const Particles<dim> &particles) const = 0;
+
+  /// The particles are a part of a body from now on, the others are on other ranks: compute() tells
+  /// these what breaks, energies and losses are those of the body. All ranks make the same calls.
+  /// Throws core::InputError where the force can't be parted: by default, always.
+  virtual void join(const Owners &)
+  {
+    throw core::InputError("forces of this kind act in one process only; use one rank");
+  }
 
   /// Largest stable leap-frog step of the intact body, in s.
   virtual double stable_step(const Particles<dim> &particles) const = 0;

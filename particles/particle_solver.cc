@@ -1,11 +1,14 @@
 #include "particles/particle_solver.h"
 
+#include "core/ranks_state.h"
 #include "particles/block_sum.h"
 #include "particles/kick_velocities.h"
 #include "particles/turn_orientations.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace ligament::particles
 {
@@ -19,6 +22,23 @@ ParticleSolver<dim>::ParticleSolver(Particles<dim> particles,
 }
 
 template <int dim>
+void ParticleSolver<dim>::join(const Owners &owners)
+{
+  core::require(!rest_, "parts are joined before anything rests");
+  ranks_ = owners.ranks;
+  halo_ = Halo<dim>(owners, state);
+  force->join(owners);
+}
+
+template <int dim>
+void ParticleSolver<dim>::update_ghosts()
+{
+  halo_.update(state);
+  if (rest_ && halo_.n_ghosts() > 0)
+    rest_->look_at_ghosts(state);
+}
+
+template <int dim>
 void ParticleSolver<dim>::let_rest(const RestLimits &limits)
 {
   const auto for_each_pair = [&](const typename RestBlocks<dim>::VisitPair &visit) {
@@ -27,6 +47,49 @@ void ParticleSolver<dim>::let_rest(const RestLimits &limits)
   rest_ = std::make_unique<RestBlocks<dim>>(state, for_each_pair, limits);
   force->set_rest(rest_.get());
 }
+
+namespace
+{
+/// Whose rows are of particles, by their first name.
+bool names_particles(const std::string &table)
+{
+  static const std::set<std::string> all = {"jumps", "loaded_faces", "particles", "searched",
+                                            "walls"};
+  return all.count(table) > 0;
+}
+
+/// A table of a part without the rows of what another rank owns: bonds and contacts are those of
+/// their particle "i". `own`: ascending names.
+core::Table own_rows(const std::string &name, const core::Table &table,
+                     const std::vector<std::int64_t> &own)
+{
+  std::vector<std::int64_t> particles;
+  const int n_keys = table.n_keys();
+  if (table.has("i"))
+    particles = table.integers("i");
+  else if (names_particles(name))
+    for (std::size_t r = 0; r < table.n_rows(); ++r)
+      particles.push_back(table.keys()[r * n_keys]);
+  else
+    return table;
+  std::vector<std::int64_t> keys;
+  std::vector<std::size_t> rows;
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    if (std::binary_search(own.begin(), own.end(), particles[r])) {
+      rows.push_back(r);
+      for (int k = 0; k < n_keys; ++k)
+        keys.push_back(table.keys()[r * n_keys + k]);
+    }
+  core::Table kept(std::move(keys), n_keys);
+  std::vector<std::uint64_t> words(rows.size());
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      words[k] = table.words()[c * table.n_rows() + rows[k]];
+    kept.add_words(table.columns()[c], words.data());
+  }
+  return kept;
+}
+} // namespace
 
 template <int dim>
 void ParticleSolver<dim>::save(core::State &all) const
@@ -37,21 +100,34 @@ void ParticleSolver<dim>::save(core::State &all) const
   dashpots.save(all, "particle_dashpots", names);
   if (!body_force.is_empty())
     body_force.save(all);
-  if (rest_)
+  if (rest_ && ranks_.is_one()) // ranks cut other blocks
     rest_->save(all, names);
+  if (ranks_.is_one())
+    return;
+  std::vector<std::int64_t> own;
+  for_each(state.part.owned, [&](int i) { own.push_back(state.global_id[i]); });
+  std::sort(own.begin(), own.end());
+  for (auto &[name, table] : all)
+    table = own_rows(name, table, own);
 }
 
 template <int dim>
 void ParticleSolver<dim>::load(const core::State &all)
 {
   const core::Names names = state.names();
-  state.load(all, names);
-  force->load(all, names, state);
-  dashpots.load(all, "particle_dashpots", names);
+  const core::State of_part = ranks_.is_one() ? core::State() : core::share_of(all, ranks_);
+  const core::State &share = ranks_.is_one() ? all : of_part;
+  state.load(share, names);
+  force->load(share, names, state);
+  dashpots.load(share, "particle_dashpots", names);
   if (!body_force.is_empty())
-    body_force.load(all);
-  if (rest_ && all.count("blocks"))
-    rest_->load(all, names);
+    body_force.load(share);
+  if (!rest_)
+    return;
+  if (!ranks_.is_one())
+    rest_->wake_all();
+  else if (share.count("blocks"))
+    rest_->load(share, names);
 }
 
 template <int dim>

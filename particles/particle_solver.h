@@ -3,6 +3,7 @@
 
 #include "core/dashpots.h"
 #include "particles/body_force.h"
+#include "particles/halo.h"
 #include "particles/particle_force.h"
 
 #include <memory>
@@ -22,8 +23,13 @@ public:
   /// u += dt v; orientations turn by dt spin (exactly, for a constant spin over the step).
   void drift(double dt);
 
-  /// Of particles that are seen, but not stepped: one process has none.
-  void update_ghosts() {}
+  /// The particles at hand are a part of a body from now on, the others are on other ranks: forces
+  /// see the motion of ghosts, sums are those of the body. To be called once, by all ranks.
+  void join(const Owners &owners);
+
+  /// After drift: the motion of particles that are seen, but not stepped; what that reaches wakes.
+  /// One process has none.
+  void update_ghosts();
 
   void compute_forces(double time)
   {
@@ -46,8 +52,8 @@ public:
   /// 1/2 v(-) M v(+) with v(+) = v(-) + dt f/m: the kinetic part of the leap-frog's exact
   /// invariant at the time of the present forces, in J; call before kick(dt). Exact over blocks
   /// of particles.
-  double kinetic_energy(double dt) const { return kinetic_sum(dt).value(); }
-  /// The same before it is rounded: sums of parts merge into that of the body.
+  double kinetic_energy(double dt) const { return ranks_.sum(kinetic_sum(dt)).value(); }
+  /// Of what is at hand, before it is rounded: sums of parts merge into that of the body.
   core::ExactSum kinetic_sum(double dt) const;
 
   /// Velocities and spins of all particles times factor.
@@ -66,9 +72,14 @@ public:
   /// Null: all particles take every step.
   const RestBlocks<dim> *rest() const { return rest_.get(); }
 
-  /// Particles, force, absorbing sides and what rests; between drift and compute_forces.
+  const core::Ranks &ranks() const { return ranks_; }
+  const Halo<dim> &halo() const { return halo_; }
+
+  /// Particles, force, absorbing sides and what rests; between drift and compute_forces. Of a part
+  /// the rows of what it owns, without what rests (core/ranks_state.h makes the whole of them).
   void save(core::State &state) const;
-  /// Into a body that was built in the same way. let_rest() comes before it where it was called.
+  /// Into a body that was built in the same way. let_rest() comes before it where it was called;
+  /// parts, which take their share of the state of the whole body, then rest no more.
   void load(const core::State &state);
 
   Particles<dim> state;
@@ -82,5 +93,7 @@ private:
   void for_each_awake(Visit &&visit) const;
 
   std::unique_ptr<RestBlocks<dim>> rest_;
+  core::Ranks ranks_;
+  Halo<dim> halo_;
 };
 } // namespace ligament::particles

@@ -1,5 +1,6 @@
 #include "particles/rest_blocks.h"
 
+#include "core/check.h"
 #include "core/sums.h"
 
 #include <algorithm>
@@ -106,6 +107,37 @@ bool RestBlocks<dim>::moves(const Particles<dim> &p, int block) const
 }
 
 template <int dim>
+bool RestBlocks<dim>::has_moved_ghost(const Particles<dim> &p, int block) const
+{
+  for (int i = begin_[block]; i < begin_[block + 1]; ++i) {
+    if (p.part.owns(i))
+      continue;
+    bool moved = false;
+    for (const auto &u : p.displacement)
+      moved = moved || u[i] != 0;
+    for (int c = dim == 2 ? 0 : 1; c < Particles<dim>::n_rotations && p.turns; ++c)
+      moved = moved || p.rotation[c][i] != 0;
+    if (moved)
+      return true;
+  }
+  return false;
+}
+
+template <int dim>
+void RestBlocks<dim>::look_at_ghosts(const Particles<dim> &p)
+{
+  core::require(exact_, "blocks of parts rest without a threshold only");
+  if (all_awake())
+    return;
+  const long before = version_;
+  for (int b = 0; b < n_blocks(); ++b)
+    if (nearness_[b] < moving && has_moved_ghost(p, b))
+      raise(b, moving);
+  if (version_ != before)
+    update_ranges();
+}
+
+template <int dim>
 void RestBlocks<dim>::raise(int block, int nearness)
 {
   if (nearness_[block] >= nearness)
@@ -131,6 +163,14 @@ void RestBlocks<dim>::wake(const std::vector<int> &particles)
     raise(block_of(i), moving);
   if (version_ != before)
     update_ranges();
+}
+
+template <int dim>
+void RestBlocks<dim>::wake_all()
+{
+  std::fill(nearness_.begin(), nearness_.end(), std::uint8_t(moving));
+  ++version_;
+  update_ranges();
 }
 
 template <int dim>

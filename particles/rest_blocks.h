@@ -38,6 +38,13 @@ public:
   /// The blocks of these particles move from now on: something outside acts on them.
   void wake(const std::vector<int> &particles);
 
+  /// All blocks move from now on.
+  void wake_all();
+
+  /// After ghosts have come from other ranks: those that have begun to move wake what sees them,
+  /// before the forces of the same step. Needs limits of zero: other ranks cut other blocks.
+  void look_at_ghosts(const Particles<dim> &particles);
+
   /// Before each drift: wakes what the present velocities reach, counts a step.
   void look(const Particles<dim> &particles);
 
@@ -77,6 +84,7 @@ private:
   void find_neighbours(const std::function<void(const VisitPair &)> &for_each_pair);
   bool is_forced(const Particles<dim> &particles, int block) const;
   bool moves(const Particles<dim> &particles, int block) const;
+  bool has_moved_ghost(const Particles<dim> &particles, int block) const;
   void raise(int block, int nearness);
   void update_ranges();
 

@@ -29,15 +29,12 @@ std::vector<int> noted_particles(const NotedBonds &noted)
 
 /// Each once, in an order that no numbering changes.
 template <int dim>
-void sort_by_ids(std::vector<BondTension<dim>> &bonds, const particles::Particles<dim> &p)
+void sort_by_names(std::vector<ExceedingBond<dim>> &bonds)
 {
-  const auto ids = [&](const BondTension<dim> &t) -> std::pair<std::int64_t, std::int64_t> {
-    return std::minmax({p.global_id[t.bond.i], p.global_id[t.bond.j]});
-  };
   std::sort(bonds.begin(), bonds.end(),
-            [&](const auto &a, const auto &b) { return ids(a) < ids(b); });
+            [](const auto &a, const auto &b) { return a.name < b.name; });
   bonds.erase(std::unique(bonds.begin(), bonds.end(),
-                          [&](const auto &a, const auto &b) { return ids(a) == ids(b); }),
+                          [](const auto &a, const auto &b) { return a.name == b.name; }),
               bonds.end());
 }
 } // namespace
@@ -239,33 +236,54 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
 }
 
 template <int dim>
-std::vector<BondId> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state) const
+std::vector<ExceedingBond<dim>>
+BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state, int rank) const
 {
   if (!can_break())
     return {};
   auto found = suspected_bonds(state);
-  const auto keep_exceeding = [&] {
-    found.erase(
-        std::remove_if(found.begin(), found.end(), [](const auto &t) { return t.utilisation < 1; }),
-        found.end());
+  const auto &p = state.particles;
+  const auto keep_exceeding = [&] { // what others step lacks faces
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [&](const auto &t) {
+                                 return t.utilisation < 1 ||
+                                        !(p.part.owns(t.bond.i) || p.part.owns(t.bond.j));
+                               }),
+                found.end());
   };
   keep_exceeding();
   find_tensions(found, state, 1);
   keep_exceeding();
-  sort_by_ids(found, state.particles); // few are left
+  std::vector<ExceedingBond<dim>> exceeding;
+  for (const auto &t : found) {
+    const auto [first, second] = std::minmax({p.global_id[t.bond.i], p.global_id[t.bond.j]});
+    ExceedingBond<dim> &e =
+        exceeding.emplace_back(ExceedingBond<dim>{{first, second}, t.utilisation, {}, t.id, rank});
+    const Vector<dim> place = get(p.reference, t.bond.i) + t.bond.lever_i;
+    std::copy(place.begin(), place.end(), e.place.begin());
+  }
+  return exceeding;
+}
+
+template <int dim>
+std::vector<ExceedingBond<dim>>
+BreakSearch<dim>::breaking(std::vector<ExceedingBond<dim>> found, const BondedBody<dim> &body) const
+{
+  sort_by_names(found); // few are left
   const bool all_at_once = criteria_.apart() == 0;
   if (!all_at_once || one_by_one_)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
-  std::vector<BondId> exceeding;
-  PlacesApart<dim> places(criteria_.apart() * state.body().spacing(),
-                          state.body().images().period());
-  for (const auto &t : found)
-    if (all_at_once || places.add(get(state.particles.reference, t.bond.i) + t.bond.lever_i))
-      exceeding.push_back(t.id);
-  return exceeding;
+  if (all_at_once)
+    return found;
+  PlacesApart<dim> places(criteria_.apart() * body.spacing(), body.images().period());
+  std::vector<ExceedingBond<dim>> kept;
+  for (const auto &bond : found)
+    if (places.add(Eigen::Map<const Vector<dim>>(bond.place.data())))
+      kept.push_back(bond);
+  return kept;
 }
 
 template <int dim>

@@ -21,6 +21,17 @@ struct BondTension
   double utilisation;           // tension over strength, or a bound of it; 0: cannot break
 };
 
+/// A bond that bears too much, as ranks tell each other of it.
+template <int dim>
+struct ExceedingBond
+{
+  std::array<std::int64_t, 2> name; // of its particles, the smaller one first
+  double utilisation;
+  std::array<double, dim> place; // m, of the face in the reference
+  BondId id;                     // on the rank that tells
+  int rank;
+};
+
 template <int dim>
 class BreakSearch
 {
@@ -49,8 +60,12 @@ public:
   /// After it: leaves out what the stresses clear of the particles that it noted.
   void clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &evaluation);
 
-  /// Those that break now, in this order.
-  std::vector<BondId> exceeding_bonds(const StressedBody<dim> &state) const;
+  /// Of the bonds at hand, in any order, some of them twice; `rank` tells of them. A bond is sure to
+  /// be among those of a rank that steps one of its particles.
+  std::vector<ExceedingBond<dim>> exceeding_bonds(const StressedBody<dim> &state, int rank) const;
+  /// Of all that exceed in the body those that break now, each once, in this order.
+  std::vector<ExceedingBond<dim>> breaking(std::vector<ExceedingBond<dim>> exceeding,
+                                           const BondedBody<dim> &body) const;
 
   /// Of several bonds only the most loaded one breaks from now on.
   void break_one_by_one() { one_by_one_ = true; }

@@ -9,9 +9,10 @@ template <int dim>
 void BrokenBonds<dim>::book_jumps(const Particles &p, double dt, int sign)
 {
   for (const Jump &jump : jumps_)
-    step_error_.add(
-        sign * 0.25 * dt *
-        (jump.force.dot(get(p.velocity, jump.i)) + jump.torque.dot(get(p.spin, jump.i))));
+    if (p.part.owns(jump.i)) // what was loaded may be another's
+      step_error_.add(
+          sign * 0.25 * dt *
+          (jump.force.dot(get(p.velocity, jump.i)) + jump.torque.dot(get(p.spin, jump.i))));
 }
 
 template <int dim>
@@ -26,10 +27,21 @@ void BrokenBonds<dim>::add(const Bond<dim> &b, const Particles &p, double time, 
                            double of_opening)
 {
   broken_at_ = time;
-  energy_.add(energy);
+  if (p.part.owns(b.i))
+    energy_.add(energy);
   all_.push_back({b.i, b.j, p.global_id[b.i], p.global_id[b.j], time,
                   Vector<dim>(get(p.reference, b.i) + b.lever_i), b.normal, b.area,
                   energy + of_opening});
+}
+
+template <int dim>
+void BrokenBonds<dim>::count(double time, std::int64_t before,
+                             const std::vector<std::int64_t> &places)
+{
+  broken_at_ = time;
+  for (const std::int64_t place : places)
+    numbers_.push_back(before + place);
+  core::require(numbers_.size() == all_.size(), "broken bonds at hand were not counted");
 }
 
 template <int dim>
@@ -46,6 +58,8 @@ void BrokenBonds<dim>::take_mean(Particles &p, const std::vector<int> &near,
   jumps_.clear();
   for (std::size_t k = 0; k < near.size(); ++k) {
     const int i = near[k];
+    if (!p.part.owns(i))
+      continue;
     const Jump jump = {i, get(p.force, i) - before[k].force, get(p.torque, i) - before[k].torque};
     if (jump.force.isZero(0) && jump.torque.isZero(0))
       continue;
@@ -61,8 +75,9 @@ void BrokenBonds<dim>::save(core::State &state, const core::Names &names) const
 {
   std::vector<std::int64_t> order, i, j;
   std::vector<double> time, energy;
-  for (const BrokenBond<dim> &b : all_) {
-    order.push_back(std::int64_t(order.size()));
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    const BrokenBond<dim> &b = all_[k];
+    order.push_back(number(k));
     i.push_back(b.global_i);
     j.push_back(b.global_j);
     time.push_back(b.time);

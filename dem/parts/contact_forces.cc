@@ -4,29 +4,11 @@
 
 namespace ligament::dem
 {
-namespace
-{
-/// Mean face of the whole cells, in m^2; of all cells where none is whole.
-template <int dim>
-double mean_face_area(const packings::Packing<dim> &packing)
-{
-  core::ExactSum sum;
-  if (!packing.directions.empty()) {
-    for (const auto &d : packing.directions)
-      sum.add(d.area);
-    return sum.value() / double(packing.directions.size());
-  }
-  for (const auto &face : packing.faces)
-    sum.add(face.area);
-  return packing.faces.empty() ? 0. : sum.value() / double(packing.faces.size());
-}
-} // namespace
-
 template <int dim>
 ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const Materials &materials,
                                   const PeriodicImages<dim> &images)
     : contacts_(materials, packing.global_id, packing.size()),
-      search_(packing, mean_face_area(packing), &images), images_(images), spacing_(packing.spacing)
+      search_(packing, packings::mean_face_area(packing), &images), images_(images), spacing_(packing.spacing)
 {
   for (const auto &face : packing.faces)
     if (face.cracked) {
@@ -86,7 +68,7 @@ template <int dim>
 void ContactForces<dim>::search(const Particles &p, const BondNetwork<dim> &bonds, double time,
                                 particles::RestBlocks<dim> *rest)
 {
-  if (all().empty() || looked_at_ == time)
+  if (none() || looked_at_ == time)
     return;
   looked_at_ = time;
   searching_ = searching_ || has_slid_;

@@ -22,6 +22,19 @@ public:
   const Contacts<dim> &contacts() const { return contacts_; }
   const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
 
+  /// Ranks that hold other parts step some of the particles from now on; owners must outlive it.
+  void join(const particles::Owners &owners);
+  /// No part of the body has any.
+  bool none() const { return agreed_ ? !agreed_->any : all().empty(); }
+  /// What ranks have to agree on behind each step, before the next one searches: whether there are
+  /// contacts, whether they slid, whether a search is due; 1 where one rank sees it.
+  std::vector<std::int64_t> seen() const;
+  void agree(const std::vector<std::int64_t> &seen);
+  /// The same after load().
+  void agree_after_load();
+  /// A bond has broken somewhere: all search in the next step. To be called by all ranks.
+  void follow_break();
+
   /// A bond has broken: its particles lie on a surface, its face may touch.
   const Contact<dim> &add_broken(const Bond<dim> &bond);
   /// The same; adds the force of the contact, too, and returns its energy in J. `pressing`: the
@@ -55,8 +68,8 @@ public:
                        const VisitMoment<dim> &visit) const override;
 
   /// Energy in J that friction took, and that the leap-frog lost where contacts opened and closed.
-  double frictional_work() const { return contacts_.frictional_work(); }
-  double step_error() const { return contacts_.step_error(); }
+  const core::ExactSum &frictional_work() const { return contacts_.frictional_work(); }
+  const core::ExactSum &step_error() const { return contacts_.step_error(); }
 
   void save(core::State &state, const core::Names &names) const override;
   void load(const core::State &state, const core::Names &names, const Particles &) override;
@@ -68,5 +81,11 @@ private:
   double spacing_;                            // m
   bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
   std::optional<double> looked_at_;           // s
+  struct Agreed
+  {
+    const particles::Owners *owners;
+    bool any;
+  };
+  std::optional<Agreed> agreed_; // of a body in parts
 };
 } // namespace ligament::dem

@@ -84,6 +84,8 @@ struct Evaluation
   std::vector<double> pressure;         // lambda_i theta_i, Pa
   std::vector<Vector<dim>> wall_forces; // N, on the particle of each wall
   std::vector<Vector<dim>> reactions;   // N, of each load on the body
+  /// The same of one's own particles, component by component, before it is rounded.
+  std::vector<core::ExactSum> reaction_sums;
   NotedBonds noted;
   std::optional<InelasticSweep<dim>> inelastic; // where a material flows
   FlowingInterfaces<dim> interfaces;            // the same

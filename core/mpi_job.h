@@ -1,0 +1,21 @@
+// The ranks of an MPI job: the one place that knows MPI's calls.
+#pragma once
+
+#include "core/ranks.h"
+
+namespace ligament::core
+{
+/// Begins MPI and ends it. A process that is one by itself needs none.
+class MpiJob
+{
+public:
+  /// Throws core::EnvironmentError where MPI doesn't start.
+  MpiJob();
+  ~MpiJob();
+  MpiJob(const MpiJob &) = delete;
+  MpiJob &operator=(const MpiJob &) = delete;
+
+  /// All of the job. They may be used as long as it lives.
+  Ranks ranks() const;
+};
+} // namespace ligament::core

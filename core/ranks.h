@@ -1,0 +1,145 @@
+// Processes that compute one body together, each a part of it: what they tell each other.
+#pragma once
+
+#include "core/exact_sum.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace ligament::core
+{
+/// The messages themselves (core/mpi_job.h). All ranks make the same calls in the same order, but
+/// for abort(). Whoever implements it ends the job where a message fails.
+class Communicator
+{
+public:
+  struct Outgoing
+  {
+    int to;
+    const void *data;
+    std::size_t bytes;
+  };
+  struct Incoming
+  {
+    int from;
+    void *data;
+    std::size_t bytes; // as many as are sent
+  };
+
+  virtual ~Communicator() = default;
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+  /// At most one message from each rank to each; both sides know which.
+  virtual void exchange(const std::vector<Outgoing> &out, const std::vector<Incoming> &in) = 0;
+  /// Overwrites the values by their sums, or their largest ones, over the ranks.
+  virtual void sum(std::int64_t *values, int n) = 0;
+  virtual void max(std::int64_t *values, int n) = 0;
+  /// What every rank gives, in the order of the ranks.
+  virtual std::vector<std::vector<std::byte>> gather(const void *data, std::size_t bytes) = 0;
+  /// Ends all ranks.
+  [[noreturn]] virtual void abort(const std::string &reason, int exit_code) = 0;
+};
+
+/// A value that parts are handed: one process by itself, which never sends anything, or the ranks
+/// of a job. What it says is the same on all of them, to the last bit.
+class Ranks
+{
+public:
+  /// One process.
+  Ranks() = default;
+  explicit Ranks(std::shared_ptr<Communicator> all)
+  {
+    if (all && all->size() > 1)
+      all_ = std::move(all);
+  }
+
+  int rank() const { return all_ ? all_->rank() : 0; }
+  int size() const { return all_ ? all_->size() : 1; }
+  bool is_one() const { return !all_; }
+
+  /// See Communicator. One process has nobody to write to.
+  void exchange(const std::vector<Communicator::Outgoing> &out,
+                const std::vector<Communicator::Incoming> &in) const;
+
+  /// As if all terms had come on one rank.
+  ExactSum sum(const ExactSum &part) const;
+  /// One by one, in one message.
+  std::vector<ExactSum> sum(const std::vector<ExactSum> &parts) const;
+  std::int64_t sum(std::int64_t part) const;
+
+  bool any(bool here) const { return max(std::int64_t(here)) != 0; }
+  std::int64_t max(std::int64_t here) const;
+  /// Value by value, in one message.
+  std::vector<std::int64_t> max(std::vector<std::int64_t> here) const;
+
+  /// What every rank has, in the order of the ranks; and all in one.
+  template <typename T>
+  std::vector<std::vector<T>> gather(const std::vector<T> &here) const;
+  template <typename T>
+  std::vector<T> gather_all(const std::vector<T> &here) const;
+
+  /// What each rank wants of each other one: the k-th list of `to` goes to rank k; returns what
+  /// came, by rank. For set-ups: all see everything for a moment.
+  template <typename T>
+  std::vector<std::vector<T>> deal(const std::vector<std::vector<T>> &to) const;
+
+  /// Throws core::InputError on every rank where `what` is not the same number on all of them.
+  void agree_on(const std::string &what, double value) const;
+
+  /// Ends all ranks. Never to be called by one process.
+  [[noreturn]] void abort(const std::string &reason, int exit_code) const;
+
+private:
+  std::shared_ptr<Communicator> all_; // null: one process
+};
+
+template <typename T>
+std::vector<std::vector<T>> Ranks::gather(const std::vector<T> &here) const
+{
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (!all_)
+    return {here};
+  std::vector<std::vector<T>> found;
+  for (const auto &bytes : all_->gather(here.data(), here.size() * sizeof(T))) {
+    std::vector<T> &of = found.emplace_back(bytes.size() / sizeof(T));
+    if (!of.empty())
+      std::memcpy(static_cast<void *>(of.data()), bytes.data(), bytes.size());
+  }
+  return found;
+}
+
+template <typename T>
+std::vector<T> Ranks::gather_all(const std::vector<T> &here) const
+{
+  std::vector<T> all;
+  for (const auto &of : gather(here))
+    all.insert(all.end(), of.begin(), of.end());
+  return all;
+}
+
+template <typename T>
+std::vector<std::vector<T>> Ranks::deal(const std::vector<std::vector<T>> &to) const
+{
+  struct Entry
+  {
+    int to;
+    T value;
+  };
+  std::vector<Entry> mine;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    for (const T &value : to[k])
+      mine.push_back({int(k), value});
+  std::vector<std::vector<T>> come;
+  for (const auto &of : gather(mine)) {
+    come.emplace_back();
+    for (const Entry &entry : of)
+      if (entry.to == rank())
+        come.back().push_back(entry.value);
+  }
+  return come;
+}
+} // namespace ligament::core

@@ -1,0 +1,209 @@
+// A body that ranks step together, and the whole one, which every rank steps beside it: both must
+// have the same bits.
+#pragma once
+
+#include "core/check.h"
+#include "dem/many_body_force.h"
+#include "packings/lattice_packing.h"
+#include "packings/packing_part.h"
+#include "packings/random_packing.h"
+#include "particles/particle_solver.h"
+#include "tests/support/ranks.h"
+#include "tests/unit/dem/cases.h"
+
+#include <cstring>
+
+namespace ligament::dem::testing
+{
+template <int dim>
+struct Scene
+{
+  Packing<dim> packing;
+  DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0};
+  std::vector<core::BoundaryLoad<dim>> loads;
+  FractureLaw law;
+  double random_velocity = 0; // m/s, of all particles at the start
+  bool may_rest = false;
+  double step_share = 0.7; // of the critical step
+};
+
+inline std::uint64_t bits_of(double value)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return bits;
+}
+
+/// Of the whole, where there is no part of it.
+template <int dim>
+struct Solver
+{
+  Solver(const Scene<dim> &scene, const packings::PackingPart<dim> *held)
+  {
+    const Packing<dim> &packing = held ? held->packing : scene.packing;
+    Particles<dim> p;
+    packings::fill_particles(packing, scene.material.density, p);
+    if (held)
+      p.part = held->part;
+    for (int i = 0; i < p.size() && scene.random_velocity > 0; ++i) {
+      std::mt19937_64 random(p.global_id[i]); // whoever holds it
+      std::uniform_real_distribution<double> uniform(-1, 1);
+      for (auto &v : p.velocity)
+        v[i] = p.part.owns(i) ? scene.random_velocity * uniform(random) : 0;
+    }
+    auto f = std::make_unique<ManyBodyForce<dim>>(packing, scene.material, scene.loads, scene.law);
+    force = f.get();
+    solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
+    if (held)
+      solver->join({test::ranks(), held->owner});
+  }
+  void step(double dt, double time)
+  {
+    solver->kick(dt);
+    solver->drift(dt);
+    solver->update_ghosts();
+    solver->compute_forces(time);
+  }
+
+  ManyBodyForce<dim> *force;
+  std::unique_ptr<particles::ParticleSolver<dim>> solver;
+};
+
+/// Names of the numbers that differ, with the first particle or bond where they do.
+template <int dim>
+class Comparison
+{
+public:
+  Comparison(const Solver<dim> &part, const Solver<dim> &whole, const std::vector<int> &place)
+      : part_(part), whole_(whole), place_(place)
+  {
+  }
+
+  /// Motion and forces of what is owned; everything else that all ranks read, which all call.
+  bool is_same(double dt)
+  {
+    differs_.clear();
+    compare_particles();
+    const auto &a = *part_.force, &b = *whole_.force;
+    const auto &p = part_.solver->state, &q = whole_.solver->state;
+    number("kinetic energy", part_.solver->kinetic_energy(dt), whole_.solver->kinetic_energy(dt));
+    number("potential energy", a.potential_energy(p), b.potential_energy(q));
+    number("external work", a.external_work(), b.external_work());
+    number("fracture energy", a.fracture_energy(), b.fracture_energy());
+    number("breaking step error", a.breaking_step_error(), b.breaking_step_error());
+    number("frictional work", a.frictional_work(), b.frictional_work());
+    return differs_.empty();
+  }
+  bool reactions_are_same(int n_loads)
+  {
+    for (int l = 0; l < n_loads; ++l) {
+      const Vector<dim> a = part_.force->reaction(l), b = whole_.force->reaction(l);
+      for (int c = 0; c < dim; ++c)
+        number("reaction", a[c], b[c]);
+    }
+    return differs_.empty();
+  }
+  bool broken_bonds_are_same()
+  {
+    const auto a = part_.force->broken_bonds_of_body(part_.solver->state);
+    const auto &b = whole_.force->broken_bonds();
+    if (a.size() != b.size())
+      differs_ += " number of broken bonds";
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+      if (a[k].global_i != b[k].global_i || a[k].global_j != b[k].global_j)
+        differs_ += " names of broken bonds";
+      number("time of break", a[k].time, b[k].time);
+      number("energy of break", a[k].energy, b[k].energy);
+      number("area of break", a[k].area, b[k].area);
+      for (int c = 0; c < dim; ++c) {
+        number("place of break", a[k].position[c], b[k].position[c]);
+        number("normal of break", a[k].normal[c], b[k].normal[c]);
+      }
+    }
+    return differs_.empty();
+  }
+  const std::string &differs() const { return differs_; }
+
+private:
+  void number(const std::string &name, double a, double b)
+  {
+    if (bits_of(a) != bits_of(b) && differs_.find(name) == std::string::npos)
+      differs_ += " " + name;
+  }
+  void compare_particles()
+  {
+    auto &p = part_.solver->state;
+    auto &q = whole_.solver->state;
+    std::vector<const std::vector<double> *> of_whole;
+    q.for_each_array([&](const char *, const auto &array) { of_whole.push_back(&array); });
+    std::size_t a = 0;
+    p.for_each_array([&](const char *name, const auto &array) {
+      const std::vector<double> &other = *of_whole[a++];
+      particles::for_each(p.part.owned, [&](int i) {
+        number(name, array[i], other[place_[i]]);
+      });
+    });
+  }
+
+  const Solver<dim> &part_, &whole_;
+  const std::vector<int> &place_;
+  std::string differs_;
+};
+
+/// Weights of the blocks: another cut for each number, 0 for equal shares.
+inline particles::Partition some_partition(int n, unsigned number)
+{
+  std::vector<std::int64_t> weights;
+  std::mt19937 random(number);
+  for (int b = 0; b * particles::sum_block < n && number > 0; ++b)
+    weights.push_back(1 + random() % 3);
+  return particles::make_partition(n, test::ranks().size(), weights);
+}
+
+struct Outcome
+{
+  int n_broken = 0, n_across = 0; // bonds; between particles of different ranks
+  double friction = 0;            // J
+  double at_rest = 0;             // of this rank's steps
+};
+
+/// All ranks step the body `steps` times beside the whole one.
+template <int dim>
+Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, unsigned cut = 0)
+{
+  const particles::Partition partition = some_partition(scene.packing.size(), cut);
+  const auto held = packings::part_of(scene.packing, partition, test::ranks().rank(),
+                                      ManyBodyForce<dim>::n_rings(scene.law));
+  Solver<dim> whole(scene, nullptr), part(scene, &held);
+  const double critical = whole.force->stable_step(whole.solver->state),
+               dt = scene.step_share * critical;
+  EXPECT_EQ(bits_of(part.force->stable_step(part.solver->state)), bits_of(critical));
+  test::ranks().agree_on("the step", dt);
+  Comparison<dim> comparison(part, whole, held.place);
+  for (Solver<dim> *s : {&whole, &part}) {
+    s->solver->compute_forces(0);
+    if (scene.may_rest)
+      s->solver->let_rest();
+  }
+  bool same = true;
+  for (int s = 0; s <= steps && same; ++s) {
+    if (s > 0) {
+      whole.step(dt, s * dt);
+      part.step(dt, s * dt);
+    }
+    const bool is_same = comparison.is_same(dt) &
+                         comparison.reactions_are_same(int(scene.loads.size())) &
+                         comparison.broken_bonds_are_same();
+    EXPECT_TRUE(is_same) << "step " << s << ":" << comparison.differs();
+    same = !test::ranks().any(!is_same);
+  }
+  Outcome outcome;
+  outcome.n_broken = int(whole.force->broken_bonds().size());
+  for (const auto &b : whole.force->broken_bonds())
+    outcome.n_across += partition.owner(b.i) != partition.owner(b.j);
+  outcome.friction = whole.force->frictional_work();
+  if (part.solver->rest())
+    outcome.at_rest = part.solver->rest()->share_at_rest();
+  return outcome;
+}
+} // namespace ligament::dem::testing
