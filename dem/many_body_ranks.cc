@@ -10,6 +10,8 @@ namespace ligament::dem
 template <int dim>
 void ManyBodyForce<dim>::join(const particles::Owners &owners)
 {
+  if (owners.ranks.is_one())
+    return;
   const auto refuse_where = [&](bool here, const std::string &what) {
     core::require(!owners.ranks.any(here), what + " is known in one process only; use one rank");
   };
@@ -22,8 +24,6 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners)
   refuse_where(!body_.energy_weights().empty(), "a body with weighted energy");
   core::require(broken_.all().empty(), "parts are joined before anything breaks");
   owners_ = std::make_shared<particles::Owners>(owners);
-  if (ranks().is_one())
-    return;
   contacts_.join(*owners_);
 }
 

@@ -112,7 +112,10 @@ TEST(BodyInParts, RefusesWhatNeedsOneProcess)
   scene.law.energy = 1e-6;
   const auto partition = some_partition(scene.packing.size(), 0);
   const auto held = packings::part_of(scene.packing, partition, test::ranks().rank(), 3);
-  EXPECT_THROW(Solver<2>(scene, &held), core::InputError);
+  if (test::ranks().is_one())
+    EXPECT_NO_THROW(Solver<2>(scene, &held));
+  else
+    EXPECT_THROW(Solver<2>(scene, &held), core::InputError);
 }
 } // namespace
 } // namespace ligament::dem::testing

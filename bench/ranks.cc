@@ -1,0 +1,106 @@
+// A body of particles in parts: mpirun -n RANKS bin/bench_ranks DIMENSION PARTICLES STEPS
+//
+// Hexagonal or face-centred cubic, twice as long along its layers' normal as it is wide; seconds a
+// step, what of them goes into the exchange of ghosts (waiting included), bytes and messages of one
+// rank in a step, and how unequal the ranks' forces are.
+#include "core/flush_denormals.h"
+#include "core/mpi_job.h"
+#include "dem/many_body_force.h"
+#include "packings/lattice_packing.h"
+#include "packings/packing_part.h"
+#include "particles/particle_solver.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace
+{
+using namespace ligament;
+
+double now()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <int dim>
+void measure(const core::Ranks &ranks, double n_particles, int steps)
+{
+  packings::LatticeParameters<dim> lattice;
+  lattice.spacing = 1;
+  const double width = std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)),
+                                1. / dim);
+  lattice.upper.setConstant(width);
+  lattice.upper[dim - 1] *= 2;
+  const dem::DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0};
+  dem::FractureLaw law;
+  law.criterion = dem::FractureLaw::Criterion::face_tension;
+  law.strength = 1;
+
+  double began = now();
+  auto whole = packings::make_lattice_packing(lattice);
+  const int n = whole.size();
+  const auto partition = particles::make_partition(n, ranks.size());
+  auto held = packings::part_of(whole, partition, ranks.rank(), dem::ManyBodyForce<dim>::n_rings(law));
+  whole = {};
+  particles::Particles<dim> p;
+  packings::fill_particles(held.packing, 1, p);
+  p.part = held.part;
+  particles::for_each(p.part.owned, [&](int i) {
+    p.velocity[0][i] = 1e-4 * std::sin(0.1 * p.reference[dim - 1][i]);
+  });
+  auto force = std::make_unique<dem::ManyBodyForce<dim>>(held.packing, material,
+                                                         std::vector<core::BoundaryLoad<dim>>{}, law);
+  particles::ParticleSolver<dim> solver(std::move(p), std::move(force));
+  solver.join({ranks, held.owner});
+  const double dt = 0.3, set_up = now() - began;
+  solver.compute_forces(0);
+
+  double in_halo = 0, in_forces = 0;
+  ranks.any(false); // all begin together
+  began = now();
+  for (int s = 1; s <= steps; ++s) {
+    solver.kick(dt);
+    solver.drift(dt);
+    const double drifted = now();
+    solver.update_ghosts();
+    const double updated = now();
+    solver.compute_forces(s * dt);
+    in_halo += updated - drifted;
+    in_forces += now() - updated;
+  }
+  ranks.any(false);
+  const double seconds = now() - began;
+  const auto all = ranks.gather_all(std::vector<double>{in_halo, in_forces});
+  double halo = 0, mean = 0, most = 0;
+  for (std::size_t r = 0; r < all.size(); r += 2) {
+    halo += all[r] / ranks.size();
+    mean += all[r + 1] / ranks.size();
+    most = std::max(most, all[r + 1]);
+  }
+  const double bytes = double(ranks.sum(std::int64_t(solver.halo().bytes(solver.state)))),
+               ghosts = double(ranks.sum(std::int64_t(solver.halo().n_ghosts())));
+  if (ranks.rank() > 0)
+    return;
+  fmt::print("{} particles, {} ranks, {:.0f} ghosts: {:.3f} ms a step ({:.1f} ns a particle), {:.3f} "
+             "ms of it in the halo, forces {:.3f} ms (the slowest {:.2f} of the mean); {:.0f} bytes "
+             "in {} messages a rank and step; set-up {:.2f} s\n",
+             n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n,
+             1e3 * halo / steps, 1e3 * mean / steps, most / mean, bytes / ranks.size(),
+             solver.halo().n_neighbours(), set_up);
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  if (argc != 4) {
+    fmt::print(stderr, "bench_ranks DIMENSION PARTICLES STEPS\n");
+    return 2;
+  }
+  core::flush_denormals();
+  const core::MpiJob job;
+  const auto run = std::atoi(argv[1]) == 2 ? measure<2> : measure<3>;
+  run(job.ranks(), std::atof(argv[2]), std::atoi(argv[3]));
+  return 0;
+}
