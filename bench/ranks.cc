@@ -29,8 +29,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
 {
   packings::LatticeParameters<dim> lattice;
   lattice.spacing = 1;
-  const double width = std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)),
-                                1. / dim);
+  const double width =
+      std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)), 1. / dim);
   lattice.upper.setConstant(width);
   lattice.upper[dim - 1] *= 2;
   const dem::DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0};
@@ -42,7 +42,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
   auto whole = packings::make_lattice_packing(lattice);
   const int n = whole.size();
   const auto partition = particles::make_partition(n, ranks.size());
-  auto held = packings::part_of(whole, partition, ranks.rank(), dem::ManyBodyForce<dim>::n_rings(law));
+  auto held =
+      packings::part_of(whole, partition, ranks.rank(), dem::ManyBodyForce<dim>::n_rings(law));
   whole = {};
   particles::Particles<dim> p;
   packings::fill_particles(held.packing, 1, p);
@@ -50,8 +51,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
   particles::for_each(p.part.owned, [&](int i) {
     p.velocity[0][i] = 1e-4 * std::sin(0.1 * p.reference[dim - 1][i]);
   });
-  auto force = std::make_unique<dem::ManyBodyForce<dim>>(held.packing, material,
-                                                         std::vector<core::BoundaryLoad<dim>>{}, law);
+  auto force = std::make_unique<dem::ManyBodyForce<dim>>(
+      held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
   particles::ParticleSolver<dim> solver(std::move(p), std::move(force));
   solver.join({ranks, held.owner});
   const double dt = 0.3, set_up = now() - began;
@@ -83,12 +84,12 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
                ghosts = double(ranks.sum(std::int64_t(solver.halo().n_ghosts())));
   if (ranks.rank() > 0)
     return;
-  fmt::print("{} particles, {} ranks, {:.0f} ghosts: {:.3f} ms a step ({:.1f} ns a particle), {:.3f} "
-             "ms of it in the halo, forces {:.3f} ms (the slowest {:.2f} of the mean); {:.0f} bytes "
-             "in {} messages a rank and step; set-up {:.2f} s\n",
-             n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n,
-             1e3 * halo / steps, 1e3 * mean / steps, most / mean, bytes / ranks.size(),
-             solver.halo().n_neighbours(), set_up);
+  fmt::print(
+      "{} particles, {} ranks, {:.0f} ghosts: {:.3f} ms a step ({:.1f} ns a particle), {:.3f} "
+      "ms of it in the halo, forces {:.3f} ms (the slowest {:.2f} of the mean); {:.0f} bytes "
+      "in {} messages a rank and step; set-up {:.2f} s\n",
+      n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n, 1e3 * halo / steps,
+      1e3 * mean / steps, most / mean, bytes / ranks.size(), solver.halo().n_neighbours(), set_up);
 }
 } // namespace
 

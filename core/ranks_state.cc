@@ -17,8 +17,8 @@ std::vector<std::string> different_texts(const std::string &mine, const Ranks &r
 {
   std::vector<std::string> texts;
   for (const auto &of : ranks.gather(std::vector<char>(mine.begin(), mine.end())))
-    if (!of.empty() && std::find(texts.begin(), texts.end(), std::string(of.begin(), of.end())) ==
-                           texts.end())
+    if (!of.empty() &&
+        std::find(texts.begin(), texts.end(), std::string(of.begin(), of.end())) == texts.end())
       texts.emplace_back(of.begin(), of.end());
   return texts;
 }

@@ -146,7 +146,8 @@ bool ContactSearch<dim>::meets_strangers(const Particles &p) const
 
 // A flank that has slid by one spacing and a half meets particles two faces further on at most.
 template <int dim>
-bool ContactSearch<dim>::slides_to_strangers(const Particles &p, const Contacts<dim> &contacts) const
+bool ContactSearch<dim>::slides_to_strangers(const Particles &p,
+                                             const Contacts<dim> &contacts) const
 {
   return std::any_of(contacts.all().begin(), contacts.all().end(), [&](const Contact<dim> &c) {
     return c.is_joint() && !(owners_->is_own(c.face.i) && owners_->is_own(c.face.j)) &&
@@ -160,8 +161,8 @@ void ContactSearch<dim>::stop_at_strangers(const Particles &p, const Contacts<di
 {
   if (!owners_ || owners_->ranks.is_one())
     return;
-  const auto found = owners_->ranks.max(std::vector<std::int64_t>{
-      meets_strangers(p), slides_to_strangers(p, contacts)});
+  const auto found = owners_->ranks.max(
+      std::vector<std::int64_t>{meets_strangers(p), slides_to_strangers(p, contacts)});
   core::require<core::GuardStop>(
       found[0] == 0, "particles touch that were never near each other and belong to different "
                      "ranks, which see too little of each other; go on with one rank");

@@ -43,9 +43,9 @@ public:
   /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;
 
-  /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains of
-  /// the particles' own, faces that soften, fall or are bonded again, several materials whose faces
-  /// meet, joined sides, pressures that follow the surface.
+  /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains
+  /// of the particles' own, faces that soften, fall or are bonded again, several materials whose
+  /// faces meet, joined sides, pressures that follow the surface.
   void join(const particles::Owners &owners) override;
   /// Rings of ghosts around the particles of a rank: forces need two, criteria that read the stress
   /// of both particles of a bond one more.
@@ -145,9 +145,9 @@ public:
   double frictional_work() const { return ranks().sum(contacts_.frictional_work()).value(); }
   particles::ForceLosses losses() const override
   {
-    return {fracture_energy(), frictional_work(), plastic_dissipation(), breaking_step_error(),
-            cohesive_work(), strains_.stored_energy(), viscous_dissipation(),
-            rebonding_energy()};
+    return {fracture_energy(),     frictional_work(), plastic_dissipation(),
+            breaking_step_error(), cohesive_work(),   strains_.stored_energy(),
+            viscous_dissipation(), rebonding_energy()};
   }
 
   /// Those at hand.
@@ -194,8 +194,8 @@ public:
 
 private:
   const core::Ranks &ranks() const { return owners_->ranks; }
-  /// What breaks now of the bonds at hand, in the order of the body's; `places` of theirs among these
-  /// where others have some, too. All ranks call it.
+  /// What breaks now of the bonds at hand, in the order of the body's; `places` of theirs among
+  /// these where others have some, too. All ranks call it.
   std::vector<BondId> breaking_bonds(const StressedBody<dim> &state,
                                      std::vector<std::int64_t> &places);
   /// On every rank, where bonds broke on some.
@@ -307,8 +307,8 @@ private:
   // Of a body in parts.
   core::Names names_;
   std::int64_t n_broken_ = 0, n_breaking_ = 0; // in all of them: before, and now
-  double thickness_;                // m, 2D
-  double time_ = 0, last_time_ = 0; // s
-  double began_at_ = -1;            // s, softening of faces, last
+  double thickness_;                           // m, 2D
+  double time_ = 0, last_time_ = 0;            // s
+  double began_at_ = -1;                       // s, softening of faces, last
 };
 } // namespace ligament::dem

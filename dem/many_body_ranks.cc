@@ -53,14 +53,15 @@ std::vector<BondId> ManyBodyForce<dim>::breaking_bonds(const StressedBody<dim> &
 }
 
 template <int dim>
-std::vector<BondId>
-ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBond<dim>> &bonds, const Particles &p,
-                               std::vector<std::int64_t> &places)
+std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
+                                                   const Particles &p,
+                                                   std::vector<std::int64_t> &places)
 {
   std::vector<BondId> here;
   for (std::size_t k = 0; k < bonds.size(); ++k)
     if (const auto id = bonds[k].rank == ranks().rank() ? std::optional(bonds[k].id)
-                                                         : bond_between(bonds[k].name, p)) {
+                                                        : bond_between(bonds[k].name, p))
+    {
       here.push_back(*id);
       places.push_back(std::int64_t(k));
     }
@@ -68,8 +69,8 @@ ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBond<dim>> &bonds, con
 }
 
 template <int dim>
-std::optional<BondId>
-ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name, const Particles &p)
+std::optional<BondId> ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name,
+                                                       const Particles &p)
 {
   if (names_.size() == 0)
     names_ = p.names();
@@ -127,8 +128,8 @@ std::vector<BrokenBond<dim>> ManyBodyForce<dim>::broken_bonds_of_body(const Part
     const BrokenBond<dim> &b = broken_.all()[k];
     if (!p.part.owns(b.i))
       continue;
-    Row &row = rows.emplace_back(Row{
-        broken_.number(k), b.global_i, b.global_j, b.time, b.area, b.energy, {}, {}});
+    Row &row = rows.emplace_back(
+        Row{broken_.number(k), b.global_i, b.global_j, b.time, b.area, b.energy, {}, {}});
     for (int c = 0; c < dim; ++c)
       row.place[c] = b.position[c], row.normal[c] = b.normal[c];
   }
@@ -137,8 +138,7 @@ std::vector<BrokenBond<dim>> ManyBodyForce<dim>::broken_bonds_of_body(const Part
             [](const Row &a, const Row &b) { return a.number < b.number; });
   std::vector<BrokenBond<dim>> all;
   for (const Row &row : rows)
-    all.push_back({-1, -1, row.i, row.j, row.time,
-                   Eigen::Map<const Vector<dim>>(row.place.data()),
+    all.push_back({-1, -1, row.i, row.j, row.time, Eigen::Map<const Vector<dim>>(row.place.data()),
                    Eigen::Map<const Vector<dim>>(row.normal.data()), row.area, row.energy});
   return all;
 }
@@ -155,8 +155,6 @@ template Vector<2> ManyBodyForce<2>::reaction(int) const;
 template Vector<3> ManyBodyForce<3>::reaction(int) const;
 template double ManyBodyForce<2>::breaking_step_error() const;
 template double ManyBodyForce<3>::breaking_step_error() const;
-template std::vector<BrokenBond<2>>
-ManyBodyForce<2>::broken_bonds_of_body(const Particles &) const;
-template std::vector<BrokenBond<3>>
-ManyBodyForce<3>::broken_bonds_of_body(const Particles &) const;
+template std::vector<BrokenBond<2>> ManyBodyForce<2>::broken_bonds_of_body(const Particles &) const;
+template std::vector<BrokenBond<3>> ManyBodyForce<3>::broken_bonds_of_body(const Particles &) const;
 } // namespace ligament::dem

@@ -43,15 +43,17 @@ void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double am
   });
 }
 
-/// Of the body: over blocks of what is one's own, in strands, which compilers may not make of a sum.
+/// Of the body: over blocks of what is one's own, in strands, which compilers may not make of a
+/// sum.
 template <int dim>
 double dot(const Eigen::VectorXd &a, const Eigen::VectorXd &b, const particles::Particles<dim> &p,
            const core::Ranks &ranks)
 {
   const core::ExactSum sum = particles::sum_over_blocks(p.part.owned, [&](const auto &add) {
     for (int c = 0; c < n_particle_dofs<dim>; ++c) {
-      const double *const x = a.data() + std::size_t(c) * p.size(),
-                         *const y = b.data() + std::size_t(c) * p.size();
+      const double *const x = a.data() + std::size_t(c) * p.size(), *const y =
+                                                                        b.data() +
+                                                                        std::size_t(c) * p.size();
       add([=](int begin, int end) {
         constexpr int n_strands = 8;
         double strands[n_strands] = {};
@@ -96,7 +98,8 @@ Eigen::VectorXd random_vector(const particles::Particles<dim> &p, const core::Ra
 template <int dim>
 double ManyBodyForce<dim>::stable_step(const Particles &particles) const
 {
-  core::require(!strains_.has_begun(), "the stable step is that of a body without strains of its own");
+  core::require(!strains_.has_begun(),
+                "the stable step is that of a body without strains of its own");
   Particles p = particles;
   Evaluation<dim> evaluation(body_);
   evaluation.has_loads = false;

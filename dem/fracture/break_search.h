@@ -60,8 +60,8 @@ public:
   /// After it: leaves out what the stresses clear of the particles that it noted.
   void clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &evaluation);
 
-  /// Of the bonds at hand, in any order, some of them twice; `rank` tells of them. A bond is sure to
-  /// be among those of a rank that steps one of its particles.
+  /// Of the bonds at hand, in any order, some of them twice; `rank` tells of them. A bond is sure
+  /// to be among those of a rank that steps one of its particles.
   std::vector<ExceedingBond<dim>> exceeding_bonds(const StressedBody<dim> &state, int rank) const;
   /// Of all that exceed in the body those that break now, each once, in this order.
   std::vector<ExceedingBond<dim>> breaking(std::vector<ExceedingBond<dim>> exceeding,

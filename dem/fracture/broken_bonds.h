@@ -24,8 +24,8 @@ public:
   {
     return numbers_.empty() ? std::int64_t(k) : numbers_[k];
   }
-  /// Of a body in parts, after the last ones at hand broke: these are the `places`-th (ascending) of
-  /// those that did in the body, of which there were so many before; at this time (s).
+  /// Of a body in parts, after the last ones at hand broke: these are the `places`-th (ascending)
+  /// of those that did in the body, of which there were so many before; at this time (s).
   void count(double time, std::int64_t before, const std::vector<std::int64_t> &places);
   /// Those at hand are called by these numbers.
   void set_numbers(std::vector<std::int64_t> numbers) { numbers_ = std::move(numbers); }
@@ -39,8 +39,8 @@ public:
   /// Whether some did at this time (s): then no other does.
   bool have_broken_at(double time) const { return broken_at_ == time; }
 
-  /// `energy` in J, released; and what had opened the face before, which is booked elsewhere. Booked
-  /// where the first particle is one's own.
+  /// `energy` in J, released; and what had opened the face before, which is booked elsewhere.
+  /// Booked where the first particle is one's own.
   void add(const Bond<dim> &bond, const Particles &particles, double time, double energy,
            double of_opening = 0);
 
@@ -48,8 +48,8 @@ public:
   void add_again(double time, double energy);
 
   /// Forces and torques of one's own of the particles `near` (ascending), which are those after the
-  /// break, become the mean with those before it. Over the step before, the force before would have made
-  /// the work exact, over the next one that after: theory.md eq. (E10).
+  /// break, become the mean with those before it. Over the step before, the force before would have
+  /// made the work exact, over the next one that after: theory.md eq. (E10).
   void take_mean(Particles &particles, const std::vector<int> &near,
                  const std::vector<Wrench<dim>> &before, double dt);
 
@@ -77,8 +77,8 @@ private:
 
   std::vector<BrokenBond<dim>> all_;
   std::vector<std::int64_t> numbers_; // empty: 0, 1, ...
-  std::vector<Jump> jumps_;         // where bonds broke in the last step
-  std::optional<double> broken_at_; // s
+  std::vector<Jump> jumps_;           // where bonds broke in the last step
+  std::optional<double> broken_at_;   // s
   core::ExactSum energy_, step_error_;
 };
 } // namespace ligament::dem

@@ -8,7 +8,8 @@ template <int dim>
 ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const Materials &materials,
                                   const PeriodicImages<dim> &images)
     : contacts_(materials, packing.global_id, packing.size()),
-      search_(packing, packings::mean_face_area(packing), &images), images_(images), spacing_(packing.spacing)
+      search_(packing, packings::mean_face_area(packing), &images), images_(images),
+      spacing_(packing.spacing)
 {
   for (const auto &face : packing.faces)
     if (face.cracked) {

@@ -84,8 +84,6 @@ struct Evaluation
   std::vector<double> pressure;         // lambda_i theta_i, Pa
   std::vector<Vector<dim>> wall_forces; // N, on the particle of each wall
   std::vector<Vector<dim>> reactions;   // N, of each load on the body
-  /// The same of one's own particles, component by component, before it is rounded.
-  std::vector<core::ExactSum> reaction_sums;
   NotedBonds noted;
   std::optional<InelasticSweep<dim>> inelastic; // where a material flows
   FlowingInterfaces<dim> interfaces;            // the same
@@ -95,6 +93,9 @@ struct Evaluation
   std::vector<double> other_pressures; // Pa, of the other particles before the rows'
   SliceNearness nearness;
   long nearness_version = -1; // of the ranges
+
+  // Left behind: reactions on one's own particles, component by component, before they are rounded.
+  std::vector<core::ExactSum> reaction_sums;
 
   /// What of these particles is passed over; null: all.
   const particles::AwakeRanges *ranges(const particles::Particles<dim> &p) const

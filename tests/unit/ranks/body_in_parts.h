@@ -7,6 +7,7 @@
 #include "packings/lattice_packing.h"
 #include "packings/packing_part.h"
 #include "packings/random_packing.h"
+#include "particles/block_sum.h"
 #include "particles/particle_solver.h"
 #include "tests/support/ranks.h"
 #include "tests/unit/dem/cases.h"
@@ -139,9 +140,7 @@ private:
     std::size_t a = 0;
     p.for_each_array([&](const char *name, const auto &array) {
       const std::vector<double> &other = *of_whole[a++];
-      particles::for_each(p.part.owned, [&](int i) {
-        number(name, array[i], other[place_[i]]);
-      });
+      particles::for_each(p.part.owned, [&](int i) { number(name, array[i], other[place_[i]]); });
     });
   }
 

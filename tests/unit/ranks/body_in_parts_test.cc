@@ -1,4 +1,5 @@
-// Bodies in parts on ranks: forces, motion, energies, reactions and work have the bits of the whole.
+// Bodies in parts on ranks: forces, motion, energies, reactions and work have the bits of the
+// whole.
 #include "tests/unit/ranks/body_in_parts.h"
 
 namespace ligament::dem::testing
@@ -35,7 +36,8 @@ TYPED_TEST(BodyInParts, MovesLikeTheWholeLattice)
   if constexpr (dim == 2)
     lattice.holes = {{{0.3 * half, -0.2 * half}, 0.2 * half}};
   else
-    lattice.notches = {{{-0.3 * half, -2 * half, -0.3 * half}, {0.3 * half, -0.4 * half, half / 8}}};
+    lattice.notches = {
+        {{-0.3 * half, -2 * half, -0.3 * half}, {0.3 * half, -0.4 * half, half / 8}}};
   Scene<dim> scene;
   scene.packing = packings::make_lattice_packing(lattice);
   scene.random_velocity = 1e-2;

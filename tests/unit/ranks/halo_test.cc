@@ -1,9 +1,9 @@
 // Cuts of a body, the parts that ranks hold of it, and the ghosts that they see.
-#include "particles/halo.h"
 #include "packings/lattice_packing.h"
 #include "packings/packing_part.h"
 #include "packings/random_packing.h"
 #include "particles/block_sum.h"
+#include "particles/halo.h"
 #include "tests/support/ranks.h"
 
 #include "core/check.h"
@@ -36,9 +36,8 @@ TEST(Partition, CutsWholeBlocksNearEqualShares)
     EXPECT_EQ(p.begin(0), 0);
     EXPECT_EQ(p.end(n_ranks - 1), n);
     const std::int64_t total = std::accumulate(weights.begin(), weights.end(), std::int64_t(0)),
-                       largest = weights.empty()
-                                     ? 0
-                                     : *std::max_element(weights.begin(), weights.end());
+                       largest =
+                           weights.empty() ? 0 : *std::max_element(weights.begin(), weights.end());
     for (int r = 0; r < n_ranks; ++r) {
       EXPECT_LE(p.begin(r), p.end(r));
       EXPECT_TRUE(p.end(r) % sum_block == 0 || p.end(r) == n);

@@ -13,8 +13,8 @@ TEST(RanksState, MergesRowsAndSums)
   const core::Ranks &ranks = test::ranks();
   const int r = ranks.rank(), n = ranks.size();
   core::State part;
-  core::Table own({10 + r}), shared({1, 2, 3}), some(r == n - 1 ? std::vector<std::int64_t>{7}
-                                                                : std::vector<std::int64_t>{});
+  core::Table own({10 + r}), shared({1, 2, 3}),
+      some(r == n - 1 ? std::vector<std::int64_t>{7} : std::vector<std::int64_t>{});
   own.add("x", std::vector<double>{r + 0.5});
   shared.add("y", std::vector<std::int64_t>{4, 5, 6});
   if (r == n - 1) // where there are no rows, there may be no columns
@@ -132,7 +132,7 @@ TEST(StateInParts, GoesOnInOtherParts2D)
   scene.loads[0].boundary = 3;
   scene.loads[0].kind = core::BoundaryLoad<2>::Kind::velocity;
   scene.loads[0].value[1] = 0.02;
-  expect_the_state_to_go_on(scene, 160);
+  expect_the_state_to_go_on(scene, 80);
 }
 
 TEST(StateInParts, GoesOnInOtherParts3D)
@@ -142,7 +142,7 @@ TEST(StateInParts, GoesOnInOtherParts3D)
   scene.material.friction = 0.4;
   scene.random_velocity = 0.05;
   scene.law = {Criterion::maximum_tension, 0.02};
-  expect_the_state_to_go_on(scene, 60);
+  expect_the_state_to_go_on(scene, 40);
 }
 
 // A part goes on from a state in which blocks rested.
