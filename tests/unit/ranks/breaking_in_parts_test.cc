@@ -85,7 +85,7 @@ TEST(BreakingInParts, CracksSlideAndGrowLikeThoseOfTheWhole)
       scene.law = {Criterion::maximum_tension, 0.02};
       scene.loads = draw_apart<2>(1 - along, -0.01); // presses
       for (auto &load : scene.loads)
-        load.value[along] = 2 * *load.value[1 - along];
+        load.value[along] = 0.5 * *load.value[1 - along];
       const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 250, 2);
       EXPECT_GT(outcome.n_broken, 10);
       EXPECT_GT(outcome.friction, 0);
@@ -141,7 +141,10 @@ TEST(BreakingInParts, StopsTogetherWhereStrangersMeet)
     stopped = true;
     EXPECT_NE(std::string(stop.what()).find("one rank"), std::string::npos);
   }
-  EXPECT_EQ(stopped, test::ranks().size() % 2 == 0);
+  if (test::ranks().size() % 2 == 0)
+    EXPECT_TRUE(stopped);
+  if (test::ranks().is_one())
+    EXPECT_FALSE(stopped);
   EXPECT_EQ(test::ranks().any(stopped), stopped);
 }
 } // namespace
