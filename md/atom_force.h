@@ -140,13 +140,15 @@ private:
   /// more than in the reference, bond by bond.
   std::vector<double> energies(const Particles &atoms) const;
   std::vector<double> energy_changes(const Particles &atoms) const;
+  /// Of all bonds of the list, which is up to date; J.
+  double whole_energy(const Particles &atoms) const;
   /// Vectors to the present neighbours of each atom within `reach`, in m.
   std::vector<std::vector<Vector<dim>>> neighbours(const Particles &atoms, double reach) const;
 
   Crystal<dim> crystal_;
   AtomBody<dim> body_;
   Components<dim> reference_; // m
-  AtomKernel kernel_;
+  mutable AtomKernel kernel_; // has work space of its own
   AtomLoads<dim> loads_;
   particles::CoupledEdge<dim> edge_;
   PartedBonds<dim> parted_;
