@@ -53,7 +53,10 @@ packings::Packing<dim> make_crystal_packing(const Scene &scene)
   shape.lower = specimen.lower.cwiseMax(specimen.zone_lower);
   shape.upper = specimen.upper.cwiseMin(specimen.zone_upper);
   shape.anchor = anchor_of<dim>(scene, crystal);
-  shape.periodic = specimen.periodic;
+  // A zone that keeps off joined sides has a mesh there, and ends like any other.
+  for (int c = 0; c < dim; ++c)
+    shape.periodic[c] = specimen.periodic[c] && shape.lower[c] <= specimen.lower[c] &&
+                        shape.upper[c] >= specimen.upper[c];
   const auto &parts = specimen.zone_parts;
   shape.keep = [&](const Vector<dim> &x) {
     return body.distance(x) > -1e-9 * crystal.spacing() &&
