@@ -20,17 +20,25 @@ Vector<dim> anchor_of(const Scene &scene, const md::Crystal<dim> &crystal)
   return to_vector<dim>(scene.specimen.centre) + share * crystal.basis() * Vector<dim>::Ones();
 }
 
-/// What a crack whose front lies along the one joined axis within its plane would need at least.
+/// What a crack that reaches through the specimen along one joined axis, its front, would need at
+/// least.
 void add_griffith(const Scene &scene, const md::Crystal<3> &crystal,
                   const std::vector<packings::CrackPlane<3>> &cuts,
                   std::map<std::string, Figure> &figures)
 {
-  if (cuts.size() != 1 || scene.is_warm())
+  if (cuts.size() != 1 || scene.specimen.cracks.size() != 1 || scene.is_warm())
     return;
   std::vector<Vector<3>> fronts;
-  for (int c = 0; c < 3; ++c)
-    if (scene.specimen.is_periodic(c) && std::abs(cuts[0].normal()[c]) < 1e-9)
+  for (int c = 0; c < 3; ++c) {
+    double lower = infinity, upper = -infinity;
+    for (const Point &x : scene.specimen.cracks[0].points) {
+      lower = std::min(lower, x[c]);
+      upper = std::max(upper, x[c]);
+    }
+    const bool is_through = lower <= scene.specimen.lower(c) && upper >= scene.specimen.upper(c);
+    if (is_through && scene.specimen.is_periodic(c) && std::abs(cuts[0].normal()[c]) < 1e-9)
       fronts.push_back(Vector<3>::Unit(c));
+  }
   if (fronts.size() != 1)
     return;
   if (const auto crack = md::griffith_crack(crystal, cuts[0].normal(), fronts[0])) {
