@@ -35,8 +35,8 @@ struct Emission
   Vector<3> place = Vector<3>::Zero();               // of the first bond that parts, m
 };
 
-/// What a straight line through the values of the last 5 ps, a transit of a P wave through the body,
-/// says at their end: the ends ring.
+/// What a straight line through the values of the last 5 ps, a transit of a P wave through the
+/// body, says at their end: the ends ring.
 double smoothed(const std::vector<std::array<double, 2>> &values)
 {
   const double end = values.back()[0];
@@ -70,8 +70,8 @@ Emission first_emission(const std::vector<std::string> &set)
     now.time = double(now.step) * now.dt;
     body.coupler->compute_forces(bodies, now);
     if (now.step % 6 == 0) // the far field's reaction is that of its own steps
-      loads.push_back({now.time, body.force()->reaction(0)[1] +
-                                     (body.far ? body.far->reaction(0)[1] : 0)});
+      loads.push_back(
+          {now.time, body.force()->reaction(0)[1] + (body.far ? body.far->reaction(0)[1] : 0)});
   }
   Emission found;
   if (body.force()->broken_bonds().empty())
