@@ -3,6 +3,7 @@
 #include "core/keyed_error.h"
 #include "md/atom_force.h"
 #include "md/crystal_packing.h"
+#include "md/griffith.h"
 #include "src/scene/atoms.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/heat.h"
@@ -25,6 +26,7 @@ Vector<dim> anchor_of(const Scene &scene, const md::Crystal<dim> &crystal)
   const double share = crystal.parameters().kind == md::CrystalKind::fcc ? 0.25 : 0.5;
   return to_vector<dim>(scene.specimen.centre) + share * crystal.basis() * Vector<dim>::Ones();
 }
+
 /// Species of all atoms, by the sites' own random numbers: a larger zone has the same ones.
 template <int dim>
 void substitute(const Scene &scene, packings::Packing<dim> &packing, core::Log &log)
@@ -62,14 +64,34 @@ void require_own_overlap(const Scene &scene, const packings::Packing<dim> &packi
 {
   if (!scene.far_field || scene.zone.extent != DiscreteZone::Extent::box)
     return;
-  const double keep_off = scene.coupling.overlap_cells * scene.far_field->cell_size +
-                          scene.atoms->disturbance;
+  const double keep_off =
+      scene.coupling.overlap_cells * scene.far_field->cell_size + scene.atoms->disturbance;
   const auto zone = zone_shape<dim>(scene);
   for (std::size_t i = 0; i < packing.material.size(); ++i)
     core::require(packing.material[i] == 0 ||
                       zone.distance(get(packing.centre, int(i))) > keep_off * (1 - 1e-9),
                   "/atoms/substitutions: an atom of another species changes the forces in the "
                   "overlap; widen /discrete_zone or move it");
+}
+
+/// What a crack whose front lies along the one joined axis within its plane would need at least.
+void add_griffith(const Scene &scene, const md::Crystal<3> &crystal,
+                  const std::vector<packings::CrackPlane<3>> &cuts,
+                  std::map<std::string, Figure> &figures)
+{
+  if (cuts.size() != 1 || scene.is_warm())
+    return;
+  std::vector<Vector<3>> fronts;
+  for (int c = 0; c < 3; ++c)
+    if (scene.specimen.is_periodic(c) && std::abs(cuts[0].normal()[c]) < 1e-9)
+      fronts.push_back(Vector<3>::Unit(c));
+  if (fronts.size() != 1)
+    return;
+  if (const auto crack = md::griffith_crack(crystal, cuts[0].normal(), fronts[0])) {
+    figures["surface_energy"] = {crack->surface_energy, "J/m^2"};
+    figures["crack_modulus"] = {crack->modulus, "Pa"};
+    figures["griffith_k"] = {crack->stress_intensity, "Pa*m^0.5"};
+  }
 }
 } // namespace
 
@@ -111,6 +133,8 @@ make_atom_force(const Scene &scene, packings::Packing<dim> packing,
   figures["C11"] = {c(0, 0), "Pa"};
   figures["C12"] = {c(0, 1), "Pa"};
   figures[dim == 2 ? "C33" : "C44"] = {c(dim, dim), "Pa"};
+  if constexpr (dim == 3)
+    add_griffith(scene, crystal, packing.cuts, figures);
   log.info("crystal: spacing {:.6g} m, range {:.4g} m, cohesive energy {:.4g} J, C11, C12, {} = "
            "{:.4g}, {:.4g}, {:.4g} Pa along x, y",
            crystal.spacing(), crystal.potential().cutoff(), crystal.cohesive_energy(),
