@@ -182,8 +182,8 @@ private:
   std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference
   std::unique_ptr<CoarseEnergy<dim>> fast_; // of coarse_ what acts in every step; null: all
   Nodal<dim> slow_force_;                   // the rest of it, in N
-  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_;  // M_c
-  ScalarMatrix<dim> filter_;                           // D
+  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c
+  ScalarMatrix<dim> filter_;                          // D
   std::unique_ptr<LinearSolver> mass_solver_;
 
   Nodal<dim> force_;            // on the near nodes at the last kick, N

@@ -11,7 +11,8 @@ namespace ligament::md
 {
 namespace
 {
-/// The two roots with a positive imaginary part of b11 m^4 - 2 b16 m^3 + (2 b12 + b66) m^2 - 2 b26 m
+/// The two roots with a positive imaginary part of b11 m^4 - 2 b16 m^3 + (2 b12 + b66) m^2 - 2 b26
+/// m
 /// + b22 as eigenvalues of its companion matrix; b: compliance in plane strain.
 std::array<std::complex<double>, 2> upper_roots(const Eigen::Matrix3d &b)
 {

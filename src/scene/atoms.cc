@@ -146,9 +146,9 @@ std::string thermal_name(const Scene &scene)
 {
   const AtomsParameters &a = *scene.atoms;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.dimension,
-                     int(kind_of(scene)), int(a.potential), md::list_of_names(species_of(scene)), a.file, a.energy, a.distance,
-                     a.decay, a.mass, a.taper_begin, a.cutoff, a.temperature, a.seed,
-                     scene.specimen.thickness);
+                     int(kind_of(scene)), int(a.potential), md::list_of_names(species_of(scene)),
+                     a.file, a.energy, a.distance, a.decay, a.mass, a.taper_begin, a.cutoff,
+                     a.temperature, a.seed, scene.specimen.thickness);
 }
 
 /// Each further species for itself, so that the message is about its key.

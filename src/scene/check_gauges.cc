@@ -142,10 +142,11 @@ private:
                       "it is measured at a point, or averaged over a box",
                       box ? "remove one of them" : "give \"points\", or \"lower\" and \"upper\"");
     if (g_.kind == GaugeKind::stress && scene_.is_warm())
-      f_.warning(key_ + "/kind",
-                 fmt::format("\"kind\" in {} is \"stress\" beside a \"temperature\" of atoms", key_),
-                 "the share of their momentum in the stress is left out",
-                 "choose \"virial_stress\", unless that is meant");
+      f_.warning(
+          key_ + "/kind",
+          fmt::format("\"kind\" in {} is \"stress\" beside a \"temperature\" of atoms", key_),
+          "the share of their momentum in the stress is left out",
+          "choose \"virial_stress\", unless that is meant");
     if (point) {
       if (n_points(1, "it is measured at one point"))
         material_at(g_.points[0]);

@@ -19,16 +19,17 @@ public:
         is_coupled_(scene.far_field && scene.zone.extent == DiscreteZone::Extent::box)
   {
     if (is_coupled_)
-      keep_off_ = scene.coupling.overlap_cells * scene.far_field->cell_size +
-                  scene.atoms->disturbance;
+      keep_off_ =
+          scene.coupling.overlap_cells * scene.far_field->cell_size + scene.atoms->disturbance;
   }
 
   void check(const Substitution &s, const std::string &key)
   {
     if (s.balls.empty() && s.boxes.empty() && is_coupled_)
-      f_.error(key, fmt::format("{} has neither \"balls\" nor \"boxes\"", key),
-               "the whole crystal reaches into the overlap, which is of \"species\" in /atoms alone",
-               "add one of them");
+      f_.error(
+          key, fmt::format("{} has neither \"balls\" nor \"boxes\"", key),
+          "the whole crystal reaches into the overlap, which is of \"species\" in /atoms alone",
+          "add one of them");
     for (std::size_t b = 0; b < s.balls.size(); ++b) {
       const Hole &ball = s.balls[b];
       Notch box;

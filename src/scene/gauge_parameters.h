@@ -25,9 +25,9 @@ enum class GaugeKind
 
 inline const std::vector<std::string> &words(GaugeKind)
 {
-  static const std::vector<std::string> list = {"distance", "opening",    "strain",    "stress",
-                                                "force",    "j_integral", "crack_tip", "fragments",
-                                                "virial_stress", "open_crack"};
+  static const std::vector<std::string> list = {
+      "distance",   "opening",   "strain",    "stress",        "force",
+      "j_integral", "crack_tip", "fragments", "virial_stress", "open_crack"};
   return list;
 }
 

@@ -32,7 +32,7 @@ private:
   double smoothing_;      // s
   NearPlaces<dim> faces_; // by their centres; the first one is the start
   DisjointSets sets_{0};
-  std::vector<double> farthest_; // m, of the faces below a root
+  std::vector<double> farthest_;                 // m, of the faces below a root
   std::vector<std::pair<double, double>> steps_; // time and position since then
   std::size_t n_broken_ = 0;
 };

@@ -1,5 +1,5 @@
-// Ends of a crack by the atoms that lack neighbours: of a cut, of rows that have opened, in the heat,
-// and beside slip.
+// Ends of a crack by the atoms that lack neighbours: of a cut, of rows that have opened, in the
+// heat, and beside slip.
 #include "src/simulation/gauges/gauge_set.h"
 #include "tests/support/atom_bodies.h"
 

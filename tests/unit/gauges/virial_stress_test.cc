@@ -44,8 +44,8 @@ Tensor<dim> some_gradient()
 
 /// By how much rounding may change a component of the stress of an atom of the crystal under this
 /// deformation. Places have coordinates up to `size` and displacements below that: a bond, a
-/// difference of two sums of both, is off by 4 epsilon size per component at most. Through it so are
-/// the density, the tension t = phi' + 2 F' f' and the product t n (x) r; of the functions
+/// difference of two sums of both, is off by 4 epsilon size per component at most. Through it so
+/// are the density, the tension t = phi' + 2 F' f' and the product t n (x) r; of the functions
 /// themselves, the tens of terms and their sums, 64 epsilon is taken of every term's size.
 template <int dim>
 double rounding_of_stress(const md::Crystal<dim> &crystal, const Tensor<dim> &gradient, double size)
@@ -86,8 +86,8 @@ void expect_crystals_own(const std::string &text, const std::vector<std::string>
   const auto crystal = crystal_of<dim>(unit.scene);
   const Tensor<dim> f = Tensor<dim>::Identity() + gradient;
   const Tensor<dim> expected = crystal.stress(gradient) * f.transpose() / f.determinant();
-  const double size = *std::max_element(unit.scene.specimen.size.begin(),
-                                        unit.scene.specimen.size.begin() + dim);
+  const double size =
+      *std::max_element(unit.scene.specimen.size.begin(), unit.scene.specimen.size.begin() + dim);
   const double error = rounding_of_stress<dim>(crystal, gradient, size);
   EXPECT_LT(error, 1e-9 * expected.cwiseAbs().maxCoeff()); // so that the bound says something
   const Tensor<dim> stress = read_tensor<dim>(unit.scene, unit.body);
@@ -98,8 +98,8 @@ TEST(VirialStress, OfHomogeneousStrainIsThatOfTheCrystal)
 {
   const std::string whole = R"(/gauges=[{"name": "s", "kind": "virial_stress"}])";
   expect_crystals_own<2>(plane_of_atoms, in_a_mesh({whole}));
-  // A body alone has surfaces: the box keeps off them by the range, 0.85 nm, or by twice that, 1.2 nm,
-  // since the embedding of neighbours enters.
+  // A body alone has surfaces: the box keeps off them by the range, 0.85 nm, or by twice that, 1.2
+  // nm, since the embedding of neighbours enters.
   expect_crystals_own<2>(plane_of_atoms, {R"(/gauges=[{"name": "s", "kind": "virial_stress",
                            "lower": ["-9 nm", "-8 nm"], "upper": ["3 nm", "9 nm"]}])"});
   expect_crystals_own<3>(copper_bar, {R"(/gauges=[{"name": "s", "kind": "virial_stress",
@@ -125,7 +125,8 @@ TEST(VirialStress, OfABoxInItsOwnAxes)
 
 /// Of the affine motion that fits places and values best, by orthogonal columns.
 template <int dim>
-Eigen::Matrix<double, dim + 1, dim> fit(const Eigen::MatrixXd &places, const Eigen::MatrixXd &values)
+Eigen::Matrix<double, dim + 1, dim> fit(const Eigen::MatrixXd &places,
+                                        const Eigen::MatrixXd &values)
 {
   Eigen::MatrixXd columns(places.rows(), dim + 1);
   columns << Eigen::VectorXd::Ones(places.rows()), places;
@@ -177,9 +178,9 @@ void expect_slope_of_energy(const std::string &text, const std::vector<std::stri
       const double step = 1e-4;
       const auto slope = [&](double s) { return (energy(s) - energy(-s)) / (2 * s); };
       const double fine = slope(step), coarse = slope(2 * step);
-      // The error of a difference goes with the square of the step, or, where bonds pass knots, with
-      // a lower power: it is below what halving the step changes. Rounding: tens of terms per atom,
-      // whose sizes are some depths.
+      // The error of a difference goes with the square of the step, or, where bonds pass knots,
+      // with a lower power: it is below what halving the step changes. Rounding: tens of terms per
+      // atom, whose sizes are some depths.
       const double rounding = 100 * epsilon * n * depth / step;
       EXPECT_LT(rounding + std::abs(fine - coarse), 1e-3 * volume * stress.norm());
       EXPECT_NEAR(volume * stress(i, j), fine, std::abs(fine - coarse) + rounding);
@@ -190,15 +191,15 @@ TEST(VirialStress, IsTheSlopeOfTheEnergyUnderStrain)
 {
   const std::string whole = R"(/gauges=[{"name": "s", "kind": "virial_stress"}])";
   expect_slope_of_energy<2>(
-      plane_of_atoms, {whole, R"(/specimen/cracks=[{"points": [["-5 nm", 0], ["4 nm", "1 nm"]]}])"});
+      plane_of_atoms,
+      {whole, R"(/specimen/cracks=[{"points": [["-5 nm", 0], ["4 nm", "1 nm"]]}])"});
   expect_slope_of_energy<3>(copper_bar, {whole});
 }
 
 // Heat: a run of a body at a temperature differs by the atoms' momentum alone.
 TEST(VirialStress, CountsTheMomentumOfHeat)
 {
-  AtomsOfScene<2> unit(plane_of_atoms,
-                       {R"(/gauges=[{"name": "s", "kind": "virial_stress"}])"});
+  AtomsOfScene<2> unit(plane_of_atoms, {R"(/gauges=[{"name": "s", "kind": "virial_stress"}])"});
   auto &atoms = unit.atoms();
   Scene warm = unit.scene;
   warm.atoms->temperature = 10;

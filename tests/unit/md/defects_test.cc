@@ -60,14 +60,14 @@ TEST(DefectsTest, VacanciesAreSeen)
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 12), 243);
 }
 
-// Sides are no cracks; half of the crystal moved away makes two faces. Close-packed ones lack just a
-// quarter of their neighbours.
+// Sides are no cracks; half of the crystal moved away makes two faces. Close-packed ones lack just
+// a quarter of their neighbours.
 TEST(DefectsTest, FacesOfCracksLackAQuarterOfTheirNeighbours)
 {
   // Whole periods along [1 -1 0] and [1 1 -2].
-  auto body = make_body<3>(foiles_copper(), CrystalKind::fcc,
-                           {4 / std::sqrt(2.), 4, 3 * std::sqrt(1.5)}, {true, false, true},
-                           orientation_of({1, -1, 0}, {1, 1, 1}));
+  auto body =
+      make_body<3>(foiles_copper(), CrystalKind::fcc, {4 / std::sqrt(2.), 4, 3 * std::sqrt(1.5)},
+                   {true, false, true}, orientation_of({1, -1, 0}, {1, 1, 1}));
   const auto force = body.force();
   const auto n_at_faces = [&] {
     const auto at = force.at_crack_faces(body.atoms);

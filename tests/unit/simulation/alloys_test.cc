@@ -3,11 +3,11 @@
 #include "core/check.h"
 #include "core/files.h"
 #include "md/table_file.h"
+#include "src/output/table.h"
 #include "src/output/xyz.h"
 #include "src/simulation/body_fields.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/simulation.h"
-#include "src/output/table.h"
 #include "tests/oracle/atom_oracle.h"
 #include "tests/support/atom_bodies.h"
 
@@ -35,8 +35,7 @@ const std::string substitutions = R"("substitutions": [
     {"species": "Cu", "balls": [{"centre": ["-1 nm", 0, 0], "radius": "0.4 nm"}]},
     {"species": "Ni", "share": 0.3,
      "boxes": [{"lower": ["0.5 nm", "-3 nm", "-1 nm"], "upper": ["3.5 nm", "3 nm", "1 nm"]}]}])";
-const std::string mixed =
-    R"(/atoms={"potential": "zhou", "species": "Cu", )" + substitutions + "}";
+const std::string mixed = R"(/atoms={"potential": "zhou", "species": "Cu", )" + substitutions + "}";
 
 TEST(Alloys, TakeTheSitesOfTheirRegionsLaterOnesFirst)
 {
@@ -187,13 +186,15 @@ std::array<double, 2> run(double step_fraction)
   std::filesystem::remove_all(folder.path);
   folder.create();
   std::FILE *quiet = std::fopen("/dev/null", "w");
-  const Scene scene = scene_of(copper_plane, {fmt::format("/time/step_fraction={}", step_fraction)});
+  const Scene scene =
+      scene_of(copper_plane, {fmt::format("/time/step_fraction={}", step_fraction)});
   const RunRecord record = Simulation<2>(scene, folder, quiet, false).run();
   std::fclose(quiet);
   EXPECT_EQ(record.status, "done") << record.reason;
   EXPECT_EQ(record.broken_bonds, 0);
   const Table history = read_csv(folder.history(), TableEnd::whole);
-  const auto residual = history.column("residual", "J"), discrete = history.column("kinetic_discrete", "J"),
+  const auto residual = history.column("residual", "J"),
+             discrete = history.column("kinetic_discrete", "J"),
              far = history.column("kinetic_far", "J");
   std::array<double, 2> largest = {};
   for (std::size_t k = 0; k < residual.size(); ++k) {
