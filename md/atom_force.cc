@@ -47,6 +47,7 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
 {
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);
+  whole_coordination_ = count_neighbours(atoms);
   body_.screen.apply(list_);
   reference_density_ = densities(atoms);
   reference_energy_ = whole_energy(atoms);

@@ -21,7 +21,7 @@ void refuse_other_laws(const Scene &scene, Findings &f)
        {"/material/fracture", "/material/plasticity", "/material/viscosity", "/material/friction"})
     refuse(key, "atoms bear and break as their potential says");
   if (!scene.inclusions.empty())
-    refuse("/inclusions", "a crystal is of one kind of atoms");
+    refuse("/inclusions", "atoms of other species are /atoms/substitutions");
   if (!scene.tools.empty())
     refuse("/tools", "atoms have no surface that a tool could touch");
   if (scene.time.rest_threshold > 0)

@@ -2,6 +2,7 @@
 #include "core/thermal_noise.h"
 #include "src/scene/atoms.h"
 #include "src/simulation/body_state.h"
+#include "src/simulation/gauges/gauge_set.h"
 #include "src/simulation/heat.h"
 #include "src/verification/bodies/atom_scene.h"
 #include "src/verification/bodies/unit_bodies.h"
@@ -58,8 +59,12 @@ struct TimeMean
 /// The bath on the overlap alone. After a quarter of the time, in which the nodes take their heat
 /// from the atoms; strain along the directions in which the body is free.
 template <int dim>
-std::vector<Result> free_body(const std::string &name, const Scene &scene, long n_steps)
+std::vector<Result> free_body(const std::string &name, Scene scene, long n_steps)
 {
+  GaugeParameters virial;
+  virial.name = "virial";
+  virial.kind = GaugeKind::virial_stress;
+  scene.gauges = {virial};
   UnitBody<dim> unit(scene);
   auto &body = unit.body;
   start_heat(scene, body, unit.log);
@@ -68,44 +73,56 @@ std::vector<Result> free_body(const std::string &name, const Scene &scene, long 
   const int n_free = dim - int(scene.specimen.periodic.size());
   const double kt = thermal_energy_of(scene);
   auto bodies = body.bodies();
-  std::array<TimeMean, 3> energy; // of zone, overlap and nodes, over kT
-  std::array<TimeMean, dim> strain;
+  std::array<TimeMean, 3> energy;           // of zone, overlap and nodes, over kT
+  std::array<TimeMean, dim> strain, stress; // the second over kT/V
+  GaugeSet<dim> gauges(scene, body);
+  const double pressure = kt / body.zone->state.volume[0];
   coupling::StepTime step{0, 0, body.dt};
   for (; step.step < first + n_blocks * per_block; ++step.step, step.time += body.dt) {
+    const long k = step.step - first;
+    const bool looks = k >= 0 && k % 10 == 0;
     body.coupler->compute_forces(bodies, step);
+    const auto virial_of_now = looks ? gauges.read(body, step.time) : std::vector<double>();
     body.coupler->kick(bodies, step);
     body.coupler->drift(bodies, step);
-    const long k = step.step - first;
-    if (k < 0 || k % 10 != 0)
+    if (!looks)
       continue;
     if (k % per_block == 0) {
       for (auto &mean : energy)
         mean.blocks.push_back(0);
-      for (auto &mean : strain)
-        mean.blocks.push_back(0);
+      for (auto *means : {&strain, &stress})
+        for (auto &mean : *means)
+          mean.blocks.push_back(0);
     }
     const double weight = 1 / double((per_block + 9) / 10);
     const auto e = body.coupler->thermal_energies(bodies);
     for (int part = 0; part < 3; ++part)
       energy[part].blocks.back() += weight * e[part] / kt;
     const auto h = mean_gradient(body);
-    for (int c = 0; c < n_free; ++c)
+    for (int c = 0; c < n_free; ++c) {
       strain[c].blocks.back() += weight * h(c, c);
+      stress[c].blocks.back() += weight * virial_of_now[c] / pressure;
+    }
   }
-  double mean_strain = 0, square = 0;
+  double mean_strain = 0, square = 0, mean_stress = 0, stress_square = 0;
   for (int c = 0; c < n_free; ++c) {
     mean_strain += strain[c].value() / n_free;
     square += std::pow(strain[c].error() / n_free, 2);
+    mean_stress += stress[c].value() / n_free;
+    stress_square += std::pow(stress[c].error() / n_free, 2);
   }
   return {{name + "/zone", std::abs(energy[0].value() - 1), 0.02, 0.005},
           {name + "/overlap", std::abs(energy[1].value() - 1), 0.02, 0.005},
           {name + "/nodes", std::abs(energy[2].value() - 1), 0.05, 0.01},
           {name + "/strain", std::abs(mean_strain), 2e-4, 3e-5},
+          // In kT/V, the share of momentum: C11 times the strain above is 0.1 to 0.15 of it.
+          {name + "/virial_stress", std::abs(mean_stress), 0.2, 0.05},
           // What these figures know themselves to.
           {name + "/zone_error", energy[0].error(), 0.01, {}},
           {name + "/overlap_error", energy[1].error(), 0.01, {}},
           {name + "/nodes_error", energy[2].error(), 0.025, {}},
-          {name + "/strain_error", std::sqrt(square), 1e-4, {}}};
+          {name + "/strain_error", std::sqrt(square), 1e-4, {}},
+          {name + "/virial_stress_error", std::sqrt(stress_square), 0.1, {}}};
 }
 
 /// Argon in the plane at 10 K.
