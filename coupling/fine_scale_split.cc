@@ -115,6 +115,11 @@ void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &b
     if (const auto law = force.finite_strain_law())
       bodies.far->set_strain_law(law);
   }
+  fast_.reset();
+  if (regime == Regime::nonlinear && parameters_.step_ratio > 1) {
+    fast_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_, dead_load_);
+    slow_force_ = slow_force_at(near_.displacement());
+  }
   regime_ = regime;
 }
 
@@ -145,45 +150,14 @@ void FineScaleSplit<dim>::compute_forces(Bodies<dim> &bodies, const StepTime &st
     const auto timing = this->timers_.scope(this->forces_);
     bodies.zone->compute_forces(step.time);
   }
+  if (fast_ && is_far_step(step) && !rests_) {
+    const auto timing = this->timers_.scope(this->coupling_);
+    slow_force_ = slow_force_at(near_.displacement());
+  }
   if (is_far_step(step) && !far_rests(bodies, step)) {
     const auto timing = this->timers_.scope(this->far_);
     bodies.far->compute_forces(step.time);
   }
-}
-
-template <int dim>
-void FineScaleSplit<dim>::compute_mesh_force(const StepTime &step, Nodal<dim> &force) const
-{
-  force.setZero(overlap_.n_nodes(), dim);
-  if (is_far_step(step)) // impulse over m steps (r-RESPA) on the border with the far field
-    near_.add_force(parameters_.step_ratio, force);
-  coarse_->subtract_only_forces(near_.displacement(), force);
-}
-
-template <int dim>
-auto FineScaleSplit<dim>::halfway(const Bodies<dim> &bodies, const StepTime &step) const -> Halfway
-{
-  const int m = parameters_.step_ratio;
-  Halfway near;
-  if (rests_) { // held: what pulls at it moves nothing
-    near.velocity = near.force = near.acceleration = near.far_force = near.far_acceleration =
-        Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-    return near;
-  }
-  compute_mesh_force(step, near.force);
-  fine_.add_forces(bodies.zone->state, near.force);
-  near.acceleration = near.force;
-  mass_solver_->solve(near.acceleration.data(), dim);
-  near.velocity = near_.velocity() + step.dt / 2 * near.acceleration;
-  if (m == 1)
-    return near;
-  near.far_force.setZero(overlap_.n_nodes(), dim);
-  near_.add_force(1, near.far_force);
-  near.far_acceleration = near.far_force;
-  mass_solver_->solve(near.far_acceleration.data(), dim);
-  near.force -= (m - 1) * near.far_force;
-  near.acceleration -= (m - 1) * near.far_acceleration;
-  return near;
 }
 
 template <int dim>
@@ -193,24 +167,6 @@ double FineScaleSplit<dim>::coarse_kinetic(const Halfway &near, double dt) const
   const Nodal<dim> momentum = mass_ * near.velocity;
   return 0.5 * near.velocity.cwiseProduct(momentum).sum() -
          dt * dt / 8 * near.force.cwiseProduct(near.acceleration).sum();
-}
-
-template <int dim>
-double FineScaleSplit<dim>::impulse_energy(const Bodies<dim> &bodies, const Halfway &near,
-                                           double dt) const
-{
-  const int m = parameters_.step_ratio;
-  if (m == 1)
-    return 0;
-  const auto &far = *bodies.far;
-  Components<dim> v = far.halfway_velocity(m * dt);
-  near_.write(near.velocity, v);
-  far.follow_masters(v);
-  // The kinetic energy of the far nodes lacks (m dt)^2/8 F M^-1 F already, not dt^2/8: 1/8 - 1/24.
-  const Nodal<dim> a = 2 * near.acceleration - near.far_acceleration;
-  return (m * m - 1) * dt * dt / 24 *
-         (4 * far.quadratic_form(v) + 2 * far.squared_force() -
-          near.far_force.cwiseProduct(a).sum());
 }
 
 template <int dim>
@@ -319,58 +275,6 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
   }
   fine_.write_velocities(near_.velocity(), zone.state);
   return loss;
-}
-
-// Between two impulses V swings about its mean: just before one it is behind by what the near
-// forces have taken back, just after it ahead by as much. The swing moves nothing and is left as it
-// is.
-template <int dim>
-double FineScaleSplit<dim>::damp_coarse_before_kick(double dt, double factor)
-{
-  const int m = parameters_.step_ratio;
-  swing_.setZero(overlap_.n_nodes(), dim);
-  undamped_ = swing_;
-  if (rests_)
-    return 0;
-  if (m > 1) {
-    near_.add_force((m - 1) * dt / 2, swing_);
-    mass_solver_->solve(swing_.data(), dim);
-  }
-  undamped_ = near_.velocity() + swing_;
-  near_.set_velocity(factor * undamped_ - swing_);
-  // The rest of it waits for the forces of the kick.
-  return (1 - factor * factor) / 2 * undamped_.cwiseProduct(Nodal<dim>(mass_ * undamped_)).sum();
-}
-
-template <int dim>
-double FineScaleSplit<dim>::damp_coarse_after_kick(double dt, double factor)
-{
-  if (rests_)
-    return 0;
-  const int m = parameters_.step_ratio;
-  Nodal<dim> force = force_; // near forces and the far field's, without its factor m
-  if (m > 1)
-    near_.add_force(1 - m, force);
-  const Nodal<dim> mean = near_.velocity() - swing_;
-  near_.set_velocity(factor * mean + swing_);
-  const double still = mean.cwiseProduct(Nodal<dim>(mass_ * mean)).sum();
-  return (1 - factor) / 2 *
-         ((1 + factor) * still + dt * (undamped_ - mean).cwiseProduct(force).sum());
-}
-
-// theory.md eq. (E5b)
-template <int dim>
-double FineScaleSplit<dim>::damped_impulse_energy(const Bodies<dim> &bodies, double dt,
-                                                  double factor) const
-{
-  const int m = parameters_.step_ratio;
-  if (m == 1)
-    return 0;
-  const auto &far = *bodies.far;
-  Components<dim> v = far.velocity;
-  near_.write(near_.velocity() - swing_, v);
-  far.follow_masters(v);
-  return (1 - std::pow(factor, 4)) * (m * m - 1) * dt * dt / 6 * far.quadratic_form(v);
 }
 
 template <int dim>

@@ -141,15 +141,22 @@ private:
   /// (E5), in J: eq. (E5b). After the kick.
   double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
   void make_coarse_energy(Regime regime, const Bodies<dim> &bodies);
-  /// Force on the near nodes at this step: near cells, and in the steps in which it acts the far
-  /// field's impulse; without what the particles hand over.
+  /// force += factor times what acts once per m steps: the far field's forces, and what the
+  /// nonlinear energy has beyond the corotated one. That is a small part of the stiffness and most
+  /// of the work, and as slow as the mesh.
+  void add_impulse(double factor, Nodal<dim> &force) const;
+  Nodal<dim> slow_force_at(const Nodal<dim> &u) const;
+  /// Its part of 1/2 v.K v in J, from the forces of now and dt later.
+  double slow_quadratic_form(const Nodal<dim> &v, double dt) const;
+  /// Force on the near nodes at this step: near cells, and in the steps in which it acts the
+  /// impulse; without what the particles hand over.
   void compute_mesh_force(const StepTime &step, Nodal<dim> &force) const;
   /// The near nodes half-way through kick and impulse, in a step in which the far field acts.
   struct Halfway
   {
     Nodal<dim> velocity;                    // V
     Nodal<dim> force, acceleration;         // F and M_c^-1 F; all that acts, the impulse as force
-    Nodal<dim> far_force, far_acceleration; // the far field's part of them
+    Nodal<dim> far_force, far_acceleration; // what of them acts once per m steps
   };
   Halfway halfway(const Bodies<dim> &bodies, const StepTime &step) const;
   /// Kinetic part of the invariant (E1) of the near nodes.
@@ -173,8 +180,10 @@ private:
   RigidFrames<dim> parts_;
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference
-  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_;  // M_c
-  ScalarMatrix<dim> filter_;                           // D
+  std::unique_ptr<CoarseEnergy<dim>> fast_; // of coarse_ what acts in every step; null: all
+  Nodal<dim> slow_force_;                   // the rest of it, in N
+  Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c
+  ScalarMatrix<dim> filter_;                          // D
   std::unique_ptr<LinearSolver> mass_solver_;
 
   Nodal<dim> force_;            // on the near nodes at the last kick, N

@@ -52,7 +52,7 @@ void FineScaleSplit<dim>::start_velocities(Bodies<dim> &bodies, const StepTime &
   const int m = parameters_.step_ratio;
   if (m > 1) {
     Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
-    near_.add_force(-(m - 1) * step.dt / 2, swing);
+    add_impulse(-(m - 1) * step.dt / 2, swing);
     mass_solver_->solve(swing.data(), dim);
     near_.add_velocity(1, swing);
   }

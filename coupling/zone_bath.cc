@@ -3,6 +3,7 @@
 #include "core/exact_sum.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace ligament::coupling
 {
@@ -12,6 +13,12 @@ ZoneBath<dim>::ZoneBath(const Overlap<dim> &overlap, int n_particles)
   for (int i = 0; i < n_particles; ++i)
     if (overlap.member_of_particle[i] < 0)
       particles_.push_back(i);
+}
+
+template <int dim>
+ZoneBath<dim>::ZoneBath(int n_particles) : particles_(n_particles)
+{
+  std::iota(particles_.begin(), particles_.end(), 0);
 }
 
 template <int dim>

@@ -12,6 +12,8 @@ class ZoneBath
 {
 public:
   ZoneBath(const Overlap<dim> &overlap, int n_particles);
+  /// On all particles.
+  explicit ZoneBath(int n_particles);
 
   /// v <- kept v + noise of thermal energy kT (J), after the kick of the step dt; stream 2.
   void exchange_heat(double kept, double thermal_energy, const core::ThermalNoise &noise, double dt,

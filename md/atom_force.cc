@@ -47,9 +47,10 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
 {
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);
+  whole_coordination_ = count_neighbours(atoms);
   body_.screen.apply(list_);
   reference_density_ = densities(atoms);
-  reference_energy_ = sum(energies(atoms));
+  reference_energy_ = whole_energy(atoms);
   std::vector<Bond<dim>> nearest;
   for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
     if (b.length < 1.05 * crystal.spacing())
@@ -183,11 +184,17 @@ std::vector<double> AtomForce<dim>::energy_changes(const Particles &atoms) const
 }
 
 template <int dim>
+double AtomForce<dim>::whole_energy(const Particles &atoms) const
+{
+  return body_.weight.empty() ? kernel_.energy(list_) : sum(energies(atoms));
+}
+
+template <int dim>
 double AtomForce<dim>::potential_energy(const Particles &atoms) const
 {
   update_list(atoms);
   const double bonds =
-      list_is_reference_ ? sum(energy_changes(atoms)) : sum(energies(atoms)) - reference_energy_;
+      list_is_reference_ ? sum(energy_changes(atoms)) : whole_energy(atoms) - reference_energy_;
   return bonds + loads_.energy(atoms);
 }
 
@@ -209,7 +216,7 @@ void AtomForce<dim>::set_energy_weights(const std::vector<double> &weights)
                     weights.size() == body_.species.size(),
                 "energy weights are set once, for all atoms, before these move");
   body_.weight = weights;
-  reference_energy_ = sum(energies(at_rest()));
+  reference_energy_ = whole_energy(at_rest());
 }
 
 template class AtomForce<2>;

@@ -92,10 +92,12 @@ public:
   {
     return parted_.parted();
   }
-  std::string symbol() const override
-  {
-    return crystal_.potential().species(crystal_.parameters().species).name;
-  }
+  /// Materials are species, 0 that of the crystal.
+  std::vector<std::string> symbols() const override;
+  int material(int atom) const override;
+  /// Those that lack a quarter of the crystal's neighbours, as atoms at any surface do; beside
+  /// dislocations and vacancies, and by heat, single ones are missing.
+  std::vector<char> at_crack_faces(const Particles &atoms) const override;
   /// Potential energy in J, centro-symmetry and coordination.
   std::vector<particles::OwnField> own_fields(const Particles &atoms) const override;
   Vector<dim> reaction(int load) const override { return loads_.reaction(load); }
@@ -121,6 +123,9 @@ public:
 private:
   /// m: farther apart, two atoms are no nearest neighbours.
   double shell_limit() const;
+  /// Within the shell limit; of an atom of the crystal, and of all as the list stands.
+  int coordination_of_crystal() const;
+  std::vector<int> count_neighbours(const Particles &atoms) const;
   /// Afterwards the list has all pairs within the cut-off. Returns whether the crystal is
   /// undisturbed: these are bonds of the rows.
   bool update_list(const Particles &atoms) const;
@@ -140,17 +145,20 @@ private:
   /// more than in the reference, bond by bond.
   std::vector<double> energies(const Particles &atoms) const;
   std::vector<double> energy_changes(const Particles &atoms) const;
+  /// Of all bonds of the list, which is up to date; J.
+  double whole_energy(const Particles &atoms) const;
   /// Vectors to the present neighbours of each atom within `reach`, in m.
   std::vector<std::vector<Vector<dim>>> neighbours(const Particles &atoms, double reach) const;
 
   Crystal<dim> crystal_;
   AtomBody<dim> body_;
   Components<dim> reference_; // m
-  AtomKernel kernel_;
+  mutable AtomKernel kernel_; // has work space of its own
   AtomLoads<dim> loads_;
   particles::CoupledEdge<dim> edge_;
   PartedBonds<dim> parted_;
   int looked_build_ = 0; // number of the list at the last look for parted bonds
+  std::vector<int> whole_coordination_; // at rest, of the body without its cuts
   std::vector<double> reference_density_;
   double reference_energy_ = 0; // J
   // Looking at a state may bring the list up to date. Which way a state goes depends on its

@@ -1,5 +1,7 @@
 #include "md/atom_kernel.h"
 
+#include "core/exact_sum.h"
+
 #include <algorithm>
 
 namespace ligament::md
@@ -75,46 +77,66 @@ void AtomKernel::prepare(const NeighbourList &list)
   force_.resize(n);
 }
 
-template <int dim>
-void AtomKernel::compute(NeighbourList &list, Components<dim> &force)
+KernelArrays AtomKernel::arrays(const NeighbourList &list)
 {
   prepare(list);
   std::fill(density_.begin(), density_.end(), 0.);
+  return {list.records().data(),
+          list.begin().data(),
+          list.neighbours().data(),
+          list.n_images() > 0 ? slot_of_image_.data() : nullptr,
+          list.n_atoms(),
+          table_.data(),
+          n_species_ > 1 ? row_.data() : nullptr,
+          n_species_ > 1 ? column_.data() : nullptr,
+          cutoff_ * cutoff_,
+          inverse_step_,
+          density_.data(),
+          force_.data(),
+          component(scratch_[0])};
+}
+
+PairBuffer &AtomKernel::buffer(int number)
+{
+  if (number >= int(buffers_.size()))
+    buffers_.resize(number + 1);
+  return buffers_[number];
+}
+
+template <int dim>
+void AtomKernel::compute(NeighbourList &list, Components<dim> &force)
+{
+  const KernelArrays k = arrays(list);
   std::fill(force_.begin(), force_.end(), AtomRecord{});
-  const KernelArrays arrays = {list.records().data(),
-                               list.begin().data(),
-                               list.neighbours().data(),
-                               list.n_images() > 0 ? slot_of_image_.data() : nullptr,
-                               list.n_atoms(),
-                               table_.data(),
-                               n_species_ > 1 ? row_.data() : nullptr,
-                               n_species_ > 1 ? column_.data() : nullptr,
-                               cutoff_ * cutoff_,
-                               inverse_step_,
-                               density_.data(),
-                               force_.data(),
-                               component(scratch_[0])};
   const KernelPasses passes = kernel_passes();
   const auto find_slopes = [&](int b) {
     if (embedding_.empty())
       return;
-    for (int s = blocks_[b].first; s < blocks_[b].last; ++s) {
-      const int a = species_.empty() ? 0 : species_[list.order()[s]];
-      list.set_extra(s, -inverse_step_ * embedding_[a](density_[s]).slope);
-    }
+    for (int s = blocks_[b].first; s < blocks_[b].last; ++s)
+      list.set_extra(s, -inverse_step_ * embedding_of(list, s)(density_[s]).slope);
     for (int m = image_begin_[b]; m < image_begin_[b + 1]; ++m)
       list.set_extra(list.n_atoms() + images_[m], list.records()[slot_of_image_[images_[m]]].extra);
   };
-  schedule_.run(
-      [&](int b, int buffer) {
-        if (buffer >= int(buffers_.size()))
-          buffers_.resize(buffer + 1);
-        passes.first(arrays, blocks_[b], buffers_[buffer]);
-      },
-      find_slopes, [&](int b, int buffer) { passes.second(arrays, blocks_[b], buffers_[buffer]); });
+  schedule_.run([&](int b, int number) { passes.first(k, blocks_[b], buffer(number)); },
+                find_slopes,
+                [&](int b, int number) { passes.second(k, blocks_[b], buffer(number)); });
   for (int s = 0; s < list.n_atoms(); ++s)
     for (int c = 0; c < dim; ++c)
       force[c][list.order()[s]] = component(force_[s])[c];
+}
+
+double AtomKernel::energy(const NeighbourList &list)
+{
+  const KernelArrays k = arrays(list);
+  const KernelPasses passes = kernel_passes();
+  core::ExactSum sum;
+  for (const SlotBlock &block : blocks_) {
+    passes.energies(k, block, buffer(0));
+    sum.add(buffer(0).energy);
+  }
+  for (int s = 0; s < list.n_atoms() && !embedding_.empty(); ++s)
+    sum.add(embedding_of(list, s)(density_[s]).value);
+  return sum.value();
 }
 
 template void AtomKernel::compute<2>(NeighbourList &, Components<2> &);

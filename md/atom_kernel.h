@@ -18,6 +18,7 @@ struct PairBuffer
   std::vector<double> slope;       // (df/dt)/r of the density at the slot, per m
   std::vector<double> other_slope; // at the other; not where all are of one species
   std::vector<int> row_end;        // per slot: where its pairs end
+  double energy = 0;               // J, of the pairs, where it is asked for
 };
 
 /// Slots that go through the passes together.
@@ -42,11 +43,12 @@ struct KernelArrays
 };
 
 /// The first pass: pairs of a block in range, their functions, and what they add to densities. The
-/// second: their forces, where all F' are known.
+/// second: their forces, where all F' are known. `energies` is the first one and finds the energy
+/// of the pairs, too.
 using KernelPass = void (*)(const KernelArrays &, const SlotBlock &, PairBuffer &);
 struct KernelPasses
 {
-  KernelPass first, second;
+  KernelPass first, second, energies;
 };
 /// Those of the instruction set at hand.
 KernelPasses kernel_passes();
@@ -61,9 +63,17 @@ public:
   /// Overwrites the forces of all atoms by those at the list's places.
   template <int dim>
   void compute(NeighbourList &list, Components<dim> &force);
+  /// Of pairs and embeddings at the list's places, J.
+  double energy(const NeighbourList &list);
 
 private:
   void prepare(const NeighbourList &list);
+  KernelArrays arrays(const NeighbourList &list);
+  const Spline &embedding_of(const NeighbourList &list, int slot) const
+  {
+    return embedding_[species_.empty() ? 0 : species_[list.order()[slot]]];
+  }
+  PairBuffer &buffer(int number);
 
   std::vector<PairPiece> table_;
   std::vector<int> species_; // of each atom; empty: all are of the first of those that there are

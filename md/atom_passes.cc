@@ -218,7 +218,7 @@ int rounded(int n)
   return (n + 2 * lanes - 1) / lanes * lanes;
 }
 
-template <bool has_several>
+template <bool has_several, bool sums_energy>
 void first_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
   const D d;
@@ -233,6 +233,7 @@ void first_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
   const V inverse_step = hn::Set(d, k.inverse_step),
           least = hn::Set(d, 1e-12 / (k.inverse_step * k.inverse_step));
   HWY_ALIGN std::int32_t piece[lanes], reverse_piece[lanes];
+  V energy = hn::Zero(d);
   for (int m = 0; m < n; m += lanes) {
     // Atoms at the same place have no direction: their force is 0.
     const V r2 = hn::Max(hn::LoadU(d, pull + m), least), inverse = inverse_root(r2),
@@ -248,11 +249,16 @@ void first_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
     }
     hn::Store(whole, di, piece);
     const ValueSlope f = cubic(load_columns(k.table[0].density, 8, piece), t);
-    const V p = parabola(load_columns(k.table[0].pull, 8, piece), t);
+    const Columns pair = load_columns(k.table[0].pull, 8, piece);
+    const V p = parabola(pair, t);
+    if constexpr (sums_energy) // lanes without a pair are in the piece of zeros
+      energy = hn::Add(energy, pair_energy(pair, t, k.inverse_step));
     hn::StoreU(f.value, d, values + m);
     hn::StoreU(hn::Mul(f.slope, inverse), d, slope + m);
     hn::StoreU(hn::Mul(p, inverse), d, pull + m);
   }
+  if constexpr (sums_energy)
+    q.energy = hn::GetLane(hn::SumOfLanes(d, energy));
   const std::int32_t *const other = others(k, q);
   int m = 0;
   for (int s = block.first; s < block.last; ++s) {
@@ -305,7 +311,12 @@ void second_pass_of(const KernelArrays &k, const SlotBlock &block, PairBuffer &q
 
 void first_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 {
-  k.row ? first_pass_of<true>(k, block, q) : first_pass_of<false>(k, block, q);
+  k.row ? first_pass_of<true, false>(k, block, q) : first_pass_of<false, false>(k, block, q);
+}
+
+void energy_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
+{
+  k.row ? first_pass_of<true, true>(k, block, q) : first_pass_of<false, true>(k, block, q);
 }
 
 void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
@@ -315,7 +326,7 @@ void second_pass(const KernelArrays &k, const SlotBlock &block, PairBuffer &q)
 
 KernelPasses choose_passes()
 {
-  return {&first_pass, &second_pass};
+  return {&first_pass, &second_pass, &energy_pass};
 }
 } // namespace ligament::md::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -113,16 +113,61 @@ std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &atoms) cons
 }
 
 template <int dim>
+int AtomForce<dim>::coordination_of_crystal() const
+{
+  const CrystalKind kind = crystal_.parameters().kind;
+  return kind == CrystalKind::triangular ? 6 : kind == CrystalKind::fcc ? 12 : 14;
+}
+
+template <int dim>
+std::vector<int> AtomForce<dim>::count_neighbours(const Particles &atoms) const
+{
+  std::vector<int> numbers(atoms.size(), 0);
+  const double reach = shell_limit();
+  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+    numbers[b.i] += b.length < reach;
+    numbers[b.j] += b.length < reach;
+  });
+  return numbers;
+}
+
+template <int dim>
 std::vector<int> AtomForce<dim>::coordination(const Particles &atoms) const
 {
-  std::vector<int> numbers;
-  for (const auto &near : neighbours(atoms, shell_limit()))
-    numbers.push_back(int(near.size()));
-  for (const int i : edge_.open) {
-    const CrystalKind kind = crystal_.parameters().kind;
-    numbers[i] = kind == CrystalKind::triangular ? 6 : kind == CrystalKind::fcc ? 12 : 14;
-  }
+  update_list(atoms);
+  std::vector<int> numbers = count_neighbours(atoms);
+  for (const int i : edge_.open)
+    numbers[i] = coordination_of_crystal();
   return numbers;
+}
+
+template <int dim>
+std::vector<char> AtomForce<dim>::at_crack_faces(const Particles &atoms) const
+{
+  const std::vector<int> numbers = coordination(atoms);
+  std::vector<char> at(atoms.size());
+  for (int i = 0; i < atoms.size(); ++i)
+    at[i] = 4 * (whole_coordination_[i] - numbers[i]) >= coordination_of_crystal();
+  return at;
+}
+
+template <int dim>
+std::vector<std::string> AtomForce<dim>::symbols() const
+{
+  const Potential &potential = crystal_.potential();
+  const int own = crystal_.parameters().species;
+  std::vector<std::string> names = {potential.species(own).name};
+  for (int a = 0; a < potential.n_species(); ++a)
+    if (a != own)
+      names.push_back(potential.species(a).name);
+  return names;
+}
+
+template <int dim>
+int AtomForce<dim>::material(int atom) const
+{
+  const int a = body_.species[atom], own = crystal_.parameters().species;
+  return a == own ? 0 : a < own ? a + 1 : a;
 }
 
 template <int dim>
@@ -170,6 +215,10 @@ void AtomForce<dim>::load(const core::State &state, const core::Names &names,
   template double AtomForce<dim>::shell_limit() const;                                             \
   template std::vector<double> AtomForce<dim>::centro_symmetry(const Particles &) const;           \
   template std::vector<int> AtomForce<dim>::coordination(const Particles &) const;                 \
+  template std::vector<int> AtomForce<dim>::count_neighbours(const Particles &) const;             \
+  template std::vector<char> AtomForce<dim>::at_crack_faces(const Particles &) const;              \
+  template std::vector<std::string> AtomForce<dim>::symbols() const;                               \
+  template int AtomForce<dim>::material(int) const;                                                \
   template std::vector<particles::OwnField> AtomForce<dim>::own_fields(const Particles &) const;   \
   template void AtomForce<dim>::for_each_face(                                                     \
       const Particles &, const std::function<void(const particles::FaceView<dim> &)> &,            \

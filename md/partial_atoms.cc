@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ligament::md
 {
@@ -40,6 +41,7 @@ void PartialAtoms<dim>::lay_out()
       places_[c].push_back(p.reference[c]);
     share_.push_back(p.share);
     tilts_.push_back(p.tilt_i + p.tilt_j);
+    rest_.push_back(p.reference.norm());
   };
   for (const SharedPair &p : pairs_)
     add_pair(p);
@@ -73,22 +75,32 @@ PartialArrays PartialAtoms<dim>::arrays()
   k.slope = pair_slope_.data();
   k.density = density_.data();
   k.force = force_.data();
+  k.rest = rest_.data();
+  k.end = double(table_.size() - 1);
+  k.energy = pair_energy_.data();
   return k;
+}
+
+template <int dim>
+void PartialAtoms<dim>::read_displacements(const particles::Particles<dim> &atoms)
+{
+  for (int i = 0; i < int(atoms_.size()); ++i) {
+    for (int c = 0; c < dim; ++c)
+      atom_records_[4 * i + c] = atoms.displacement[c][i];
+    atom_records_[4 * i + 3] = 0;
+  }
 }
 
 template <int dim>
 void PartialAtoms<dim>::compute_forces(particles::Particles<dim> &atoms)
 {
   if (!is_of_one_kind_ || atoms_.empty()) {
-    compute(atoms);
+    change_densities_plainly(atoms);
+    compute_plainly(atoms);
     return;
   }
   const int n = int(atoms_.size());
-  for (int i = 0; i < n; ++i) {
-    for (int c = 0; c < dim; ++c)
-      atom_records_[4 * i + c] = atoms.displacement[c][i];
-    atom_records_[4 * i + 3] = 0;
-  }
+  read_displacements(atoms);
   std::fill(force_.begin(), force_.end(), 0.);
   const PartialArrays k = arrays();
   if (potential_.has_embedding()) {
@@ -108,6 +120,17 @@ void PartialAtoms<dim>::compute_forces(particles::Particles<dim> &atoms)
   }
 }
 
+// What pairs and tilts have gained since rest; density_ becomes what densities have.
+template <int dim>
+double PartialAtoms<dim>::change_densities(const particles::Particles<dim> &atoms)
+{
+  read_displacements(atoms);
+  std::fill(density_.begin(), density_.end(), 0.);
+  pair_energy_.fill(0);
+  (potential_.has_embedding() ? passes_.changes : passes_.pair_changes)(arrays());
+  return std::accumulate(pair_energy_.begin(), pair_energy_.end(), 0.);
+}
+
 template <int dim>
 Bond<dim> PartialAtoms<dim>::bond_of(const SharedPair &p,
                                      const particles::Particles<dim> &atoms) const
@@ -125,21 +148,27 @@ Bond<dim> PartialAtoms<dim>::bond_of(const SharedPair &p,
 template <int dim>
 double PartialAtoms<dim>::compute(particles::Particles<dim> &atoms)
 {
-  const double energy = change_densities(atoms);
-  if (is_of_one_kind_)
+  const bool is_fast = is_of_one_kind_ && !atoms_.empty();
+  double energy = is_fast ? change_densities(atoms) : change_densities_plainly(atoms);
+  for (int i = 0; i < int(atoms_.size()) && potential_.has_embedding(); ++i)
+    if (const SharedAtom &a = atoms_[i]; a.share != 0)
+      energy +=
+          a.share * (potential_.embedding_spline(a.species).change(rest_density_[i], density_[i]) -
+                     a.rest_slope * density_[i]);
+  if (is_fast)
     compute_forces(atoms);
   else
     compute_plainly(atoms);
   return energy;
 }
 
-// To be followed by compute_plainly where that finds the forces; returns the energy.
+// The same by loops, to be followed by compute_plainly where that finds the forces.
 template <int dim>
-double PartialAtoms<dim>::change_densities(const particles::Particles<dim> &atoms)
+double PartialAtoms<dim>::change_densities_plainly(const particles::Particles<dim> &atoms)
 {
   const int n = int(atoms_.size());
   double energy = 0;
-  denser_.assign(n, 0.);
+  density_.assign(n, 0.);
   slope_.assign(n, 0.);
   for (const SharedPair &p : pairs_) {
     const Bond<dim> b = bond_of(p, atoms);
@@ -153,20 +182,14 @@ double PartialAtoms<dim>::change_densities(const particles::Particles<dim> &atom
       const double at_i = potential_.density_spline(s, t).change(from, longer),
                    at_j = s == t ? at_i : potential_.density_spline(t, s).change(from, longer);
       energy += p.tilt_i * at_i + p.tilt_j * at_j;
-      denser_[p.i] += at_i;
-      denser_[p.j] += at_j;
+      density_[p.i] += at_i;
+      density_[p.j] += at_j;
     }
   }
-  for (int i = 0; i < n; ++i) {
-    const SharedAtom &a = atoms_[i];
-    if (a.share == 0)
-      continue;
-    energy +=
-        a.share * (potential_.embedding_spline(a.species).change(rest_density_[i], denser_[i]) -
-                   a.rest_slope * denser_[i]);
-    slope_[i] = a.share * (potential_.embedding(a.species, rest_density_[i] + denser_[i]).slope -
-                           a.rest_slope);
-  }
+  for (int i = 0; i < n; ++i)
+    if (const SharedAtom &a = atoms_[i]; a.share != 0)
+      slope_[i] = a.share * (potential_.embedding(a.species, rest_density_[i] + density_[i]).slope -
+                             a.rest_slope);
   return energy;
 }
 

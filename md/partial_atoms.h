@@ -41,7 +41,9 @@ public:
 
 private:
   Bond<dim> bond_of(const SharedPair &p, const particles::Particles<dim> &atoms) const;
+  void read_displacements(const particles::Particles<dim> &atoms);
   double change_densities(const particles::Particles<dim> &atoms);
+  double change_densities_plainly(const particles::Particles<dim> &atoms);
   void compute_plainly(particles::Particles<dim> &atoms) const;
   void lay_out();
   PartialArrays arrays();
@@ -50,15 +52,17 @@ private:
   std::vector<SharedPair> pairs_;
   std::vector<SharedAtom> atoms_;
   std::vector<double> rest_density_;
-  std::vector<double> denser_, slope_; // rho less that at rest; s (F' less that at rest)
+  std::vector<double> density_; // rho, or less that at rest
+  std::vector<double> slope_;   // s (F' less that at rest)
 
   // Of vectors of pairs, those in range at rest first.
   bool is_of_one_kind_ = false;
   PartialPasses passes_;
   std::vector<PairPiece> table_;
   std::vector<int> i_, j_;
-  std::array<std::vector<double>, 3> places_; // m
-  std::vector<double> share_, tilts_, pull_, pair_slope_;
-  std::vector<double> atom_records_, density_, force_;
+  std::array<std::vector<double>, 3> places_;                    // m
+  std::vector<double> share_, tilts_, rest_, pull_, pair_slope_; // rest: distance, m
+  std::vector<double> atom_records_, force_;
+  std::array<double, 8> pair_energy_ = {}; // J
 };
 } // namespace ligament::md

@@ -23,6 +23,9 @@ struct PartialArrays
   double *pull, *slope;                  // of pairs, between the passes: phi'/r in N/m, f'/r
   double *density;                       // of atoms
   double *force;                         // of atoms, 4 numbers each, N; to be added to
+  const double *rest;                    // distances at rest, m
+  double end;                            // cut-off over the table's step
+  double *energy;                        // 8 numbers, whose sum is that of pairs and tilts, J
 };
 
 struct PartialPasses
@@ -30,6 +33,9 @@ struct PartialPasses
   using Pass = void (*)(const PartialArrays &);
   /// Densities and what lies between; forces of that. Without embedding: forces.
   Pass first, second, pairs;
+  /// Energy less that at rest, and into `density` what that is more than at rest. Without
+  /// embedding: energy.
+  Pass changes, pair_changes;
 };
 /// Those of the instruction set at hand.
 template <int dim>

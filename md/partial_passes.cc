@@ -30,6 +30,20 @@ struct LanePairs
     tilts = hn::Add(hn::LoadU(d, k.tilts + p), hn::Add(from.d, to.d));
   }
 
+  /// Squared distances less those at rest, m^2, with the digits of small displacements.
+  HWY_INLINE V stretched(const PartialArrays &k, int p) const
+  {
+    const D d;
+    const Columns from = load_columns(k.atoms, 4, k.i + p), to = load_columns(k.atoms, 4, k.j + p);
+    const V there[3] = {to.a, to.b, to.c}, here[3] = {from.a, from.b, from.c};
+    V sum = hn::Zero(d);
+    for (int c = 0; c < dim; ++c) {
+      const V moved = hn::Sub(there[c], here[c]);
+      sum = hn::MulAdd(moved, hn::Add(x[c], hn::LoadU(d, k.reference[c] + p)), sum);
+    }
+    return sum;
+  }
+
   HWY_INLINE bool are_far(const PartialArrays &k) const
   {
     return hn::AllTrue(D(), hn::Ge(r2, hn::Set(D(), k.cutoff2)));
@@ -130,13 +144,78 @@ void pair_pass(const PartialArrays &k)
   }
 }
 
+/// What functions of the distance have gained between two places of the table, in its steps: within
+/// a piece as a product with the way, which keeps the digits of a small one.
+struct LaneGains
+{
+  V from, to, from_whole, to_whole; // t in the pieces; their numbers
+  HWY_ALIGN std::int32_t from_piece[lanes], to_piece[lanes];
+
+  HWY_INLINE LaneGains(V first, V last)
+  {
+    const hn::Rebind<std::int32_t, D> di;
+    from_whole = hn::Trunc(first);
+    to_whole = hn::Trunc(last);
+    from = hn::Sub(first, from_whole);
+    to = hn::Sub(last, to_whole);
+    hn::Store(hn::DemoteTo(di, from_whole), di, from_piece);
+    hn::Store(hn::DemoteTo(di, to_whole), di, to_piece);
+  }
+
+  /// Of a cubic a + t (b + t (c + t d)) per piece.
+  HWY_INLINE V of(const Columns &first, const Columns &last, V way) const
+  {
+    const V sum = hn::Add(from, to), squares = hn::MulAdd(from, sum, hn::Mul(to, to)),
+            within = hn::Mul(way, hn::MulAdd(last.d, squares, hn::MulAdd(last.c, sum, last.b))),
+            across = hn::Sub(cubic(last, to).value, cubic(first, from).value);
+    return hn::IfThenElse(hn::Eq(from_whole, to_whole), within, across);
+  }
+};
+
+template <int dim, bool embedded>
+void change_pass(const PartialArrays &k)
+{
+  const D d;
+  V energy = hn::Zero(d);
+  for (int p = 0; p < k.n_pairs; p += lanes) {
+    const LanePairs<dim> pairs(k, p);
+    const V rest = hn::LoadU(d, k.rest + p), step = hn::Set(d, k.inverse_step),
+            end = hn::Set(d, k.end);
+    const V longer =
+        hn::Div(pairs.stretched(k, p), hn::Add(rest, hn::Sqrt(pairs.r2))); // all digits
+    const V at_rest = hn::Mul(rest, step), first = hn::Min(at_rest, end),
+            last = hn::Min(hn::MulAdd(longer, step, at_rest), end), way = hn::Sub(last, first);
+    if (hn::AllTrue(d, hn::Eq(way, hn::Zero(d))))
+      continue;
+    const LaneGains gains(first, last);
+    const V pair =
+        gains.of(pair_cubic(load_columns(k.table[0].pull, 8, gains.from_piece), k.inverse_step),
+                 pair_cubic(load_columns(k.table[0].pull, 8, gains.to_piece), k.inverse_step), way);
+    energy = hn::MulAdd(hn::LoadU(d, k.share + p), pair, energy);
+    if constexpr (embedded) {
+      const V gain = gains.of(load_columns(k.table[0].density, 8, gains.from_piece),
+                              load_columns(k.table[0].density, 8, gains.to_piece), way);
+      energy = hn::MulAdd(hn::LoadU(d, k.tilts + p), gain, energy);
+      HWY_ALIGN double denser[lanes];
+      hn::Store(gain, d, denser);
+      for (int l = 0; l < lanes; ++l) {
+        k.density[k.i[p + l]] += denser[l];
+        k.density[k.j[p + l]] += denser[l];
+      }
+    }
+  }
+  hn::StoreU(energy, d, k.energy);
+}
+
 PartialPasses choose_partial_2d()
 {
-  return {&first_pass<2>, &second_pass<2>, &pair_pass<2>};
+  return {&first_pass<2>, &second_pass<2>, &pair_pass<2>, &change_pass<2, true>,
+          &change_pass<2, false>};
 }
 PartialPasses choose_partial_3d()
 {
-  return {&first_pass<3>, &second_pass<3>, &pair_pass<3>};
+  return {&first_pass<3>, &second_pass<3>, &pair_pass<3>, &change_pass<3, true>,
+          &change_pass<3, false>};
 }
 } // namespace ligament::md::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -99,6 +99,20 @@ HWY_INLINE V parabola(const Columns &c, V t)
 {
   return hn::MulAdd(hn::MulAdd(c.c, t, c.b), t, c.a);
 }
+
+/// phi as a cubic of t, from what the table has of it.
+HWY_INLINE Columns pair_cubic(const Columns &pull, double inverse_step)
+{
+  const D d;
+  const double step = -1 / inverse_step;
+  return {pull.d, hn::Mul(hn::Set(d, step), pull.a), hn::Mul(hn::Set(d, step / 2), pull.b),
+          hn::Mul(hn::Set(d, step / 3), pull.c)};
+}
+HWY_INLINE V pair_energy(const Columns &pull, V t, double inverse_step)
+{
+  const Columns phi = pair_cubic(pull, inverse_step);
+  return hn::MulAdd(hn::MulAdd(hn::MulAdd(phi.d, t, phi.c), t, phi.b), t, phi.a);
+}
 } // namespace ligament::md::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -97,6 +97,11 @@ public:
     return none;
   }
 
+  /// Of all particles, whether they lie at the faces of a crack that stands open at present, initial
+  /// ones among them: they lack neighbours that they would have in the body without cracks. Empty:
+  /// the force does not count neighbours.
+  virtual std::vector<char> at_crack_faces(const Particles<dim> &) const { return {}; }
+
   /// Whether faces soften before they break.
   virtual bool softens() const { return false; }
   /// When a face last began to do so, in s; below 0 when none has.
@@ -146,8 +151,8 @@ public:
   /// Number of a particle's material; 0: the one that it shares with the far field.
   virtual int material(int /*particle*/) const { return 0; }
 
-  /// Chemical symbol of what the particles are; empty: no atoms.
-  virtual std::string symbol() const { return ""; }
+  /// Chemical symbols of the materials, by their numbers; empty: no atoms.
+  virtual std::vector<std::string> symbols() const { return {}; }
   /// Of all particles in their present state.
   virtual std::vector<OwnField> own_fields(const Particles<dim> &) const { return {}; }
 

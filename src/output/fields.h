@@ -37,7 +37,7 @@ struct ParticleFields
 {
   std::vector<double> reference; // m
   std::vector<Field> fields;
-  std::string symbol = {}; // chemical, of atoms; else empty
+  std::vector<std::string> symbols = {}; // chemical, of the materials of atoms; else empty
 
   std::size_t size() const { return reference.size() / 3; }
 };

@@ -265,7 +265,7 @@ void FieldSeries::write(const BodyState &state)
   const StateFiles files = FieldSeries::files(state, name);
   if (!files.particles.empty()) {
     write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
-    if (!state.particles.symbol.empty())
+    if (!state.particles.symbols.empty())
       write_atoms_xyz(fmt::format("{}/fields/atoms_{}.xyz", folder_.path, name), state.particles,
                       state.time);
     // Also while nothing is broken: a part must exist at every time or at none.

@@ -29,11 +29,12 @@ double unit_of(const Field &field)
 
 void write_atoms_xyz(const std::string &path, const ParticleFields &atoms, double time)
 {
-  const Field *displacement = find_field(atoms.fields, "displacement");
+  const Field *displacement = find_field(atoms.fields, "displacement"),
+              *material = find_field(atoms.fields, "material");
   std::string columns = "species:S:1:pos:R:3";
   std::vector<const Field *> written;
   for (const Field &field : atoms.fields)
-    if (&field != displacement && field.name != "radius" && field.name != "material") {
+    if (&field != displacement && &field != material && field.name != "radius") {
       written.push_back(&field);
       columns +=
           fmt::format(":{}:{}:{}", field.name == "velocity" ? "velo" : field.name,
@@ -43,7 +44,7 @@ void write_atoms_xyz(const std::string &path, const ParticleFields &atoms, doubl
                                  columns, time / 1e-12);
   auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < atoms.size(); ++i) {
-    text += atoms.symbol;
+    text += atoms.symbols[material ? std::size_t(material->values[i]) : 0];
     for (int c = 0; c < 3; ++c) {
       const double u = displacement ? displacement->values[3 * i + c] : 0;
       fmt::format_to(out, " {:.8f}", (atoms.reference[3 * i + c] + u) / angstrom);

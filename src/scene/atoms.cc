@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -18,13 +19,14 @@ namespace
 {
 const std::string section = "/atoms";
 
-md::Potential potential_of(const AtomsParameters &a)
+/// `names`: of the species that it shall have; potentials of one species know no names.
+md::Potential potential_of(const AtomsParameters &a, const std::vector<std::string> &names)
 {
   const md::Species species = {a.species.empty() ? "A" : a.species, a.mass};
   const double begin = a.taper_begin, end = a.cutoff;
   switch (a.potential) {
   case AtomPotential::zhou:
-    return md::zhou_johnson_wadley({a.species});
+    return md::zhou_johnson_wadley(names);
   case AtomPotential::plane_crystal:
     return md::plane_crystal(species, a.energy, a.distance);
   case AtomPotential::lennard_jones:
@@ -35,13 +37,26 @@ md::Potential potential_of(const AtomsParameters &a)
     return md::morse(species, a.energy, a.distance, a.decay,
                      {begin > 0 ? begin : 1.6 * a.distance, end > 0 ? end : 2.0 * a.distance});
   case AtomPotential::setfl:
-    return md::read_setfl(a.file, {a.species});
+    return md::read_setfl(a.file, names);
   case AtomPotential::setfl_fs:
-    return md::read_setfl_fs(a.file, {a.species});
+    return md::read_setfl_fs(a.file, names);
   case AtomPotential::funcfl:
     break;
   }
   return md::read_funcfl({a.file});
+}
+
+md::Potential read_potential(const AtomsParameters &a, const std::vector<std::string> &names)
+{
+  const std::string source = a.file.empty() ? section : section + "/file";
+  return core::at_key(source, "correct it or its path", [&] {
+    try {
+      return potential_of(a, names);
+    } catch (const core::EnvironmentError &error) {
+      throw core::KeyedError(source, "the \"file\" in /atoms cannot be read", error.what(),
+                             "check the path; it starts in the folder of the scene");
+    }
+  });
 }
 
 bool is_zero(const Point &p)
@@ -131,14 +146,27 @@ std::string thermal_name(const Scene &scene)
 {
   const AtomsParameters &a = *scene.atoms;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.dimension,
-                     int(kind_of(scene)), int(a.potential), a.species, a.file, a.energy, a.distance,
-                     a.decay, a.mass, a.taper_begin, a.cutoff, a.temperature, a.seed,
-                     scene.specimen.thickness);
+                     int(kind_of(scene)), int(a.potential), md::list_of_names(species_of(scene)),
+                     a.file, a.energy, a.distance, a.decay, a.mass, a.taper_begin, a.cutoff,
+                     a.temperature, a.seed, scene.specimen.thickness);
+}
+
+/// Each further species for itself, so that the message is about its key.
+void find_other_species(const Scene &scene)
+{
+  const AtomsParameters &a = *scene.atoms;
+  if (a.substitutions.empty())
+    return;
+  read_potential(a, {a.species});
+  for (std::size_t k = 0; k < a.substitutions.size(); ++k)
+    core::at_key(fmt::format("{}/substitutions/{}/species", section, k), "give another one",
+                 [&] { return potential_of(a, {a.substitutions[k].species}); });
 }
 
 template <int dim>
 void derive(Scene &scene)
 {
+  find_other_species(scene);
   if (scene.is_warm()) {
     if (scene.atoms->lattice_parameter == 0)
       scene.atoms->lattice_parameter =
@@ -155,6 +183,13 @@ void derive(Scene &scene)
   scene.material.youngs_modulus = constants.youngs_modulus;
   scene.material.poissons_ratio = constants.poissons_ratio;
   scene.material.density = constants.density;
+  const md::Potential &potential = crystal.potential();
+  AtomsParameters &a = *scene.atoms;
+  a.other_densities.clear();
+  for (int k = 1; k < potential.n_species(); ++k)
+    a.other_densities.push_back(potential.species(k).mass / crystal.volume());
+  // Neighbours have another density, and their neighbours other forces.
+  a.disturbance = potential.cutoff() * (potential.has_embedding() ? 2 : 1);
   fit_periods<dim>(crystal, scene);
 }
 
@@ -179,6 +214,9 @@ public:
         a.potential == AtomPotential::morse);
     key("taper_begin", false, a.taper_begin > 0, is_pair_);
     key("cutoff", false, a.cutoff > 0, is_pair_);
+    key("substitutions", false, !a.substitutions.empty(),
+        a.potential == AtomPotential::zhou || a.potential == AtomPotential::setfl ||
+            a.potential == AtomPotential::setfl_fs);
   }
 
 private:
@@ -195,7 +233,9 @@ private:
       f_.error(
           key,
           fmt::format("\"{}\" in {} has no meaning for the potential \"{}\"", name, section, word_),
-          "it follows from the potential", "remove it");
+          name == "substitutions" ? "it knows one species" : "it follows from the potential",
+          name == "substitutions" ? "remove it, or choose \"zhou\", \"setfl\" or \"setfl_fs\""
+                                  : "remove it");
   }
 
   Findings &f_;
@@ -238,16 +278,7 @@ md::Crystal<dim> crystal_of(const Scene &scene)
   const AtomsParameters &a = *scene.atoms;
   md::CrystalParameters<dim> p;
   p.kind = kind_of(scene);
-  const bool has_file = !a.file.empty();
-  const std::string source = has_file ? section + "/file" : section;
-  const md::Potential potential = core::at_key(source, "correct it or its path", [&] {
-    try {
-      return potential_of(a);
-    } catch (const core::EnvironmentError &error) {
-      throw core::KeyedError(source, "the \"file\" in /atoms cannot be read", error.what(),
-                             "check the path; it starts in the folder of the scene");
-    }
-  });
+  const md::Potential potential = read_potential(a, species_of(scene));
   p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
                                [&] { return orientation_of<dim>(scene); });
   p.thickness = dim == 2 ? scene.specimen.thickness : 1;
@@ -283,6 +314,16 @@ void resolve_atoms(Scene &scene, Findings *f)
     for (const char *key : {"/discrete_zone/spacing", "/material/youngs_modulus",
                             "/material/poissons_ratio", "/material/density"})
       f->derive(key);
+}
+
+std::vector<std::string> species_of(const Scene &scene)
+{
+  const AtomsParameters &a = *scene.atoms;
+  std::vector<std::string> names = {a.species};
+  for (const Substitution &s : a.substitutions)
+    if (std::find(names.begin(), names.end(), s.species) == names.end())
+      names.push_back(s.species);
+  return names;
 }
 
 double thermal_energy_of(const Scene &scene)

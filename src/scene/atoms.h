@@ -11,6 +11,9 @@ namespace ligament::program
 template <int dim>
 md::Crystal<dim> crystal_of(const Scene &scene);
 
+/// Names of the species of its atoms, that of the crystal first.
+std::vector<std::string> species_of(const Scene &scene);
+
 /// kT in J of a scene with "atoms"; 0: no heat.
 double thermal_energy_of(const Scene &scene);
 
@@ -24,6 +27,9 @@ md::CubicConstants thermal_constants_of(const Scene &scene);
 /// spacing, the constants of the material, and the lengths of periodic sides, which become whole
 /// periods of the lattice. Without findings the scene is known to be right.
 void resolve_atoms(Scene &scene, Findings *findings);
+
+/// Whether atoms of other species have sites, and keep off the overlap.
+void check_substitutions(const Scene &scene, Findings &findings);
 
 /// What a scene of atoms can't have beside them.
 void check_atoms(const Scene &scene, Findings &findings);

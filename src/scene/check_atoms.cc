@@ -21,7 +21,7 @@ void refuse_other_laws(const Scene &scene, Findings &f)
        {"/material/fracture", "/material/plasticity", "/material/viscosity", "/material/friction"})
     refuse(key, "atoms bear and break as their potential says");
   if (!scene.inclusions.empty())
-    refuse("/inclusions", "a crystal is of one kind of atoms");
+    refuse("/inclusions", "atoms of other species are /atoms/substitutions");
   if (!scene.tools.empty())
     refuse("/tools", "atoms have no surface that a tool could touch");
   if (scene.time.rest_threshold > 0)
@@ -82,25 +82,25 @@ void check_temperature(const Scene &scene, Findings &f)
                           const std::string &remedy) {
     f.error(at, what + " beside a \"temperature\" of atoms", reason, remedy);
   };
-  if (scene.zone.extent != DiscreteZone::Extent::box)
-    refuse(key, "no overlap", "the overlap's heat bath keeps the temperature",
-           "put the atoms inside a mesh, or remove it");
-  if (scene.coupling.gap_filter > 0)
+  if (scene.zone.extent == DiscreteZone::Extent::none)
+    refuse(key, "no atoms", "the mesh knows no heat", "give a discrete zone, or remove it");
+  const bool is_coupled = scene.zone.extent == DiscreteZone::Extent::box;
+  if (is_coupled && scene.coupling.gap_filter > 0)
     refuse("/coupling/gap_filter",
            fmt::format("\"gap_filter\" in /coupling is {}", scene.coupling.gap_filter),
            "it would cool the nodes, which have their temperature from the atoms", "give 0");
-  if (scene.coupling.regime == RegimeChoice::linear)
+  if (is_coupled && scene.coupling.regime == RegimeChoice::linear)
     refuse("/coupling/regime", "\"regime\" in /coupling is \"linear\"",
            "the load of thermal motion must turn with the body",
            "choose \"automatic\", which is \"corotated\" then");
-  if (scene.coupling.regime == RegimeChoice::nonlinear)
+  if (is_coupled && scene.coupling.regime == RegimeChoice::nonlinear)
     refuse("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\"",
            "cells under finite strain do not know the stress that heat makes",
            "choose \"automatic\", which is \"corotated\" then");
   if (!scene.initial_motion.empty())
     refuse("/initial_motion", "\"initial_motion\"", "atoms start with the velocities of their heat",
            "remove one of the two");
-  if (scene.coupling.fine_damper == 0)
+  if (is_coupled && scene.coupling.fine_damper == 0)
     f.warning(
         "/coupling/fine_damper",
         "\"fine_damper\" in /coupling is 0 beside a \"temperature\" of atoms",

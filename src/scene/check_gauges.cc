@@ -52,6 +52,10 @@ public:
       return crack_tip();
     case GaugeKind::fragments:
       return fragments();
+    case GaugeKind::virial_stress:
+      return virial_stress();
+    case GaugeKind::open_crack:
+      return open_crack();
     }
   }
 
@@ -137,16 +141,25 @@ private:
                       fmt::format("{} \"points\" and a box in {}", box ? "both" : "neither", key_),
                       "it is measured at a point, or averaged over a box",
                       box ? "remove one of them" : "give \"points\", or \"lower\" and \"upper\"");
+    if (g_.kind == GaugeKind::stress && scene_.is_warm())
+      f_.warning(
+          key_ + "/kind",
+          fmt::format("\"kind\" in {} is \"stress\" beside a \"temperature\" of atoms", key_),
+          "the share of their momentum in the stress is left out",
+          "choose \"virial_stress\", unless that is meant");
     if (point) {
       if (n_points(1, "it is measured at one point"))
         material_at(g_.points[0]);
       return;
     }
-    Point middle = {0, 0, 0};
+    box_in_body();
+  }
+
+  void box_in_body()
+  {
     for (int c = 0; c < scene_.dimension; ++c) {
       const double lower = std::max(g_.lower[c], specimen_.lower[c]),
                    upper = std::min(g_.upper[c], specimen_.upper[c]);
-      middle[c] = (lower + upper) / 2;
       if (lower >= upper)
         return f_.error(
             key_,
@@ -233,6 +246,28 @@ private:
       f_.error(key_ + "/direction", fmt::format("no \"direction\" in {}", key_),
                "the tip is the farthest face in a direction", "add it: [1, 0] for along x");
     particles_for("only particles part");
+  }
+
+  void virial_stress()
+  {
+    atoms_for("it sums what bonds between atoms bear", "choose \"stress\"");
+    if (f_.given(key_ + "/lower") || f_.given(key_ + "/upper"))
+      box_in_body();
+  }
+
+  void open_crack()
+  {
+    atoms_for("it counts the neighbours of atoms", "choose \"crack_tip\"");
+    crack_tip();
+  }
+
+  void atoms_for(const std::string &reason, const std::string &remedy)
+  {
+    if (!scene_.atoms && f_.sound({"/atoms"}))
+      f_.error(key_ + "/kind",
+               fmt::format("\"kind\" in {} is \"{}\" without \"atoms\"", key_,
+                           words(g_.kind)[std::size_t(g_.kind)]),
+               reason, remedy);
   }
 
   void fragments()

@@ -193,6 +193,7 @@ void check_scene(const Scene &scene, Findings &f)
     layout = check_layout(scene, specimen, f);
     check_cuts(scene, specimen, layout ? &*layout : nullptr, f);
     check_inclusions(scene, specimen, layout ? &*layout : nullptr, f);
+    check_substitutions(scene, f);
     check_gauges(scene, specimen, f);
   }
   check_periodic(scene, layout ? &*layout : nullptr, f);

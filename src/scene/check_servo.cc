@@ -93,10 +93,11 @@ private:
           fmt::format("\"gauge\" in {} is \"{}\", which no gauge has", key_, servo_.gauge),
           "/gauges lists the gauges of the scene; columns begin with their names",
           "add the gauge, or name another");
-    if (gauge->kind == GaugeKind::crack_tip || gauge->kind == GaugeKind::fragments)
+    if (gauge->kind == GaugeKind::crack_tip || gauge->kind == GaugeKind::fragments ||
+        gauge->kind == GaugeKind::open_crack)
       f_.error(key_ + "/gauge",
                fmt::format("\"gauge\" in {} counts what has broken: {}", key_, servo_.gauge),
-               "it jumps and never falls, whatever the machine does",
+               "it jumps, whatever the machine does",
                "follow an opening, a distance, a strain, a stress or a force");
     const bool is_length = gauge->kind == GaugeKind::distance || gauge->kind == GaugeKind::opening;
     if (!is_length && servo_.gain == 0)

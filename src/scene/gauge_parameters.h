@@ -18,13 +18,16 @@ enum class GaugeKind
   force,
   j_integral,
   crack_tip,
-  fragments
+  fragments,
+  virial_stress,
+  open_crack
 };
 
 inline const std::vector<std::string> &words(GaugeKind)
 {
-  static const std::vector<std::string> list = {"distance", "opening",    "strain",    "stress",
-                                                "force",    "j_integral", "crack_tip", "fragments"};
+  static const std::vector<std::string> list = {
+      "distance",   "opening",   "strain",    "stress",        "force",
+      "j_integral", "crack_tip", "fragments", "virial_stress", "open_crack"};
   return list;
 }
 

@@ -155,4 +155,34 @@ bool is_convex(const std::vector<Point> &corners)
   }
   return true;
 }
+
+template <int dim>
+bool is_in_regions(const Specimen &specimen, const std::vector<Hole> &balls,
+                   const std::vector<Notch> &boxes, const Vector<dim> &x)
+{
+  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
+    Vector<dim> image = x;
+    bool exists = true;
+    for (int a = 0, rest = k; a < dim; ++a, rest /= 3) {
+      exists = exists && (rest % 3 == 1 || specimen.is_periodic(a));
+      image[a] += (rest % 3 - 1) * specimen.size[a];
+    }
+    const auto in_ball = [&](const Hole &ball) {
+      return (image - Vector<dim>(ball.centre.data())).norm() < ball.radius;
+    };
+    const auto in_box = [&](const Notch &box) {
+      return (image.array() > Vector<dim>(box.lower.data()).array()).all() &&
+             (image.array() < Vector<dim>(box.upper.data()).array()).all();
+    };
+    if (exists && (std::any_of(balls.begin(), balls.end(), in_ball) ||
+                   std::any_of(boxes.begin(), boxes.end(), in_box)))
+      return true;
+  }
+  return false;
+}
+
+template bool is_in_regions(const Specimen &, const std::vector<Hole> &, const std::vector<Notch> &,
+                            const Vector<2> &);
+template bool is_in_regions(const Specimen &, const std::vector<Hole> &, const std::vector<Notch> &,
+                            const Vector<3> &);
 } // namespace ligament::program

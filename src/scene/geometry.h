@@ -33,6 +33,12 @@ core::BoxUnion<dim> zone_shape(const Scene &scene)
   return shape;
 }
 
+/// Whether the point, or an image of it beyond joined sides, lies in one of the balls (discs in 2D)
+/// or boxes.
+template <int dim>
+bool is_in_regions(const Specimen &specimen, const std::vector<Hole> &balls,
+                   const std::vector<Notch> &boxes, const Vector<dim> &x);
+
 /// The direction across the side of the box that is loaded; -1: the side has a name of its own, or
 /// the load is a jump.
 inline int axis_across(const LoadParameters &load, int dim)

@@ -206,6 +206,15 @@ struct Inclusion
   std::vector<Notch> boxes;
 };
 
+/// Atoms of the crystal that are of another species: those of its sites in one of the regions.
+struct Substitution
+{
+  std::string species;
+  double share = 1;        // of these sites, by chance
+  std::vector<Hole> balls; // discs in 2D
+  std::vector<Notch> boxes;
+};
+
 /// The particles are atoms; what the material is follows from them.
 struct AtomsParameters
 {
@@ -223,9 +232,13 @@ struct AtomsParameters
   Point along_x = {0, 0, 0}, along_y = {0, 0, 0};
   double temperature = 0;       // K
   double lattice_parameter = 0; // m, at this temperature; 0: to be found
-  int seed = 1;                 // of its random numbers
+  int seed = 1;                 // of random numbers: heat, and which sites are substituted
   double zone_friction = 0;     // 1/s, of a thermostat on the zone's atoms outside the overlap
   double averaging = 0;         // s, over which thermal means are taken; 0: as long as they need
+  std::vector<Substitution> substitutions; // later ones over earlier ones
+  // What follows from them and the potential:
+  std::vector<double> other_densities; // kg/m^3, of the same crystal of each further species
+  double disturbance = 0; // m: how far around an atom of another species forces at rest change
 };
 
 /// m; sides as those of DiscreteZone.
@@ -492,6 +505,16 @@ struct Scene
   TimeParameters time;
   OutputParameters output;
 
+  /// Of all materials by their numbers, kg/m^3.
+  std::vector<double> densities() const
+  {
+    std::vector<double> all = {material.density};
+    for (const Inclusion &i : inclusions)
+      all.push_back(i.material.density);
+    if (atoms)
+      all.insert(all.end(), atoms->other_densities.begin(), atoms->other_densities.end());
+    return all;
+  }
   /// Whether any material may flow, or is viscous.
   bool flows() const { return any_has(&MaterialParameters::plasticity); }
   /// Atoms at a temperature.

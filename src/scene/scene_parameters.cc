@@ -154,6 +154,20 @@ void declare_material(Section &s, MaterialParameters &m, bool may_be_atoms)
   s.section("viscosity", m.viscosity, "none", "how the shear stress of particles relaxes and is damped, also together with plasticity; cells and the overlap stay elastic", declare_viscosity);
 }
 
+void declare_ball(Section &s, Hole &h)
+{
+  s.add("centre", h.centre, "its centre").in("m").usually(0, 1e4, "mm um").required();
+  s.add("radius", h.radius, "its radius").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+}
+
+void declare_substitution(Section &s, Substitution &a)
+{
+  s.add("species", a.species, "of these atoms: a name as that of the crystal, which may also be given back").required();
+  s.add("share", a.share, "of the sites in the regions, by chance").above(0).at_most(1);
+  s.list("balls", a.balls, "discs (2D) or balls; without them and boxes: the whole crystal", declare_ball);
+  s.list("boxes", a.boxes, "boxes", declare_notch);
+}
+
 void declare_atoms(Section &s, AtomsParameters &a)
 {
   s.add("potential", a.potential, "zhou: metals after Zhou, Johnson and Wadley (2004); plane_crystal: a 2D crystal half bound by its density; lennard_jones, morse: pairs; setfl, setfl_fs, funcfl: tables of embedded atoms in a file", words(AtomPotential())).required();
@@ -169,15 +183,10 @@ void declare_atoms(Section &s, AtomsParameters &a)
   s.add("along_y", a.along_y, "that along y, across the first").usually(-20, 20, "").only_in(3);
   s.add("temperature", a.temperature, "of the crystal, kept by the overlap's friction and its noise; 0: atoms start at rest and nothing heats them").in("K").usually(1, 5e3, "").at_least(0);
   s.add("lattice_parameter", a.lattice_parameter, "at this temperature without stress (hexagonal: the spacing); 0: found by runs of a small periodic crystal").in("m").usually(1e-10, 1e-8, "angstrom nm pm").at_least(0);
-  s.add("seed", a.seed, "of the random numbers of its heat").at_least(0);
+  s.add("seed", a.seed, "of the random numbers of its heat and of substitutions").at_least(0);
   s.add("zone_friction", a.zone_friction, "of a heat bath on the atoms outside the overlap, too; 0: none").in("1/s").usually(1e9, 1e14, "1/ps").at_least(0);
   s.add("averaging", a.averaging, "over which the forces of atoms at this temperature are averaged, the mesh held, before the run; 0: 150 periods of the fastest vibration").in("s").usually(1e-13, 1e-7, "ps ns").at_least(0);
-}
-
-void declare_ball(Section &s, Hole &h)
-{
-  s.add("centre", h.centre, "its centre").in("m").usually(0, 1e4, "mm um").required();
-  s.add("radius", h.radius, "its radius").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.list("substitutions", a.substitutions, "atoms of other species (zhou, setfl, setfl_fs) on sites of the crystal, in regions that keep off the overlap by the range of forces; later ones over earlier ones", declare_substitution);
 }
 
 void declare_inclusion(Section &s, Inclusion &i)

@@ -71,7 +71,7 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   for (std::size_t i = 0; i < out_of_plane.size(); ++i)
     tensor[6 * i + 2] = out_of_plane[i];
   fields.fields.push_back(make_field("stress", std::move(tensor)));
-  fields.symbol = body.force()->symbol();
+  fields.symbols = body.force()->symbols();
   for (auto &own : body.force()->own_fields(state))
     fields.fields.push_back(make_field(own.name, std::move(own.values)));
   if (body.force()->can_flow())

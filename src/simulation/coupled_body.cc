@@ -4,6 +4,7 @@
 #include "core/keyed_error.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
+#include "coupling/heated_particles.h"
 #include "fem/import_mesh.h"
 #include "fem/join_sides.h"
 #include "src/scene/atoms.h"
@@ -246,6 +247,15 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
   body.coupler = std::move(split);
 }
 
+template <int dim>
+void make_heated_particles(const Scene &scene, CoupledBody<dim> &body, core::Timers &timers)
+{
+  using Heated = coupling::HeatedParticles<dim>;
+  const typename Heated::Parameters p = {thermal_energy_of(scene), scene.atoms->zone_friction,
+                                         scene.atoms->seed};
+  body.coupler = std::make_unique<Heated>(body.bodies(), p, timers);
+}
+
 /// Each load must find faces or nodes in its part of a side, and a force all of its area.
 template <int dim>
 void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::Log &log)
@@ -331,7 +341,10 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
   if (!coupled) {
-    body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
+    if (scene.is_warm())
+      make_heated_particles(scene, body, timers);
+    else
+      body.coupler = std::make_unique<coupling::NullCoupler<dim>>(timers);
     if (body.far && !scene.tools.empty())
       add_cells(scene, body, surface);
   }

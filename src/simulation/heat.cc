@@ -1,6 +1,7 @@
 #include "src/simulation/heat.h"
 
 #include "coupling/fine_scale_split.h"
+#include "coupling/heated_particles.h"
 #include "src/simulation/energy_ledger.h"
 
 #include <chrono>
@@ -12,14 +13,11 @@ namespace
 {
 // In periods of the fastest vibration.
 constexpr double first_periods = 40, mean_periods = 150;
-} // namespace
 
 template <int dim>
-void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+void find_load(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
-  auto *const split = dynamic_cast<coupling::FineScaleSplit<dim> *>(body.coupler.get());
-  if (!split)
-    return;
+  auto &split = dynamic_cast<coupling::FineScaleSplit<dim> &>(*body.coupler);
   const auto start = std::chrono::steady_clock::now();
   const double period = M_PI * body.dt_zone; // the critical step is 2 over the frequency
   coupling::HeldRun run;
@@ -27,9 +25,9 @@ void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   run.averaging = scene.atoms->averaging > 0 ? scene.atoms->averaging : mean_periods * period;
   run.friction = std::max(scene.atoms->zone_friction, 0.1 / body.dt_zone);
   auto bodies = body.bodies();
-  const auto report = split->find_thermal_load(bodies, run, body.dt);
+  const auto report = split.find_thermal_load(bodies, run, body.dt);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const double area = std::pow(split->overlap()->cell_size, dim - 1) * body.thickness,
+  const double area = std::pow(split.overlap()->cell_size, dim - 1) * body.thickness,
                force = body.far->body().stiffness(0, 0) * area; // of a strain of 1 on a cell
   log.info(
       "thermal load: largest {:.3g} N on a node, {:.3g} N from that of atoms at rest, known to "
@@ -37,9 +35,20 @@ void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
       report.load, report.change, report.error, report.error / force, report.steps,
       seconds.count());
   body.figures["thermal_load_error"] = {report.error / force, ""};
+}
+} // namespace
+
+template <int dim>
+void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+{
+  auto bodies = body.bodies();
+  if (auto *const alone = dynamic_cast<coupling::HeatedParticles<dim> *>(body.coupler.get()))
+    alone->start(bodies);
+  else
+    find_load(scene, body, log);
   // The body begins with the energy of its heat.
   const coupling::StepTime first = {0, 0, body.dt};
-  split->compute_forces(bodies, first);
+  body.coupler->compute_forces(bodies, first);
   body.started += read_ledger(body, first, 0).residual();
 }
 

@@ -22,6 +22,11 @@ const Column rebonding = {"rebonding", "J"};
 const Column thermostat = {"thermostat", "J"};
 const char *const temperatures[] = {"temperature_zone", "temperature_overlap", "temperature_nodes"};
 
+int n_temperatures(const Scene &scene)
+{
+  return scene.zone.extent == DiscreteZone::Extent::box ? 3 : 1;
+}
+
 /// Those of every run, then those of the gauges, which must be others.
 template <int dim>
 std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
@@ -37,8 +42,8 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
     columns.push_back(rebonding);
   if (scene.is_warm()) {
     columns.push_back(thermostat);
-    for (const char *name : temperatures)
-      columns.push_back({name, "K"});
+    for (int k = 0; k < n_temperatures(scene); ++k)
+      columns.push_back({temperatures[k], "K"});
   }
   for (const auto &servo : servos)
     columns.push_back(servo.column());
@@ -88,7 +93,7 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
   if (kelvin_ > 0) {
     writer_.set(thermostat.name, row.ledger.body.thermostat);
     const auto energies = body.coupler->thermal_energies(body.bodies());
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < (body.far ? 3 : 1); ++k)
       writer_.set(temperatures[k], energies[k] / kelvin_);
   }
   if (has_phases_)

@@ -44,9 +44,10 @@ make_atom_force(const Scene &scene, packings::Packing<dim> packing,
                 const std::vector<core::BoundaryLoad<dim>> &loads,
                 std::map<std::string, Figure> &figures, core::Log &log);
 
-/// The crystal of a scene with atoms, cut to its specimen and zone.
+/// The crystal of a scene with atoms, cut to its specimen and zone; the materials of its atoms are
+/// species_of() (src/scene/atoms.h).
 template <int dim>
-packings::Packing<dim> make_crystal_packing(const Scene &scene);
+packings::Packing<dim> make_crystal_packing(const Scene &scene, core::Log &log);
 
 /// Of the solid that particles and far field share: the scene's /material, or its crystal.
 template <int dim>

@@ -196,42 +196,15 @@ packings::RandomPacking<dim> irregular_packing(const Scene &scene)
   return packing;
 }
 
-/// The last inclusion, from 1, with a region around the point; 0: none.
-template <int dim>
-int inclusion_around(const Scene &scene, const Vector<dim> &x)
-{
-  const auto in_ball = [&](const Hole &ball) {
-    return (x - to_vector<dim>(ball.centre)).norm() < ball.radius;
-  };
-  const auto in_box = [&](const Notch &box) {
-    return (x.array() > to_vector<dim>(box.lower).array()).all() &&
-           (x.array() < to_vector<dim>(box.upper).array()).all();
-  };
-  for (int k = int(scene.inclusions.size()); k > 0; --k) {
-    const Inclusion &inclusion = scene.inclusions[k - 1];
-    if (std::any_of(inclusion.balls.begin(), inclusion.balls.end(), in_ball) ||
-        std::any_of(inclusion.boxes.begin(), inclusion.boxes.end(), in_box))
-      return k;
-  }
-  return 0;
-}
-
-/// The same of the point and its images beyond joined sides.
+/// The last inclusion, from 1, with a region around the point or an image of it; 0: none.
 template <int dim>
 int inclusion_at(const Scene &scene, const Vector<dim> &x)
 {
-  int last = 0;
-  for (int k = 0; k < (dim == 2 ? 9 : 27); ++k) {
-    Vector<dim> image = x;
-    bool exists = true;
-    for (int a = 0, rest = k; a < dim; ++a, rest /= 3) {
-      exists = exists && (rest % 3 == 1 || scene.specimen.is_periodic(a));
-      image[a] += (rest % 3 - 1) * scene.specimen.size[a];
-    }
-    if (exists)
-      last = std::max(last, inclusion_around<dim>(scene, image));
-  }
-  return last;
+  int k = int(scene.inclusions.size());
+  while (k > 0 && !is_in_regions<dim>(scene.specimen, scene.inclusions[k - 1].balls,
+                                      scene.inclusions[k - 1].boxes, x))
+    --k;
+  return k;
 }
 
 /// Materials of the points: those of their regions over those that they have.
@@ -299,7 +272,7 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
 {
   PackedZone<dim> zone;
   if (scene.atoms) {
-    zone.packing = make_crystal_packing<dim>(scene);
+    zone.packing = make_crystal_packing<dim>(scene, log);
     return zone;
   }
   if (!scene.zone.is_irregular())

@@ -53,11 +53,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.seeds = std::move(seeds);
   if (n_healed)
     body.figures["healed_radii"] = {double(*n_healed), ""};
-  std::vector<double> densities = {scene.material.density};
-  for (const Inclusion &inclusion : scene.inclusions)
-    densities.push_back(inclusion.material.density);
   particles::Particles<dim> state;
-  packings::fill_particles(packing, densities, state);
+  packings::fill_particles(packing, scene.densities(), state);
   body.loaded_faces.assign(body.loads.size(), 0.);
   for (const auto &face : packing.boundary_faces)
     for (std::size_t l = 0; l < body.loads.size(); ++l)

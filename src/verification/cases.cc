@@ -68,6 +68,7 @@ std::vector<Case> all_cases()
   add(softening_flow_cases());
   add(atom_cases());
   add(atom_strain_cases());
+  add(atom_emission_cases());
   add(atom_heat_cases());
   add(atom_motion_cases());
   add(atom_wave_cases());

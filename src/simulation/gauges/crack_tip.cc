@@ -21,8 +21,8 @@ template <int dim>
 CrackTipGauge<dim>::CrackTipGauge(const GaugeParameters &gauge, const CoupledBody<dim> &body,
                                   double smoothing)
     : name_(gauge.name), start_(to_vector<dim>(gauge.points[0])),
-      direction_(to_vector<dim>(gauge.direction).normalized()), reach_(reach * body.spacing),
-      smoothing_(smoothing)
+      direction_(to_vector<dim>(gauge.direction).normalized()), smoothing_(smoothing),
+      faces_(reach * body.spacing)
 {
   add(start_, from_the_start);
   for (const BrokenBond &face : body.cut_faces) {
@@ -34,39 +34,16 @@ CrackTipGauge<dim>::CrackTipGauge(const GaugeParameters &gauge, const CoupledBod
 }
 
 template <int dim>
-typename CrackTipGauge<dim>::Bin CrackTipGauge<dim>::bin_of(const Vector<dim> &x) const
-{
-  Bin bin;
-  for (int c = 0; c < dim; ++c)
-    bin[c] = long(std::floor(x[c] / reach_));
-  return bin;
-}
-
-template <int dim>
 void CrackTipGauge<dim>::add(const Vector<dim> &centre, double time)
 {
   const int face = sets_.add();
-  centre_.push_back(centre);
   farthest_.push_back((centre - start_).dot(direction_));
-  const Bin bin = bin_of(centre);
-  int n_bins = 1;
-  for (int c = 0; c < dim; ++c)
-    n_bins *= 3;
-  for (int k = 0; k < n_bins; ++k) {
-    Bin other = bin;
-    for (int c = 0, rest = k; c < dim; ++c, rest /= 3)
-      other[c] += rest % 3 - 1;
-    const auto found = bins_.find(other);
-    if (found == bins_.end())
-      continue;
-    for (const int near : found->second)
-      if ((centre_[near] - centre).norm() <= reach_) {
-        const int a = sets_.find(near), b = sets_.find(face);
-        farthest_[b] = std::max(farthest_[a], farthest_[b]);
-        sets_.join(a, b);
-      }
-  }
-  bins_[bin].push_back(face);
+  faces_.for_each_near(centre, [&](int near) {
+    const int a = sets_.find(near), b = sets_.find(face);
+    farthest_[b] = std::max(farthest_[a], farthest_[b]);
+    sets_.join(a, b);
+  });
+  faces_.add(centre);
   const double position = farthest_[sets_.find(0)];
   if (steps_.empty() || position > steps_.back().second)
     steps_.push_back({time, position});
@@ -101,7 +78,7 @@ std::string CrackTipGauge<dim>::description() const
 {
   return fmt::format("farthest of the faces that chains of gaps up to {} join to the start; speed "
                      "over the last {}",
-                     quantity(reach_, "m"), quantity(smoothing_, "s"));
+                     quantity(faces_.reach(), "m"), quantity(smoothing_, "s"));
 }
 
 template class CrackTipGauge<2>;

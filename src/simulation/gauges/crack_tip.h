@@ -3,9 +3,7 @@
 
 #include "src/simulation/disjoint_sets.h"
 #include "src/simulation/gauges/gauge.h"
-
-#include <array>
-#include <map>
+#include "src/simulation/gauges/near_places.h"
 
 namespace ligament::program
 {
@@ -25,19 +23,16 @@ public:
   std::string description() const override;
 
 private:
-  using Bin = std::array<long, dim>;
-  Bin bin_of(const Vector<dim> &x) const;
   /// A further face joins those near it.
   void add(const Vector<dim> &centre, double time);
   double position_at(double time) const;
 
   std::string name_;
   Vector<dim> start_, direction_;
-  double reach_, smoothing_;        // m, s
-  std::vector<Vector<dim>> centre_; // the first one is the start
+  double smoothing_;      // s
+  NearPlaces<dim> faces_; // by their centres; the first one is the start
   DisjointSets sets_{0};
-  std::vector<double> farthest_; // m, of the faces below a root
-  std::map<Bin, std::vector<int>> bins_;
+  std::vector<double> farthest_;                 // m, of the faces below a root
   std::vector<std::pair<double, double>> steps_; // time and position since then
   std::size_t n_broken_ = 0;
 };

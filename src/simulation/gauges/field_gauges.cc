@@ -1,6 +1,7 @@
 #include "src/simulation/gauges/field_gauges.h"
 
 #include "src/simulation/gauges/small_strain.h"
+#include "src/simulation/gauges/tensor_columns.h"
 
 #include "core/check.h"
 #include "core/exact_sum.h"
@@ -16,47 +17,6 @@ namespace
 {
 template <int dim>
 using Tensor = Eigen::Matrix<double, dim, dim>;
-
-template <int dim>
-std::vector<Column> tensor_columns(const std::string &name, const char *unit)
-{
-  std::vector<Column> columns;
-  const std::vector<const char *> components =
-      dim == 2 ? std::vector<const char *>{"xx", "yy", "xy"}
-               : std::vector<const char *>{"xx", "yy", "zz", "yz", "xz", "xy"};
-  for (const char *c : components)
-    columns.push_back({name + "_" + c, unit});
-  return columns;
-}
-
-/// In axes that are turned by the angle about z.
-template <int dim>
-void put_turned(const Tensor<dim> &t, double angle, double *values)
-{
-  Tensor<dim> axes = Tensor<dim>::Identity(); // columns
-  axes.template topLeftCorner<2, 2>() = Eigen::Rotation2Dd(angle).toRotationMatrix();
-  const Tensor<dim> turned = axes.transpose() * t * axes;
-  for (int c = 0; c < dim; ++c)
-    values[c] = turned(c, c);
-  if constexpr (dim == 2)
-    values[2] = turned(0, 1);
-  else {
-    values[3] = turned(1, 2);
-    values[4] = turned(0, 2);
-    values[5] = turned(0, 1);
-  }
-}
-
-template <int dim>
-Tensor<dim> tensor_of(const Strain<dim> &s) // Voigt, of stresses
-{
-  Tensor<dim> t;
-  if constexpr (dim == 2)
-    t << s[0], s[2], s[2], s[1];
-  else
-    t << s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2];
-  return t;
-}
 
 /// U - 1 from H = F - 1 without losing digits of small strains: C - 1 = H + H^T + H^T H has the
 /// eigenvalues c = (1 + e)^2 - 1.

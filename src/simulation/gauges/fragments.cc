@@ -45,10 +45,8 @@ Vector<3> velocity_of(const CoupledBody<dim> &body, const Carrier &c)
 template <int dim>
 FragmentGauge<dim>::FragmentGauge(const GaugeParameters &gauge, const Scene &scene,
                                   const CoupledBody<dim> &)
-    : name_(gauge.name), least_mass_(gauge.mass), density_{scene.material.density}
+    : name_(gauge.name), least_mass_(gauge.mass), density_(scene.densities())
 {
-  for (const Inclusion &inclusion : scene.inclusions)
-    density_.push_back(inclusion.material.density);
 }
 
 template <int dim>

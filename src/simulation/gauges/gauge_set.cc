@@ -6,8 +6,10 @@
 #include "src/simulation/gauges/force_gauge.h"
 #include "src/simulation/gauges/fragments.h"
 #include "src/simulation/gauges/j_integral.h"
+#include "src/simulation/gauges/open_crack.h"
 #include "src/simulation/gauges/point_gauges.h"
 #include "src/simulation/gauges/tool_gauge.h"
+#include "src/simulation/gauges/virial_stress.h"
 
 #include <fmt/format.h>
 
@@ -37,6 +39,10 @@ std::unique_ptr<Gauge<dim>> make_gauge(const GaugeParameters &gauge, const Gauge
     return std::make_unique<JIntegral<dim>>(gauge, places);
   case GaugeKind::crack_tip:
     return std::make_unique<CrackTipGauge<dim>>(gauge, places.body, smoothing);
+  case GaugeKind::virial_stress:
+    return std::make_unique<VirialStressGauge<dim>>(gauge, places);
+  case GaugeKind::open_crack:
+    return std::make_unique<OpenCrackGauge<dim>>(gauge, places.body);
   default:
     return std::make_unique<FragmentGauge<dim>>(gauge, places.scene, places.body);
   }

@@ -1,6 +1,6 @@
 // The heat bath of the overlap: its stationary covariance, what it does to a harmonic crystal, and
 // that it is part of a run's state.
-#include "coupling/zone_bath.h"
+#include "coupling/heated_particles.h"
 #include "tests/support/crystal_strip.h"
 
 #include <gtest/gtest.h>
@@ -251,6 +251,63 @@ TEST(Heat, TheZoneBathAloneHasItsTemperature)
   EXPECT_LT(error, 0.01);
   EXPECT_NEAR(sum / thermal_energy, 1, 5 * error);
   EXPECT_NEAR(-bath.taken, bath.kinetic_energy(atoms), 1e-12 * bath.kinetic_energy(atoms));
+}
+
+// The harmonic crystal without its mesh: temperature, closed ledger, and the bits of a run that is
+// taken up again.
+TEST(Heat, AtomsAloneHaveTheirTemperature)
+{
+  CrystalStrip<2> strip(hot_strip(0.01));
+  core::Timers timers;
+  coupling::Bodies<2> bodies = {strip.body.zone.get(), nullptr};
+  const double dt = strip.body.dt;
+  const auto make = [&] {
+    return coupling::HeatedParticles<2>(bodies, {thermal_energy, 0.02 / dt, 5}, timers);
+  };
+  auto alone = make();
+  alone.start(bodies);
+  coupling::StepTime time{0, 0, dt};
+  const auto step = [&] {
+    alone.compute_forces(bodies, time);
+    alone.kick(bodies, time);
+    alone.drift(bodies, time);
+    ++time.step;
+  };
+  const auto sum = [&] {
+    alone.compute_forces(bodies, time);
+    const auto e = alone.energy(bodies, time);
+    return e.kinetic_discrete + e.potential_discrete + e.thermostat;
+  };
+  const double first = sum();
+  std::vector<double> energies;
+  const int n_first = 2000, n = 20000;
+  for (int k = 0; k < n_first + n; ++k) {
+    step();
+    if (k >= n_first)
+      energies.push_back(alone.thermal_energies(bodies)[0] / thermal_energy);
+  }
+  const Mean mean = mean_of(energies);
+  EXPECT_LT(mean.error, 0.01);
+  EXPECT_GT(mean.value, 1 - 5 * mean.error);
+  EXPECT_LT(mean.value, warmest + 5 * mean.error);
+  EXPECT_NEAR(sum(), first, 1e-10 * first);
+
+  core::State state;
+  strip.body.zone->save(state);
+  alone.save(state, bodies);
+  const auto later = [&] {
+    const long at = time.step;
+    for (int k = 0; k < 20; ++k)
+      step();
+    time.step = at;
+    return strip.body.zone->state.velocity;
+  };
+  const auto whole = later();
+  const double taken = alone.energy(bodies, time).thermostat;
+  strip.body.zone->load(state);
+  alone.load(state, bodies);
+  EXPECT_EQ(later(), whole);
+  EXPECT_EQ(alone.energy(bodies, time).thermostat, taken);
 }
 
 TEST(Heat, ARunIsTakenUpAgainToTheBit)

@@ -157,6 +157,63 @@ TEST(Regimes, FiniteNoiseOfAStronglyNonlinearLawKeepsItsEnergy)
   EXPECT_NEAR(last / first, 1, 1e-4);
 }
 
+/// Largest distance of the energy from its start, over that, while waves of four cells' length and
+/// strains of some per cent run about in a law that stiffens.
+double wandering_of_waves(int step_ratio)
+{
+  auto p = small_body<2>(0.3);
+  p.size = {50, 46};
+  p.zone_size = {32, 28};
+  p.cell_size = 3.1;
+  p.step_fraction = 0.1;
+  p.split.step_ratio = step_ratio;
+  p.replace_law = [](const auto &state, auto law) {
+    return std::make_unique<StiffeningLaw<2>>(state, std::move(law), 500);
+  };
+  auto body = make_coupled_bodies(p);
+  auto bodies = body.bodies();
+  body.split->set_regime(Regime::nonlinear, bodies);
+  const auto velocity = [&](const Vector<2> &x) { // over wave speeds of about 1: strains
+    const Vector<2> phase = 2 * M_PI / (4 * p.cell_size) * x;
+    return Vector<2>(0.02 * std::sin(phase[0]) * std::cos(phase[1]),
+                     0.02 * std::sin(phase[0] + phase[1]));
+  };
+  auto &zone = body.zone->state;
+  for (int i = 0; i < zone.size(); ++i)
+    set(zone.velocity, i, velocity(get(zone.reference, i)));
+  for (int i = 0; i < body.far->mesh().n_nodes(); ++i)
+    set(body.far->velocity, i, velocity(body.far->mesh().nodes[i]));
+  body.split->take_velocities(bodies);
+  coupling::StepTime step;
+  step.dt = body.dt;
+  double start = 0, wandering = 0;
+  for (; step.step < 2000; ++step.step) {
+    body.split->compute_forces(bodies, step);
+    if (step.step % 4 == 0) {
+      const auto e = body.split->energy(bodies, step);
+      const double sum = e.kinetic_discrete + e.kinetic_far + e.potential_discrete +
+                         e.potential_far + e.blended + e.impulses;
+      start = step.step == 0 ? sum : start;
+      wandering = std::max(wandering, std::abs(sum / start - 1));
+    }
+    body.split->kick(bodies, step);
+    body.split->drift(bodies, step);
+  }
+  return wandering;
+}
+
+// What the nonlinear regime adds acts with the far field's impulse. Its energies at the impulses
+// wander no more than with one step per far step: an impulse of other than m forces would do so by
+// its share of the energy, some 1e-2.
+TEST(Regimes, FarStepsOfANonlinearOverlapBookTheirImpulses)
+{
+  const double each = wandering_of_waves(1), four = wandering_of_waves(4);
+  EXPECT_LT(four, 3 * each);
+  EXPECT_LT(each, 1e-3);
+  std::printf("the energy of waves wanders by %.1e, with four steps per far step by %.1e\n", each,
+              four);
+}
+
 /// Largest force on a near node or free particle, from one kick at rest.
 template <int dim>
 double largest_near_force(CoupledBodies<dim> &body)

@@ -15,8 +15,15 @@ struct AtomKernelTest : ::testing::Test
   {
     SCOPED_TRACE(body.crystal.potential().species(0).name + std::to_string(amplitude));
     body.disturb(amplitude * body.crystal.spacing());
-    auto expected = body.atoms;
-    body.oracle(body.crystal.potential()).compute(expected);
+    auto expected = body.atoms, rest = body.atoms;
+    for (auto &component : rest.displacement)
+      std::fill(component.begin(), component.end(), 0.);
+    auto plain = body.oracle(body.crystal.potential());
+    plain.compute(rest);
+    const double at_rest = plain.energy;
+    plain.compute(expected);
+    const double energy_scale = std::max(
+        std::abs(plain.energy), body.atoms.size() * std::abs(body.crystal.cohesive_energy()));
     double scale = body.stiffness() * body.crystal.spacing();
     for (const auto &component : expected.force) // atoms on top of each other push hard
       for (const double f : component)
@@ -33,6 +40,7 @@ struct AtomKernelTest : ::testing::Test
       const auto first = body.atoms.force;
       force.compute(body.atoms, 0);
       EXPECT_EQ(body.atoms.force, first); // to the last bit
+      EXPECT_NEAR(force.potential_energy(body.atoms), plain.energy - at_rest, 1e-13 * energy_scale);
     }
   }
 };

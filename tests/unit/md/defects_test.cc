@@ -59,6 +59,50 @@ TEST(DefectsTest, VacanciesAreSeen)
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 11), 12);
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 12), 243);
 }
+
+// Sides are no cracks; half of the crystal moved away makes two faces. Close-packed ones lack just
+// a quarter of their neighbours.
+TEST(DefectsTest, FacesOfCracksLackAQuarterOfTheirNeighbours)
+{
+  // Whole periods along [1 -1 0] and [1 1 -2].
+  auto body =
+      make_body<3>(foiles_copper(), CrystalKind::fcc, {4 / std::sqrt(2.), 4, 3 * std::sqrt(1.5)},
+                   {true, false, true}, orientation_of({1, -1, 0}, {1, 1, 1}));
+  const auto force = body.force();
+  const auto n_at_faces = [&] {
+    const auto at = force.at_crack_faces(body.atoms);
+    return std::count(at.begin(), at.end(), 1);
+  };
+  EXPECT_EQ(n_at_faces(), 0);
+  const double middle = body.top[1] / 2, layer = body.crystal.lattice_parameter() / std::sqrt(3.);
+  int n_nearest = 0;
+  for (int i = 0; i < body.atoms.size(); ++i) {
+    const double above = body.atoms.reference[1][i] - middle;
+    body.atoms.displacement[1][i] = above > 0 ? layer : 0;
+    n_nearest += std::abs(above) < layer * 0.999;
+  }
+  EXPECT_GT(n_nearest, 20);
+  EXPECT_EQ(n_at_faces(), n_nearest);
+}
+
+TEST(DefectsTest, MaterialsBeginWithThatOfTheCrystal)
+{
+  const Potential alloy = zhou_johnson_wadley({"Cu", "Ni", "Ag"});
+  CrystalParameters<3> parameters;
+  parameters.species = 1;
+  const Crystal<3> crystal(alloy, parameters);
+  const auto shape = box<3>(crystal, {1, 1, 1});
+  std::vector<int> species(cut_crystal(crystal, shape).size(), 1);
+  species[0] = 0;
+  species[1] = 2;
+  const Body<3> body(alloy, parameters, shape, species);
+  const auto force = body.force();
+  EXPECT_EQ(force.symbols(), (std::vector<std::string>{"Ni", "Cu", "Ag"}));
+  EXPECT_EQ(force.material(0), 1);
+  EXPECT_EQ(force.material(1), 2);
+  EXPECT_EQ(force.material(2), 0);
+}
+
 // The published ones are those of relaxed surfaces: layers go down along their forces.
 TEST(DefectsTest, SurfaceEnergiesOfTables)
 {

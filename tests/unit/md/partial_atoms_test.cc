@@ -170,6 +170,29 @@ TEST(PartialAtomsTest, HasTheSharesOfTheTangent)
   expect_shared_tangent(plane_body());
 }
 
+// Energies of small displacements and of their opposites are squares in the sum, surfaces pull
+// linearly: differences of whole energies would know that of 1e-7 d to a few per cent.
+TEST(PartialAtomsTest, KeepsTheDigitsOfSmallDisplacements)
+{
+  for (const Body<3> &body : bodies()) {
+    const auto part = body.force().part(
+        body.atoms, everybody(body),
+        [&](const Vector<3> &x, const std::vector<int> &of) { return some_share<3>(body, x, of); });
+    const auto stiffness_at = [&](double amplitude) {
+      double sum = 0;
+      for (const double sign : {1., -1.}) {
+        Body<3> moved = body;
+        moved.disturb(sign * amplitude * body.crystal.spacing());
+        auto p = of_part(moved.atoms, everybody(body));
+        sum += part->compute(p);
+      }
+      return sum / (amplitude * amplitude);
+    };
+    // The quartic part is some hundred times the square of the strain.
+    EXPECT_NEAR(stiffness_at(1e-7) / stiffness_at(1e-5), 1, 1e-3);
+  }
+}
+
 // Members alone matter; a term that reaches others has the share 0.
 TEST(PartialAtomsTest, APartOfTheAtomsIsEnough)
 {

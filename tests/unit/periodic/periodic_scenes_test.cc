@@ -139,4 +139,41 @@ TEST(PeriodicScenes, ACoupledBodyTakesAHomogeneousStrainAtRest)
   const double stress = 72e9 / (1.22 * 0.56) * (0.78 * 1 + 0.22 * 2) * size, height = 0.12;
   EXPECT_NEAR(body.far->reaction(0)[0], stress * height, 1e-9 * stress * height);
 }
+
+// The mesh goes on through the joined sides, the crystal inside it ends as it would in a body with sides.
+TEST(PeriodicScenes, ACrystalKeepsOffJoinedSides)
+{
+  const auto body_of = [](const std::vector<std::string> &set) {
+    const auto read = parse_scene(R"({
+      "dimension": 2,
+      "specimen": {"size": ["37 nm", "36 nm"], "thickness": "0.38 nm"},
+      "atoms": {"potential": "lennard_jones", "energy": "0.0104 eV", "distance": "3.4 angstrom",
+                "mass": "39.95 u"},
+      "discrete_zone": {"packing": "hexagonal",
+                        "region": {"lower": ["-10 nm", "-10 nm"], "upper": ["10 nm", "10 nm"]}},
+      "far_field": {"cell_size": "1 nm"},
+      "coupling": {"overlap_cells": 5, "transition_cells": 3},
+      "time": {"duration": "20 ps", "step_fraction": 0.2}
+    })",
+                                  "crystal.json", set);
+    for (const auto &error : read.errors)
+      ADD_FAILURE() << core::to_string(error);
+    core::Log log;
+    core::Timers timers;
+    return make_body<2>(*read.scene, log, timers);
+  };
+  auto joined = body_of({R"(/specimen/periodic=["x"])"}), sided = body_of({});
+  const auto &zone = joined.zone->state;
+  ASSERT_EQ(zone.size(), sided.zone->state.size());
+  auto bodies = joined.bodies();
+  coupling::StepTime step{0, 0, joined.dt};
+  joined.coupler->compute_forces(bodies, step);
+  joined.coupler->kick(bodies, step);
+  double largest = 0;
+  for (int i = 0; i < zone.size(); ++i) {
+    EXPECT_EQ(zone.global_id[i], sided.zone->state.global_id[i]);
+    largest = std::max(largest, get(zone.velocity, i).norm());
+  }
+  EXPECT_LT(largest, 1e-10 * joined.force()->elastic_constants().wave_speed_p);
+}
 } // namespace ligament::program
