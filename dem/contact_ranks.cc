@@ -1,12 +1,10 @@
-// Contacts of a body in parts: what ranks tell each other of them, and where they must stop.
+// Contacts of a body in parts: what ranks tell each other of them.
 #include "core/check.h"
+#include "dem/contact_numbers.h"
 #include "dem/parts/contact_forces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-#include <unordered_map>
-#include <unordered_set>
 
 namespace ligament::dem
 {
@@ -15,7 +13,7 @@ template <int dim>
 auto Contacts<dim>::foreign_motions(const std::vector<Change> &changed, const Particles &p) const
     -> std::map<int, Motion>
 {
-  if (!owners_ || owners_->ranks.is_one())
+  if (!guests_)
     return {};
   constexpr int n = n_particle_dofs<dim>;
   struct Told
@@ -26,7 +24,7 @@ auto Contacts<dim>::foreign_motions(const std::vector<Change> &changed, const Pa
   std::set<int> own, foreign;
   for (const Change &change : changed)
     for (const int i : {contacts_[change.contact].face.i, contacts_[change.contact].face.j})
-      (owners_->is_own(i) ? own : foreign).insert(i);
+      (guests_->is_own(i) ? own : foreign).insert(i);
   std::vector<Told> told;
   for (const int i : own) {
     Told &t = told.emplace_back();
@@ -36,7 +34,7 @@ auto Contacts<dim>::foreign_motions(const std::vector<Change> &changed, const Pa
         m.torque;
   }
   std::map<std::int64_t, Motion> by_name;
-  for (const Told &t : owners_->ranks.gather_all(told)) {
+  for (const Told &t : guests_->ranks().gather_all(told)) {
     const Eigen::Map<const Eigen::Matrix<double, 2 * n, 1>> all(t.numbers.data());
     by_name[t.name] = {all.template head<dim>(), all.template segment<dim>(dim),
                        all.template segment<n_spins<dim>>(2 * dim),
@@ -46,18 +44,139 @@ auto Contacts<dim>::foreign_motions(const std::vector<Change> &changed, const Pa
   for (const int i : foreign) {
     const auto of = by_name.find(ids_[i]);
     if (of == by_name.end())
-      owners_->ranks.abort("a contact is not known to the rank that owns its particle", 1);
+      guests_->ranks().abort("a contact is not known to the rank that owns its particle", 1);
     found[i] = of->second;
   }
   return found;
 }
 
 template <int dim>
-void ContactForces<dim>::join(const particles::Owners &owners)
+void Contacts<dim>::join(const ContactGuests<dim> &guests)
 {
-  contacts_.join(owners);
-  search_.join(owners);
-  agreed_ = Agreed{&owners, owners.ranks.any(!all().empty())};
+  guests_ = &guests;
+  drop_others();
+}
+
+template <int dim>
+void Contacts<dim>::drop_others()
+{
+  contacts_.erase(
+      std::remove_if(contacts_.begin(), contacts_.end(),
+                     [&](const Contact<dim> &c) { return !guests_->keeps(c.face.i, c.face.j); }),
+      contacts_.end());
+}
+
+template <int dim>
+void Contacts<dim>::append(const std::vector<typename ContactGuests<dim>::Guest> &guests)
+{
+  auto ids = ids_.list();
+  for (const auto &guest : guests) {
+    ids.push_back(guest.name);
+    materials_.append(guest.material);
+  }
+  ids_ = particles::GlobalIds(ids);
+}
+
+namespace
+{
+/// A contact as ranks tell each other of it.
+template <int dim>
+struct ToldContact
+{
+  static constexpr int n_numbers = dim == 2 ? 35 : 52;
+
+  std::array<std::int64_t, 3> name;
+  std::int64_t i, j, flags; // names of its particles
+  int cut;
+  double overlap;
+  std::array<double, n_numbers> numbers;
+};
+
+/// visit(number) for all that a ToldContact has.
+template <int dim, typename C, typename Visit>
+void for_each_told(C &c, Visit &&visit)
+{
+  for_each_number<dim>(c, [&](const std::string &, auto &number) { visit(number); });
+  for_each_constant<dim>(c, visit);
+}
+} // namespace
+
+template <int dim>
+void Contacts<dim>::tell(const std::vector<std::size_t> &of)
+{
+  std::vector<ToldContact<dim>> told;
+  for (const std::size_t k : of) {
+    Contact<dim> &c = contacts_[k];
+    ToldContact<dim> &t = told.emplace_back(ToldContact<dim>{c.name,
+                                                             ids_[c.face.i],
+                                                             ids_[c.face.j],
+                                                             ContactFlags::of(c),
+                                                             c.cut,
+                                                             c.last_overlap.value_or(0),
+                                                             {}});
+    auto place = t.numbers.begin();
+    for_each_told<dim>(c, [&](double number) { *place++ = number; });
+    core::require(place == t.numbers.end(), "numbers of a contact were not counted");
+  }
+  for (const ToldContact<dim> &t : guests_->ranks().gather_all(told)) {
+    const int i = guests_->index(t.i), j = guests_->index(t.j);
+    if (!guests_->keeps(i, j) || find(t.name))
+      continue;
+    core::require(i >= 0 && j >= 0, "a contact is told of before its particles have come");
+    Contact<dim> c{t.name, {}, false, 0, 0, 0, 0};
+    c.face.i = i;
+    c.face.j = j;
+    c.cut = t.cut;
+    ContactFlags::set(c, t.flags, t.overlap);
+    auto place = t.numbers.begin();
+    for_each_told<dim>(c, [&](double &number) { number = *place++; });
+    insert(std::move(c));
+  }
+}
+
+template <int dim>
+void Contacts<dim>::tell_passed_on()
+{
+  std::vector<std::size_t> passed_on;
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    if (contacts_[k].is_joint() && !contacts_[k].from_face && guests_->is_own(contacts_[k].face.i))
+      passed_on.push_back(k);
+  tell(passed_on);
+}
+
+template <int dim>
+std::optional<std::size_t> Contacts<dim>::find(const std::array<std::int64_t, 3> &name) const
+{
+  const auto found = std::lower_bound(
+      contacts_.begin(), contacts_.end(), name,
+      [](const Contact<dim> &c, const std::array<std::int64_t, 3> &n) { return c.name < n; });
+  if (found == contacts_.end() || found->name != name)
+    return std::nullopt;
+  return found - contacts_.begin();
+}
+
+template <int dim>
+void ContactForces<dim>::join(std::shared_ptr<particles::Owners> owners, const Particles &p,
+                              std::vector<char> kept)
+{
+  guests_ = std::make_unique<ContactGuests<dim>>(std::move(owners), p, std::move(kept));
+  contacts_.join(*guests_);
+  search_.join(*guests_, p);
+  any_ = guests_->ranks().any(!all().empty());
+}
+
+template <int dim>
+void ContactForces<dim>::invite(const core::State &state, Particles &p)
+{
+  const core::Table &table = core::table(state, "contacts");
+  const auto i = table.integers("i"), j = table.integers("j");
+  std::vector<std::int64_t> wanted;
+  for (std::size_t r = 0; r < table.n_rows(); ++r)
+    if (guests_->keeps(guests_->index(i[r]), guests_->index(j[r]))) {
+      wanted.push_back(i[r]);
+      wanted.push_back(j[r]);
+    }
+  search_.invite(wanted, p, contacts_);
 }
 
 template <int dim>
@@ -69,7 +188,7 @@ std::vector<std::int64_t> ContactForces<dim>::seen() const
 template <int dim>
 void ContactForces<dim>::agree(const std::vector<std::int64_t> &seen)
 {
-  agreed_->any = seen[0] != 0;
+  any_ = seen[0] != 0;
   has_slid_ = seen[1] != 0;
   search_.set_due(seen[2] != 0);
 }
@@ -77,115 +196,42 @@ void ContactForces<dim>::agree(const std::vector<std::int64_t> &seen)
 template <int dim>
 void ContactForces<dim>::agree_after_load()
 {
-  agree(agreed_->owners->ranks.max(seen()));
+  contacts_.tell_passed_on();
+  agree(guests_->ranks().max(seen()));
 }
 
 template <int dim>
 void ContactForces<dim>::follow_break()
 {
-  agreed_->any = true;
+  any_ = true;
   searching_ = true;
-  search_.set_due(agreed_->owners->ranks.any(search_.is_due()));
-}
-
-// Pairs are looked for among the surface particles of all ranks, by the rank of one of them: in the
-// cells of a grid of the size of the reach, as update() does.
-template <int dim>
-bool ContactSearch<dim>::meets_strangers(const Particles &p) const
-{
-  struct OnSurface
-  {
-    std::int64_t name;
-    double diameter;
-    std::array<double, dim> reference, displacement;
-    Vector<dim> at() const { return home() + Eigen::Map<const Vector<dim>>(displacement.data()); }
-    Vector<dim> home() const { return Eigen::Map<const Vector<dim>>(reference.data()); }
-  };
-  std::vector<OnSurface> own;
-  std::unordered_set<std::int64_t> at_hand;
-  for (int i = 0; i < p.size(); ++i)
-    at_hand.insert(p.global_id[i]);
-  for (const int i : surface_) {
-    if (!owners_->is_own(i))
-      continue;
-    OnSurface &s = own.emplace_back();
-    s.name = p.global_id[i];
-    s.diameter = diameter(i);
-    for (int c = 0; c < dim; ++c)
-      s.reference[c] = p.reference[c][i], s.displacement[c] = p.displacement[c][i];
-  }
-  const double reach = largest_ + 2 * skin_;
-  using Cell = std::array<long, dim>;
-  const auto cell_of = [&](const Vector<dim> &x) {
-    Cell cell;
-    for (int c = 0; c < dim; ++c)
-      cell[c] = std::lround(std::floor(x[c] / reach));
-    return cell;
-  };
-  std::map<Cell, std::vector<OnSurface>> strangers;
-  for (const OnSurface &s : owners_->ranks.gather_all(own))
-    if (!at_hand.count(s.name))
-      strangers[cell_of(s.at())].push_back(s);
-  const auto meets = [&](const OnSurface &a, const OnSurface &b) {
-    const double touch = std::min((a.diameter + b.diameter) / 2, (a.home() - b.home()).norm());
-    return (a.at() - b.at()).norm() < touch + 2 * skin_ && !flanks_.lie_beside(a.home(), b.home());
-  };
-  for (const OnSurface &s : own)
-    for (int m = 0; m < int(std::pow(3, dim)); ++m) {
-      Cell cell = cell_of(s.at());
-      for (int c = 0, rest = m; c < dim; ++c, rest /= 3)
-        cell[c] += rest % 3 - 1;
-      const auto there = strangers.find(cell);
-      if (there != strangers.end() &&
-          std::any_of(there->second.begin(), there->second.end(),
-                      [&](const OnSurface &other) { return meets(s, other); }))
-        return true;
-    }
-  return false;
-}
-
-// A flank that has slid by one spacing and a half meets particles two faces further on at most.
-template <int dim>
-bool ContactSearch<dim>::slides_to_strangers(const Particles &p,
-                                             const Contacts<dim> &contacts) const
-{
-  return std::any_of(contacts.all().begin(), contacts.all().end(), [&](const Contact<dim> &c) {
-    return c.is_joint() && !(owners_->is_own(c.face.i) && owners_->is_own(c.face.j)) &&
-           (owners_->is_own(c.face.i) || owners_->is_own(c.face.j)) &&
-           Contacts<dim>::slide(c, p).norm() > 1.5 * spacing_;
-  });
-}
-
-template <int dim>
-void ContactSearch<dim>::stop_at_strangers(const Particles &p, const Contacts<dim> &contacts) const
-{
-  if (!owners_ || owners_->ranks.is_one())
-    return;
-  const auto found = owners_->ranks.max(
-      std::vector<std::int64_t>{meets_strangers(p), slides_to_strangers(p, contacts)});
-  core::require<core::GuardStop>(
-      found[0] == 0, "particles touch that were never near each other and belong to different "
-                     "ranks, which see too little of each other; go on with one rank");
-  core::require<core::GuardStop>(
-      found[1] == 0, "the flanks of a crack have slid by more than 1.5 spacings where it passes "
-                     "from one rank to the next, which see too little of each other; go on with "
-                     "one rank");
+  search_.set_due(guests_->ranks().any(search_.is_due()));
 }
 
 template std::map<int, Contacts<2>::Motion>
 Contacts<2>::foreign_motions(const std::vector<Change> &, const Particles &) const;
 template std::map<int, Contacts<3>::Motion>
 Contacts<3>::foreign_motions(const std::vector<Change> &, const Particles &) const;
-template void ContactForces<2>::join(const particles::Owners &);
-template void ContactForces<3>::join(const particles::Owners &);
+template void Contacts<2>::join(const ContactGuests<2> &);
+template void Contacts<3>::join(const ContactGuests<3> &);
+template void Contacts<2>::append(const std::vector<ContactGuests<2>::Guest> &);
+template void Contacts<3>::append(const std::vector<ContactGuests<3>::Guest> &);
+template void Contacts<2>::tell(const std::vector<std::size_t> &);
+template void Contacts<3>::tell(const std::vector<std::size_t> &);
+template std::optional<std::size_t> Contacts<2>::find(const std::array<std::int64_t, 3> &) const;
+template std::optional<std::size_t> Contacts<3>::find(const std::array<std::int64_t, 3> &) const;
+template void ContactForces<2>::join(std::shared_ptr<particles::Owners>, const Particles &,
+                                     std::vector<char>);
+template void ContactForces<2>::invite(const core::State &, Particles &);
 template std::vector<std::int64_t> ContactForces<2>::seen() const;
-template std::vector<std::int64_t> ContactForces<3>::seen() const;
 template void ContactForces<2>::agree(const std::vector<std::int64_t> &);
-template void ContactForces<3>::agree(const std::vector<std::int64_t> &);
 template void ContactForces<2>::agree_after_load();
-template void ContactForces<3>::agree_after_load();
 template void ContactForces<2>::follow_break();
+template void ContactForces<3>::join(std::shared_ptr<particles::Owners>, const Particles &,
+                                     std::vector<char>);
+template void ContactForces<3>::invite(const core::State &, Particles &);
+template std::vector<std::int64_t> ContactForces<3>::seen() const;
+template void ContactForces<3>::agree(const std::vector<std::int64_t> &);
+template void ContactForces<3>::agree_after_load();
 template void ContactForces<3>::follow_break();
-template void ContactSearch<2>::stop_at_strangers(const Particles &, const Contacts<2> &) const;
-template void ContactSearch<3>::stop_at_strangers(const Particles &, const Contacts<3> &) const;
 } // namespace ligament::dem

@@ -27,9 +27,15 @@ void ContactSearch<dim>::add_surface_particle(int i)
 {
   if (on_surface_[i])
     return;
+  add_seen(i);
+  due_ = due_ || is_own(i); // else its owner says so
+}
+
+template <int dim>
+void ContactSearch<dim>::add_seen(int i)
+{
   on_surface_[i] = 1;
   surface_.push_back(i);
-  due_ = true;
 }
 
 template <int dim>
@@ -56,13 +62,14 @@ template <int dim>
 bool ContactSearch<dim>::has_moved(const Particles &p) const
 {
   for (std::size_t s = 0; s < searched_at_.size(); ++s)
-    if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin_ * skin_)
+    if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin_ * skin_ &&
+        is_own(surface_[s]))
       return true;
   return false;
 }
 
 template <int dim>
-void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bonds,
+void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
                                 Contacts<dim> &contacts)
 {
   if (!due_) {
@@ -70,13 +77,17 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
     return;
   }
   due_ = false;
+  if (guests_)
+    meet_others(p, contacts);
   searched_at_.clear();
   for (const int i : surface_)
     searched_at_.push_back(get(p.displacement, i));
   const double reach = largest_ + 2 * skin_;
-  stop_at_strangers(p, contacts);
   contacts.drop_distant(p, reach);
-  flanks_.pass_on_joints(p, contacts);
+  if (guests_)
+    pass_on_joints(p, contacts);
+  else
+    flanks_.pass_on_joints(p, contacts);
 
   std::set<std::pair<int, int>> known;
   const auto key = [](int i, int j) { return std::pair<int, int>(std::min(i, j), std::max(i, j)); };
@@ -129,12 +140,13 @@ void ContactSearch<dim>::update(const Particles &p, const BondNetwork<dim> &bond
         continue;
       for (const Partner &other : it->second)
         if (const int j = other.particle;
-            p.global_id[i] < p.global_id[j] &&
+            p.global_id[i] < p.global_id[j] && (!guests_ || guests_->keeps(i, j)) &&
             (place_of(p, other) - x).norm() < rest_distance(p, i, other) + 2 * skin_ &&
             !known.count(key(i, j)) && !flanks_.face_each_other(i, j))
           found.push_back({i, other});
     }
-    bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
+    if (i < bonds.n_particles()) // else a guest
+      bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
   }
   const auto names = [&](const Pair &pair) {
     return std::pair(p.global_id[pair.i], p.global_id[pair.j.particle]);
@@ -204,11 +216,12 @@ void ContactSearch<dim>::load(const core::State &state, const core::Names &names
   due_ = core::load_integer(state, "search", "due") != 0;
   for (const int i : surface_) {
     const auto place = places.find(i);
-    if (place == places.end()) {
+    if (place == places.end() && is_own(i)) {
       due_ = due_ || !places.empty();
       break;
     }
-    searched_at_.push_back(place->second);
+    searched_at_.push_back(place == places.end() ? Vector<dim>(Vector<dim>::Zero())
+                                                 : place->second);
   }
 }
 

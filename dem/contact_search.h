@@ -20,9 +20,13 @@ public:
   ContactSearch(const packings::Packing<dim> &packing, double face_area,
                 const PeriodicImages<dim> *images = nullptr);
 
-  /// From now on other ranks hold other parts of the body; they call update() together. `owners`
+  /// From now on other ranks hold other parts of the body; they call update() together. `guests`
   /// must outlive it.
-  void join(const particles::Owners &owners) { owners_ = &owners; }
+  void join(ContactGuests<dim> &guests, const Particles &particles);
+  /// Particles of these names come where they are not at hand, also into the contacts. All ranks
+  /// call it.
+  void invite(const std::vector<std::int64_t> &names, Particles &particles,
+              Contacts<dim> &contacts);
   bool is_due() const { return due_; }
   void set_due(bool due) { due_ = due; }
 
@@ -33,9 +37,8 @@ public:
   /// bond nor contact, in the call after the one that saw a surface particle moved by the skin of
   /// d/4 since the last search; drops those found before that went apart. The order depends on
   /// global ids alone. Particles across the same initial cut meet in its joints only, which go on
-  /// from particle to particle. Of a body in parts: core::GuardStop on all ranks where a particle
-  /// comes near one that its rank doesn't see.
-  void update(const Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
+  /// from particle to particle. Of a body in parts: those of other ranks that come near come first.
+  void update(Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
   /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
   /// proportion to the diameters; its normal is not known.
@@ -56,10 +59,12 @@ private:
   };
 
   bool has_moved(const Particles &particles) const;
-  /// Of a body in parts: whether contacts need particles that are not at hand.
-  void stop_at_strangers(const Particles &particles, const Contacts<dim> &contacts) const;
-  bool meets_strangers(const Particles &particles) const;
-  bool slides_to_strangers(const Particles &particles, const Contacts<dim> &contacts) const;
+  bool is_own(int i) const { return !guests_ || guests_->is_own(i); }
+  /// Of a body in parts: particles of other ranks that come near those whose contacts are kept.
+  void meet_others(Particles &particles, Contacts<dim> &contacts);
+  /// The same as CutFlanks does in one process.
+  void pass_on_joints(Particles &particles, Contacts<dim> &contacts);
+  void add_seen(int i); // on a surface, whoever found it
   double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
   /// Centre distance at which two particles touch.
   double rest_distance(const Particles &particles, int i, const Partner &partner) const;
@@ -74,6 +79,6 @@ private:
   std::vector<int> surface_;             // particles on surfaces
   std::vector<Vector<dim>> searched_at_; // of the first of them, displacements at the last search
   bool due_ = true;
-  const particles::Owners *owners_ = nullptr; // null: all are one's own
+  ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
 };
 } // namespace ligament::dem

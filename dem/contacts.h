@@ -4,9 +4,9 @@
 #include "core/exact_sum.h"
 #include "core/names.h"
 #include "dem/bond.h"
+#include "dem/contact_guests.h"
 #include "dem/materials.h"
 #include "dem/periodic_images.h"
-#include "particles/halo.h"
 
 #include <array>
 #include <functional>
@@ -95,7 +95,19 @@ public:
 
   /// Ranks that hold other parts of the body step some of the particles from now on (must outlive
   /// it). All call add_forces() together; contacts whose first particle is one's own are booked.
-  void join(const particles::Owners &owners) { owners_ = &owners; }
+  /// Those that are not kept are dropped.
+  void join(const ContactGuests<dim> &guests);
+  bool has_joined() const { return guests_ != nullptr; }
+  /// Drops those whose particles' contacts are not kept.
+  void drop_others();
+  /// Guests have come.
+  void append(const std::vector<typename ContactGuests<dim>::Guest> &guests);
+  /// Tells all ranks of these; those that keep contacts of their particles and lack them have them
+  /// from now on. All ranks call it.
+  void tell(const std::vector<std::size_t> &of);
+  /// Tells of the joints that have gone on from particle to particle.
+  void tell_passed_on();
+  int material(int particle) const { return materials_.number(particle); }
 
   /// A face of initial cut number `cut`, whose unit normal is given (either sense); centre of j in
   /// the reference (m).
@@ -117,6 +129,8 @@ public:
   std::optional<PressedContact<dim>> pressed(std::size_t k, const Particles &particles) const;
   /// Place in all() of one of this name.
   std::size_t place(const std::array<std::int64_t, 3> &name) const;
+  std::optional<std::size_t> find(const std::array<std::int64_t, 3> &name) const;
+  void erase(std::size_t k) { contacts_.erase(contacts_.begin() + std::ptrdiff_t(k)); }
   /// It is a bond from now on; and a contact again, flow having drawn its particles apart by
   /// `grown` (m). It presses with nothing where it is shut, unless it takes over a force.
   void bond(std::size_t k);
@@ -218,7 +232,7 @@ private:
   std::vector<Contact<dim>> contacts_;
   bool grips_at_touch_ = false;
   core::ExactSum frictional_work_, step_error_;
-  const particles::Owners *owners_ = nullptr; // null: all are one's own
+  const ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
 };
 
 template <int dim>

@@ -36,12 +36,9 @@ auto Contacts<dim>::pressed(std::size_t k, const Particles &p) const
 template <int dim>
 std::size_t Contacts<dim>::place(const std::array<std::int64_t, 3> &name) const
 {
-  const auto found = std::lower_bound(
-      contacts_.begin(), contacts_.end(), name,
-      [](const Contact<dim> &c, const std::array<std::int64_t, 3> &n) { return c.name < n; });
-  core::require(found != contacts_.end() && found->name == name,
-                "a face that is bonded again is a contact");
-  return found - contacts_.begin();
+  const auto found = find(name);
+  core::require(found.has_value(), "a face that is bonded again is a contact");
+  return *found;
 }
 
 template <int dim>

@@ -1,48 +1,11 @@
 // What contacts remember, and how it comes back to those of another object for the same body.
-#include "dem/contacts.h"
+#include "dem/contact_numbers.h"
 
 #include <algorithm>
 #include <map>
 
 namespace ligament::dem
 {
-namespace
-{
-/// visit(column, number) for every number that a contact's past decided.
-template <int dim, typename C, typename Visit>
-void for_each_number(C &c, Visit &&visit)
-{
-  const auto vector = [&](const std::string &name, auto &v) {
-    for (int k = 0; k < dim; ++k)
-      visit(name + "_" + std::to_string(k), v[k]);
-  };
-  const auto turn = [&](const std::string &name, auto &t) {
-    if constexpr (dim == 2) {
-      visit(name + "_cosine_minus_1", t.cosine_minus_1);
-      visit(name + "_sine", t.sine);
-    } else {
-      visit(name + "_w", t.w);
-      vector(name + "_v", t.v);
-    }
-  };
-  visit("distance", c.face.distance);
-  visit("own_distance", c.own_distance);
-  visit("share_i", c.share_i);
-  vector("lever_j", c.face.lever_j);
-  vector("passed", c.passed);
-  vector("slip", c.slip);
-  vector("last_between", c.last_between);
-  vector("last_lever", c.last_lever);
-  vector("last_normal", c.last_normal);
-  turn("last_turn_i", c.last_turn_i);
-  turn("last_turn_j", c.last_turn_j);
-  visit("last_angle_i", c.last_angle_i);
-  visit("last_angle_j", c.last_angle_j);
-  visit("correction", c.correction);
-}
-
-constexpr std::int64_t is_known = 1, is_from_face = 2, has_overlap = 4, is_bonded = 8; // flags
-} // namespace
 
 template <int dim>
 void Contacts<dim>::save(core::State &state, const core::Names &names) const
@@ -54,10 +17,7 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
     keys.insert(keys.end(), c.name.begin(), c.name.end());
     i.push_back(names.name(c.face.i));
     j.push_back(names.name(c.face.j));
-    flags.push_back((c.known ? is_known : std::int64_t(0)) |
-                    (c.from_face ? is_from_face : std::int64_t(0)) |
-                    (c.last_overlap ? has_overlap : std::int64_t(0)) |
-                    (c.is_bonded ? is_bonded : std::int64_t(0)));
+    flags.push_back(ContactFlags::of(c));
     overlap.push_back(c.last_overlap.value_or(0));
     image.push_back(PeriodicImages<dim>::number_of(c.face.image));
     for_each_number<dim>(
@@ -102,6 +62,9 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
     if (here < 0 || there < 0)
       continue;
     const auto known = of_faces.find(name);
+    const bool is_told = known == of_faces.end() && name[2] > 0; // whoever has the face tells
+    if (guests_ && (is_told || !guests_->keeps(here, there)))
+      continue;
     Contact<dim> c = known != of_faces.end()
                          ? known->second
                          : make(make_face(here, there, numbers.at("distance")[r]), false);
@@ -109,10 +72,7 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
     c.face.j = there;
     if (!image.empty())
       c.face.image = images.of(int(image[r]));
-    c.from_face = flags[r] & is_from_face;
-    c.known = flags[r] & is_known;
-    c.is_bonded = flags[r] & is_bonded;
-    c.last_overlap = flags[r] & has_overlap ? std::optional(overlap[r]) : std::nullopt;
+    ContactFlags::set(c, flags[r], overlap[r]);
     for_each_number<dim>(
         c, [&](const std::string &column, double &value) { value = numbers.at(column)[r]; });
     contacts_.push_back(std::move(c));

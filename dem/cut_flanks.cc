@@ -8,12 +8,18 @@ namespace ligament::dem
 template <int dim>
 CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
     : spacing_(packing.spacing), largest_(packings::largest_diameter(packing)),
-      planes_(packing.cuts), cuts_(packing.cuts.size())
+      cuts_(packing.cuts.size())
 {
   for (std::size_t c = 0; c < cuts_.size(); ++c)
-    for (int i = 0; i < packing.size(); ++i)
-      if (const int at = side(c, get(packing.centre, i)); at != 0)
-        cuts_[c].positive[i] = at > 0;
+    for (int i = 0; i < packing.size(); ++i) {
+      const Vector<dim> x = get(packing.centre, i);
+      const double height = packing.cuts[c].height(x);
+      if (std::abs(height) < 1.5 * largest_ && packing.cuts[c].is_beside(x))
+        cuts_[c].positive[i] = height > 0;
+    }
+  const auto facing_of = [&](int i) {
+    return Facing{packing.global_id.empty() ? i : packing.global_id[i], i, get(packing.centre, i)};
+  };
   for (const auto &face : packing.faces) {
     if (face.cut < 0)
       continue;
@@ -21,32 +27,18 @@ CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
     const bool upwards = packing.cuts[face.cut].normal().dot(face.normal) > 0;
     positive[face.i] = !upwards;
     positive[face.j] = upwards;
-    facing[!upwards].push_back(face.i);
-    facing[upwards].push_back(face.j);
+    facing[!upwards].push_back(facing_of(face.i));
+    facing[upwards].push_back(facing_of(face.j));
   }
   for (Flanks &flanks : cuts_)
     for (auto &facing : flanks.facing) {
-      std::sort(facing.begin(), facing.end());
-      facing.erase(std::unique(facing.begin(), facing.end()), facing.end());
+      std::sort(facing.begin(), facing.end(),
+                [](const Facing &a, const Facing &b) { return a.particle < b.particle; });
+      facing.erase(
+          std::unique(facing.begin(), facing.end(),
+                      [](const Facing &a, const Facing &b) { return a.particle == b.particle; }),
+          facing.end());
     }
-}
-
-template <int dim>
-int CutFlanks<dim>::side(std::size_t c, const Vector<dim> &x) const
-{
-  const double height = planes_[c].height(x);
-  if (std::abs(height) >= 1.5 * largest_ || !planes_[c].is_beside(x))
-    return 0;
-  return height > 0 ? 1 : -1;
-}
-
-template <int dim>
-bool CutFlanks<dim>::lie_beside(const Vector<dim> &a, const Vector<dim> &b) const
-{
-  for (std::size_t c = 0; c < planes_.size(); ++c)
-    if (side(c, a) * side(c, b) < 0)
-      return true;
-  return false;
 }
 
 template <int dim>
@@ -62,23 +54,23 @@ bool CutFlanks<dim>::face_each_other(int i, int j) const
 // In the reference of i's flank: where the other flank's particles have slid to, against the place
 // of the partner that the packing gave.
 template <int dim>
-int CutFlanks<dim>::partner(const Contact<dim> &c, const Particles &p) const
+auto CutFlanks<dim>::next(const Contact<dim> &c, const Particles &p) const -> Next
 {
   const Vector<dim> slide = Contacts<dim>::slide(c, p), home = c.home, n = c.cut_normal;
-  const auto distance = [&](int k) {
-    const Vector<dim> x = get(p.reference, k) + slide - home;
+  const auto distance = [&](const Vector<dim> &place) {
+    const Vector<dim> x = place + slide - home;
     return (x - n * n.dot(x)).norm();
   };
-  const double now = distance(c.face.j);
+  const double now = distance(get(p.reference, c.face.j));
   if (now < spacing_ / 2)
-    return c.face.j;
+    return {true, nullptr};
   const Flanks &flanks = cuts_[c.cut];
-  int best = c.face.j;
+  const Facing *best = nullptr;
   double least = now;
-  for (const int k : flanks.facing[flanks.positive.at(c.face.j)])
-    if (const double d = distance(k); d < least)
-      least = d, best = k;
-  return least < largest_ ? best : -1;
+  for (const Facing &facing : flanks.facing[flanks.positive.at(c.face.j)])
+    if (const double d = distance(facing.place); d < least)
+      least = d, best = &facing;
+  return least < largest_ ? Next{best == nullptr, best} : Next{false, nullptr};
 }
 
 template <int dim>
@@ -88,8 +80,8 @@ void CutFlanks<dim>::pass_on_joints(const Particles &p, Contacts<dim> &contacts)
     const Contact<dim> &c = contacts.all()[k];
     if (!c.is_joint() || c.is_bonded)
       continue;
-    if (const int j = partner(c, p); j != c.face.j)
-      contacts.pass_on(k, j, p);
+    if (const Next to = next(c, p); !to.stays)
+      contacts.pass_on(k, to.to ? to.to->particle : -1, p);
   }
 }
 

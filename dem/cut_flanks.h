@@ -1,6 +1,7 @@
 // The two flanks of every initial cut: who lies on them, and who meets whom when they slide.
 #pragma once
 
+#include "dem/contact_guests.h"
 #include "dem/contacts.h"
 #include "packings/packing.h"
 
@@ -16,31 +17,64 @@ public:
 
   explicit CutFlanks(const packings::Packing<dim> &packing);
 
+  /// The particles are a part of a body from now on: all ranks tell each other who lies on a flank.
+  /// `guests` must outlive it.
+  void join(const ContactGuests<dim> &guests, const Particles &particles);
+  /// Particle i has come, of this name.
+  void append(int i, std::int64_t name);
+
   /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it: they never
   /// interlock.
   bool face_each_other(int i, int j) const;
-
-  /// The same of particles that may not be at hand, by their places in the reference (m).
-  bool lie_beside(const Vector<dim> &a, const Vector<dim> &b) const;
 
   /// Joints whose flanks have slid by more than half a spacing since go on to the particle of the
   /// same flank that has come nearest to where the partner was; those that slid off its end end.
   void pass_on_joints(const Particles &particles, Contacts<dim> &contacts) const;
 
+  /// Such a joint of a body in parts: particle i keeps it.
+  struct Passing
+  {
+    std::array<std::int64_t, 3> joint;
+    std::int64_t i, to; // names of particles
+    bool ends;          // there is none that it could go on to
+  };
+  /// Of the joints whose particle i is one's own.
+  std::vector<Passing> passings(const Particles &particles, const Contacts<dim> &contacts) const;
+
 private:
-  /// The partner that contact c would have at present; c's own: nobody is nearer; -1: none.
-  int partner(const Contact<dim> &c, const Particles &particles) const;
+  /// A particle with faces of a cut; it may be another rank's.
+  struct Facing
+  {
+    std::int64_t name;
+    int particle;      // -1: not at hand
+    Vector<dim> place; // m, reference
+  };
+  /// Where a joint goes on at present.
+  struct Next
+  {
+    bool stays;
+    const Facing *to; // null: it ends
+  };
+  Next next(const Contact<dim> &c, const Particles &particles) const;
 
   struct Flanks
   {
-    std::map<int, bool> positive;           // particles near the cut: on its positive side?
-    std::array<std::vector<int>, 2> facing; // those with faces of the cut: negative, positive side
+    std::map<int, bool> positive;              // particles near the cut: on its positive side?
+    std::array<std::vector<Facing>, 2> facing; // those with its faces: negative, positive side
   };
-  /// Of a place: 1 or -1 beside cut number c, above or below it; 0: not beside it.
-  int side(std::size_t c, const Vector<dim> &place) const;
+  /// A particle near a cut, as ranks tell each other of it.
+  struct Told
+  {
+    std::int64_t name;
+    int cut;
+    bool is_positive, faces;
+    std::array<double, dim> place; // m, reference
+  };
+  std::vector<Told> own_flanks(const Particles &particles) const;
 
   double spacing_, largest_; // m, of particles
-  std::vector<packings::CrackPlane<dim>> planes_;
   std::vector<Flanks> cuts_;
+  const ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
+  std::multimap<std::int64_t, Told> told_;     // by names, of all ranks
 };
 } // namespace ligament::dem

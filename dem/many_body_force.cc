@@ -265,6 +265,7 @@ void ManyBodyForce<dim>::compute(Particles &p, double time)
   search_.ask(evaluation_, strains_);
   evaluation_.may_flow = true;
   find_forces_of_step(p);
+  contacts_.follow_guests(p);
   contacts_.search(p, body_.bonds(), time, rest_);
   add_contacts(p);
   book_work(p);

@@ -46,7 +46,8 @@ public:
   /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains
   /// of the particles' own, faces that soften, fall or are bonded again, several materials whose
   /// faces meet, joined sides, pressures that follow the surface.
-  void join(const particles::Owners &owners) override;
+  void join(const particles::Owners &owners, const Particles &particles) override;
+  void invite(const core::State &state, Particles &particles) override;
   /// Rings of ghosts around the particles of a rank: forces need two, criteria that read the stress
   /// of both particles of a bond one more.
   static int n_rings(const FractureLaw &law) { return law.reads_stresses() ? 3 : 2; }
@@ -202,9 +203,10 @@ private:
   void follow_break(const std::vector<std::int64_t> &places);
   /// Of the bonds that the body has: where they are at hand.
   std::vector<BondId> bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
-                                 const Particles &particles, std::vector<std::int64_t> &places);
-  std::optional<BondId> bond_between(const std::array<std::int64_t, 2> &name,
-                                     const Particles &particles);
+                                 std::vector<std::int64_t> &places) const;
+  std::optional<BondId> bond_between(const std::array<std::int64_t, 2> &name) const;
+  /// Whose contacts are needed here, all of them: 1.
+  std::vector<char> kept_particles() const;
   StressedBody<dim> stressed(const Particles &particles, const Evaluation<dim> &evaluation) const
   {
     return {particles, evaluation, strains_, parts_};
@@ -303,9 +305,9 @@ private:
   mutable Evaluation<dim> energy_evaluation_;
   mutable std::vector<double> energy_, own_energy_;
   particles::RestBlocks<dim> *rest_ = nullptr;
-  std::shared_ptr<const particles::Owners> owners_ = std::make_shared<particles::Owners>();
+  std::shared_ptr<particles::Owners> owners_ = std::make_shared<particles::Owners>();
   // Of a body in parts.
-  core::Names names_;
+  core::Names names_;                          // of what is held from the start
   std::int64_t n_broken_ = 0, n_breaking_ = 0; // in all of them: before, and now
   double thickness_;                           // m, 2D
   double time_ = 0, last_time_ = 0;            // s

@@ -8,7 +8,7 @@ namespace ligament::dem
 {
 // Asked of all ranks at once: one that refused alone would leave the others waiting.
 template <int dim>
-void ManyBodyForce<dim>::join(const particles::Owners &owners)
+void ManyBodyForce<dim>::join(const particles::Owners &owners, const Particles &p)
 {
   if (owners.ranks.is_one())
     return;
@@ -24,7 +24,32 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners)
   refuse_where(!body_.energy_weights().empty(), "a body with weighted energy");
   core::require(broken_.all().empty(), "parts are joined before anything breaks");
   owners_ = std::make_shared<particles::Owners>(owners);
-  contacts_.join(*owners_);
+  names_ = p.names();
+  contacts_.join(owners_, p, kept_particles());
+}
+
+// Contacts act on what is one's own; where bonds break by stresses, these are asked for at the
+// other ends of its bonds, too.
+template <int dim>
+std::vector<char> ManyBodyForce<dim>::kept_particles() const
+{
+  std::vector<char> kept(body_.n_particles(), 0);
+  for (int i = 0; i < body_.n_particles(); ++i) {
+    if (!owners_->is_own(i))
+      continue;
+    kept[i] = 1;
+    if (search_.reads_stresses())
+      body_.bonds().for_each_bond_of(
+          i, [&](BondId, const Bond<dim> &b) { kept[b.i] = kept[b.j] = 1; });
+  }
+  return kept;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::invite(const core::State &state, Particles &p)
+{
+  if (!ranks().is_one())
+    contacts_.invite(state, p);
 }
 
 template <int dim>
@@ -49,18 +74,17 @@ std::vector<BondId> ManyBodyForce<dim>::breaking_bonds(const StressedBody<dim> &
   const auto breaking = search_.breaking(std::move(found), body_);
   if (!ranks().is_one())
     n_breaking_ = std::int64_t(breaking.size());
-  return bonds_here(breaking, state.particles, places);
+  return bonds_here(breaking, places);
 }
 
 template <int dim>
 std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
-                                                   const Particles &p,
-                                                   std::vector<std::int64_t> &places)
+                                                   std::vector<std::int64_t> &places) const
 {
   std::vector<BondId> here;
   for (std::size_t k = 0; k < bonds.size(); ++k)
     if (const auto id = bonds[k].rank == ranks().rank() ? std::optional(bonds[k].id)
-                                                        : bond_between(bonds[k].name, p))
+                                                        : bond_between(bonds[k].name))
     {
       here.push_back(*id);
       places.push_back(std::int64_t(k));
@@ -69,11 +93,9 @@ std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBo
 }
 
 template <int dim>
-std::optional<BondId> ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name,
-                                                       const Particles &p)
+std::optional<BondId>
+ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name) const
 {
-  if (names_.size() == 0)
-    names_ = p.names();
   const int i = names_.index(name[0]), j = names_.index(name[1]);
   std::optional<BondId> found;
   if (i >= 0 && j >= 0)
@@ -143,8 +165,10 @@ std::vector<BrokenBond<dim>> ManyBodyForce<dim>::broken_bonds_of_body(const Part
   return all;
 }
 
-template void ManyBodyForce<2>::join(const particles::Owners &);
-template void ManyBodyForce<3>::join(const particles::Owners &);
+template void ManyBodyForce<2>::join(const particles::Owners &, const Particles &);
+template void ManyBodyForce<2>::invite(const core::State &, Particles &);
+template void ManyBodyForce<3>::join(const particles::Owners &, const Particles &);
+template void ManyBodyForce<3>::invite(const core::State &, Particles &);
 template std::vector<BondId> ManyBodyForce<2>::breaking_bonds(const StressedBody<2> &,
                                                               std::vector<std::int64_t> &);
 template std::vector<BondId> ManyBodyForce<3>::breaking_bonds(const StressedBody<3> &,

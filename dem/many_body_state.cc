@@ -48,7 +48,7 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
   std::vector<std::int64_t> numbers;
   for (std::size_t r = 0; r < table.n_rows(); ++r) {
     const int here = names.index(i[r]), there = names.index(j[r]);
-    if (here < 0 || there < 0)
+    if (here < 0 || there < 0 || std::max(here, there) >= body_.n_particles()) // a guest
       continue;
     std::optional<BondId> id;
     body_.bonds().for_each_bond_of(here, [&](BondId of, const Bond<dim> &b) {

@@ -34,6 +34,12 @@ public:
   const std::vector<DemMaterial> &all() const { return all_; }
   int number(int particle) const { return of_particle_.empty() ? 0 : of_particle_[particle]; }
   const DemMaterial &of(int particle) const { return all_[number(particle)]; }
+  /// One more particle, of material number `of`.
+  void append(int of)
+  {
+    if (!of_particle_.empty())
+      of_particle_.push_back(of);
+  }
 
   /// Whether the bond between the two particles joins different elastic constants.
   bool differ(int i, int j) const

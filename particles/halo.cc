@@ -20,7 +20,7 @@ void Halo<dim>::for_each_sent(P &p, Visit &&visit)
 }
 
 template <int dim>
-Halo<dim>::Halo(const Owners &owners, const Particles<dim> &p) : ranks_(owners.ranks)
+Halo<dim>::Halo(const Owners &owners, const Particles<dim> &p, int first) : ranks_(owners.ranks)
 {
   if (ranks_.is_one())
     return;
@@ -29,7 +29,7 @@ Halo<dim>::Halo(const Owners &owners, const Particles<dim> &p) : ranks_(owners.r
   std::vector<std::vector<std::int64_t>> asked(ranks_.size());
   std::vector<std::vector<int>> ghosts(ranks_.size());
   for (const int i : names.ascending())
-    if (!owners.is_own(i)) {
+    if (i >= first && !owners.is_own(i)) {
       asked[owners.of[i]].push_back(names.name(i));
       ghosts[owners.of[i]].push_back(i);
     }

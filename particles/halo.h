@@ -23,9 +23,9 @@ class Halo
 public:
   /// Nothing is sent.
   Halo() = default;
-  /// Of what is at hand, by `owners`. Throws core::InputError on all ranks where an owner doesn't
-  /// have what it is asked for.
-  Halo(const Owners &owners, const Particles<dim> &particles);
+  /// Of what is at hand from index `first` on, by `owners`. Throws core::InputError on all ranks
+  /// where an owner doesn't have what it is asked for.
+  Halo(const Owners &owners, const Particles<dim> &particles, int first = 0);
 
   /// Overwrites displacement and orientation of the ghosts by those that their owners have.
   void update(Particles<dim> &particles);

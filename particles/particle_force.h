@@ -122,11 +122,15 @@ public:
 
   /// The particles are a part of a body from now on, the others are on other ranks: compute() tells
   /// these what breaks, energies and losses are those of the body. All ranks make the same calls.
-  /// Throws core::InputError where the force can't be parted: by default, always.
-  virtual void join(const Owners &)
+  /// compute() may append particles of others that touch those at hand. Throws core::InputError
+  /// where the force can't be parted: by default, always.
+  virtual void join(const Owners &, const Particles<dim> &)
   {
     throw core::InputError("forces of this kind act in one process only; use one rank");
   }
+  /// Of a part, before load(): appends the particles of others that the state of the whole body
+  /// needs here.
+  virtual void invite(const core::State &, Particles<dim> &) {}
 
   /// Largest stable leap-frog step of the intact body, in s.
   virtual double stable_step(const Particles<dim> &particles) const = 0;

@@ -27,7 +27,7 @@ void ParticleSolver<dim>::join(const Owners &owners)
   core::require(!rest_, "parts are joined before anything rests");
   ranks_ = owners.ranks;
   halo_ = Halo<dim>(owners, state);
-  force->join(owners);
+  force->join(owners, state);
 }
 
 template <int dim>
@@ -114,6 +114,8 @@ void ParticleSolver<dim>::save(core::State &all) const
 template <int dim>
 void ParticleSolver<dim>::load(const core::State &all)
 {
+  if (!ranks_.is_one())
+    force->invite(all, state);
   const core::Names names = state.names();
   const core::State of_part = ranks_.is_one() ? core::State() : core::share_of(all, ranks_);
   const core::State &share = ranks_.is_one() ? all : of_part;

@@ -54,6 +54,10 @@ struct Particles
   /// n particles at rest, in the reference orientation, with zero mass, called 0 to n - 1.
   void resize(int n);
 
+  /// So called ones more at the end, at rest in the reference orientation, with zero mass; they
+  /// belong to nobody's part.
+  void append(const std::vector<std::int64_t> &names);
+
   /// From now on they have no orientation.
   void drop_orientations();
 };
@@ -113,6 +117,18 @@ void Particles<dim>::resize(int n)
   if (dim == 3 && turns)
     rotation[0].assign(n, 1.);
   global_id = GlobalIds(n);
+}
+
+template <int dim>
+void Particles<dim>::append(const std::vector<std::int64_t> &names)
+{
+  const int n = size();
+  for_each_array([&](const char *, auto &array) { array.resize(n + int(names.size()), 0); });
+  if (dim == 3 && turns)
+    std::fill(rotation[0].begin() + n, rotation[0].end(), 1.);
+  auto all = global_id.list();
+  all.insert(all.end(), names.begin(), names.end());
+  global_id = GlobalIds(all);
 }
 
 template <int dim>

@@ -28,24 +28,26 @@ ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const M
 }
 
 template <int dim>
-const Contact<dim> &ContactForces<dim>::add_broken(const Bond<dim> &b)
+const Contact<dim> *ContactForces<dim>::add_broken(const Bond<dim> &b)
 {
   search_.add_surface_particle(b.i);
   search_.add_surface_particle(b.j);
   searching_ = true;
-  return contacts_.add(b, true);
+  return guests_ && !guests_->keeps(b.i, b.j) ? nullptr : &contacts_.add(b, true);
 }
 
 template <int dim>
 double ContactForces<dim>::act_broken(const Bond<dim> &b, const Vector<dim> &pressing, Particles &p,
                                       double dt)
 {
-  const Contact<dim> &contact = add_broken(b);
-  const std::size_t k = &contact - all().data();
+  const Contact<dim> *const contact = add_broken(b);
+  if (!contact)
+    return 0;
+  const std::size_t k = contact - all().data();
   if (!pressing.isZero(0))
-    contacts_.take_over(k, b.i == contact.face.i ? pressing : Vector<dim>(-pressing), p);
+    contacts_.take_over(k, b.i == contact->face.i ? pressing : Vector<dim>(-pressing), p);
   contacts_.add_force(k, p, dt);
-  return contacts_.compression_energy(contact, p) + contacts_.slip_energy(contact, p);
+  return contacts_.compression_energy(*contact, p) + contacts_.slip_energy(*contact, p);
 }
 
 template <int dim>
@@ -66,7 +68,7 @@ double ContactForces<dim>::act_parted(const std::array<std::int64_t, 3> &name,
 }
 
 template <int dim>
-void ContactForces<dim>::search(const Particles &p, const BondNetwork<dim> &bonds, double time,
+void ContactForces<dim>::search(Particles &p, const BondNetwork<dim> &bonds, double time,
                                 particles::RestBlocks<dim> *rest)
 {
   if (none() || looked_at_ == time)
@@ -84,7 +86,7 @@ void ContactForces<dim>::search(const Particles &p, const BondNetwork<dim> &bond
   std::vector<int> asleep;
   for (const auto &contact : all())
     for (const int i : {contact.face.i, contact.face.j})
-      if (!rest->is_awake(i))
+      if (i < bonds.n_particles() && !rest->is_awake(i)) // no guest
         asleep.push_back(i);
   rest->wake(asleep);
 }
@@ -94,14 +96,18 @@ void ContactForces<dim>::add_energies(const Particles &p, Evaluation<dim> &,
                                       std::vector<double> &energy) const
 {
   for (const auto &contact : all())
-    energy[contact.face.i] += contacts_.energy(contact, p);
+    if (p.part.owns(contact.face.i))
+      energy[contact.face.i] += contacts_.energy(contact, p);
 }
 
 template <int dim>
 void ContactForces<dim>::for_each_moment(const Particles &p, const Evaluation<dim> &,
                                          const VisitMoment<dim> &visit) const
 {
-  contacts_.for_each_moment(p, visit);
+  contacts_.for_each_moment(p, [&](int i, const Vector<dim> &lever, const Vector<dim> &force) {
+    if (!guests_ || i < guests_->first())
+      visit(i, lever, force);
+  });
 }
 
 template <int dim>

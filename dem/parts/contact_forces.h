@@ -22,23 +22,35 @@ public:
   const Contacts<dim> &contacts() const { return contacts_; }
   const std::vector<Contact<dim>> &all() const { return contacts_.all(); }
 
-  /// Ranks that hold other parts step some of the particles from now on; owners must outlive it.
-  void join(const particles::Owners &owners);
+  /// Ranks that hold other parts step some of the particles from now on. Contacts of the `kept`
+  /// ones are known here, all of them; owners of guests are added to `owners`.
+  void join(std::shared_ptr<particles::Owners> owners, const Particles &particles,
+            std::vector<char> kept);
+  /// Before load(): the particles that contacts of the state need here come.
+  void invite(const core::State &state, Particles &particles);
+  /// After each drift: where particles of other ranks are that contacts alone see.
+  void follow_guests(Particles &particles)
+  {
+    if (guests_)
+      guests_->update(particles);
+  }
   /// No part of the body has any.
-  bool none() const { return agreed_ ? !agreed_->any : all().empty(); }
+  bool none() const { return guests_ ? !any_ : all().empty(); }
   /// What ranks have to agree on behind each step, before the next one searches: whether there are
   /// contacts, whether they slid, whether a search is due; 1 where one rank sees it.
   std::vector<std::int64_t> seen() const;
   void agree(const std::vector<std::int64_t> &seen);
-  /// The same after load().
+  /// The same after load(), and what joints have gone on to.
   void agree_after_load();
   /// A bond has broken somewhere: all search in the next step. To be called by all ranks.
   void follow_break();
 
-  /// A bond has broken: its particles lie on a surface, its face may touch.
-  const Contact<dim> &add_broken(const Bond<dim> &bond);
-  /// The same; adds the force of the contact, too, and returns its energy in J. `pressing`: the
-  /// bond's force on its first particle (N) where that is to go on; 0 otherwise.
+  /// A bond has broken: its particles lie on a surface, its face may touch. Null: other ranks keep
+  /// this contact.
+  const Contact<dim> *add_broken(const Bond<dim> &bond);
+  /// The same; adds the force of the contact, too, and returns its energy in J, of one that is
+  /// kept. `pressing`: the bond's force on its first particle (N) where that is to go on; 0
+  /// otherwise.
   double act_broken(const Bond<dim> &bond, const Vector<dim> &pressing, Particles &particles,
                     double dt);
 
@@ -49,7 +61,7 @@ public:
 
   /// Once at every new time: looks for faces that begin to touch, from when bonds have broken or
   /// faces have slid.
-  void search(const Particles &particles, const BondNetwork<dim> &bonds, double time,
+  void search(Particles &particles, const BondNetwork<dim> &bonds, double time,
               particles::RestBlocks<dim> *rest);
   /// Adds forces and torques, after all other parts; slips follow the motion. See Contacts.
   void act(Particles &particles, double dt) { contacts_.add_forces(particles, dt); }
@@ -81,11 +93,8 @@ private:
   double spacing_;                            // m
   bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
   std::optional<double> looked_at_;           // s
-  struct Agreed
-  {
-    const particles::Owners *owners;
-    bool any;
-  };
-  std::optional<Agreed> agreed_; // of a body in parts
+  // Of a body in parts.
+  std::unique_ptr<ContactGuests<dim>> guests_;
+  bool any_ = false; // some part has contacts
 };
 } // namespace ligament::dem
