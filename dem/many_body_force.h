@@ -162,6 +162,7 @@ public:
                  std::vector<double> &opening) const override;
   bool can_break() const override { return search_.can_break(); }
   long n_bonds() const override { return body_.bonds().n_bonds() + rebonded_.n_bonds(); }
+  const Contacts<dim> &contacts() const { return contacts_.contacts(); }
   int n_contacts() const { return int(contacts_.all().size()); }
 
   bool can_flow() const override { return strains_.has_plasticity(); }

@@ -149,14 +149,18 @@ private:
   std::string differs_;
 };
 
-/// Weights of the blocks: another cut for each number, 0 for equal shares.
-inline particles::Partition some_partition(int n, unsigned number)
+/// Weights of the blocks: another cut for each number, 0 for equal shares. Ranks behind the first
+/// `n_busy` ones own nothing; 0: none.
+inline particles::Partition some_partition(int n, unsigned number, int n_busy = 0)
 {
   std::vector<std::int64_t> weights;
   std::mt19937 random(number);
   for (int b = 0; b * particles::sum_block < n && number > 0; ++b)
     weights.push_back(1 + random() % 3);
-  return particles::make_partition(n, test::ranks().size(), weights);
+  const int n_ranks = test::ranks().size();
+  auto partition = particles::make_partition(n, n_busy > 0 ? n_busy : n_ranks, weights);
+  partition.cuts.resize(n_ranks + 1, n);
+  return partition;
 }
 
 struct Outcome
@@ -164,6 +168,7 @@ struct Outcome
   int n_broken = 0, n_across = 0; // bonds; between particles of different ranks
   double friction = 0;            // J
   double at_rest = 0;             // of this rank's steps
+  int n_found = 0, n_met = 0;     // contacts that no face began; between particles of two ranks
 };
 
 /// All ranks step the body `steps` times beside the whole one.
@@ -201,6 +206,11 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
   for (const auto &b : whole.force->broken_bonds())
     outcome.n_across += partition.owner(b.i) != partition.owner(b.j);
   outcome.friction = whole.force->frictional_work();
+  for (const auto &c : whole.force->contacts().all())
+    if (!c.from_face) {
+      ++outcome.n_found;
+      outcome.n_met += partition.owner(c.face.i) != partition.owner(c.face.j);
+    }
   if (part.solver->rest())
     outcome.at_rest = part.solver->rest()->share_at_rest();
   return outcome;
