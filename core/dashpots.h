@@ -42,6 +42,8 @@ public:
   Dashpots() = default;
   explicit Dashpots(const Places &places);
 
+  bool is_empty() const { return places_.empty(); }
+
   /// From velocities after the kick v += dt force / mass to those that the dashpots leave;
   /// inverse_mass(index) in 1/kg, 0 for what is held.
   template <typename InverseMass>

@@ -54,12 +54,6 @@ template <int dim>
 void Contacts<dim>::join(const ContactGuests<dim> &guests)
 {
   guests_ = &guests;
-  drop_others();
-}
-
-template <int dim>
-void Contacts<dim>::drop_others()
-{
   contacts_.erase(
       std::remove_if(contacts_.begin(), contacts_.end(),
                      [&](const Contact<dim> &c) { return !guests_->keeps(c.face.i, c.face.j); }),

@@ -12,18 +12,19 @@ template <int dim>
 auto CutFlanks<dim>::own_flanks(const Particles &p) const -> std::vector<Told>
 {
   std::vector<Told> told;
-  for (std::size_t c = 0; c < cuts_.size(); ++c) {
+  for (std::size_t c = 0; c < cuts_.size(); ++c)
     for (const auto &[i, is_positive] : cuts_[c].positive) {
       if (!guests_->is_own(i))
         continue;
-      const auto &facing = cuts_[c].facing[is_positive];
-      const bool faces = std::any_of(facing.begin(), facing.end(),
-                                     [i = i](const Facing &f) { return f.particle == i; });
+      const auto &facing = cuts_[c].facing[is_positive]; // ascending
+      const auto place =
+          std::lower_bound(facing.begin(), facing.end(), i,
+                           [](const Facing &f, int particle) { return f.particle < particle; });
+      const bool faces = place != facing.end() && place->particle == i;
       Told &t = told.emplace_back(Told{p.global_id[i], int(c), is_positive, faces, {}});
       for (int a = 0; a < dim; ++a)
         t.place[a] = p.reference[a][i];
     }
-  }
   return told;
 }
 

@@ -97,9 +97,6 @@ public:
   /// it). All call add_forces() together; contacts whose first particle is one's own are booked.
   /// Those that are not kept are dropped.
   void join(const ContactGuests<dim> &guests);
-  bool has_joined() const { return guests_ != nullptr; }
-  /// Drops those whose particles' contacts are not kept.
-  void drop_others();
   /// Guests have come.
   void append(const std::vector<typename ContactGuests<dim>::Guest> &guests);
   /// Tells all ranks of these; those that keep contacts of their particles and lack them have them

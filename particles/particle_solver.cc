@@ -25,6 +25,12 @@ template <int dim>
 void ParticleSolver<dim>::join(const Owners &owners)
 {
   core::require(!rest_, "parts are joined before anything rests");
+  const auto refuse_where = [&](bool here, const std::string &what) {
+    core::require(owners.ranks.is_one() || !owners.ranks.any(here),
+                  what + " act in one process only; use one rank");
+  };
+  refuse_where(!dashpots.is_empty(), "absorbing sides");
+  refuse_where(!body_force.is_empty(), "accelerations of the whole body");
   ranks_ = owners.ranks;
   halo_ = Halo<dim>(owners, state);
   force->join(owners, state);

@@ -24,7 +24,9 @@ public:
   void drift(double dt);
 
   /// The particles at hand are a part of a body from now on, the others are on other ranks: forces
-  /// see the motion of ghosts, sums are those of the body. To be called once, by all ranks.
+  /// see the motion of ghosts, sums are those of the body. To be called once, by all ranks, when
+  /// absorbing sides and accelerations are set, which it refuses, as the force what it can't part
+  /// (core::InputError on all ranks).
   void join(const Owners &owners);
 
   /// After drift: the motion of particles that are seen, but not stepped; what that reaches wakes.
