@@ -77,7 +77,7 @@ namespace
 template <int dim>
 struct ToldContact
 {
-  static constexpr int n_numbers = dim == 2 ? 35 : 52;
+  static constexpr int n_numbers = dim == 2 ? 33 : 47;
 
   std::array<std::int64_t, 3> name;
   std::int64_t i, j, flags; // names of its particles

@@ -35,7 +35,7 @@ TYPED_TEST(BreakingInParts, BreaksLikeTheWholeLattice)
   scene.packing = packings::make_lattice_packing(box<TypeParam>(dim == 2 ? 24 : 8));
   int n_broken = 0, n_across = 0;
   for (const int axis : {0, dim - 1})
-    for (const Criterion &criterion : {Criterion::maximum_tension, Criterion::face_tension}) {
+    for (const auto &criterion : {Criterion::maximum_tension, Criterion::face_tension}) {
       scene.law = {criterion, 0.02};
       scene.loads = draw_apart<dim>(axis, 0.03);
       const Outcome outcome = expect_parts_to_move_like_the_whole(scene, dim == 2 ? 150 : 60, axis);
@@ -138,8 +138,8 @@ TEST(BreakingInParts, MeetsStrangersLikeTheWhole)
     scene.loads[0].value[0] = 0.03; // and along each other
     const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 200, 0);
     EXPECT_GT(outcome.n_found, 0);
-    if (test::ranks().size() % 2 == 0)
-      EXPECT_GT(outcome.n_met, 0);
+    const bool seam_is_between = test::ranks().size() % 2 == 0;
+    EXPECT_TRUE(outcome.n_met > 0 || !seam_is_between);
   }
 }
 
