@@ -137,10 +137,12 @@ void expect_energy_of_all_pairs(const std::string &form, const std::string &tabl
   const Components<3> expected = state.force;
   force.compute(state, 0);
   // Tens of terms per atom, some of them of several depths of the crystal's energy; forces are
-  // such terms over a tenth of a spacing.
+  // such terms over a tenth of a spacing. The plain energy is one sum of some thirty terms per atom,
+  // each of which rounds a sum as large as several depths per atom: a random walk.
   const double depth = std::abs(crystal_of<3>(unit.scene).cohesive_energy()),
-               rounding = 300 * epsilon * depth;
-  EXPECT_NEAR(force.potential_energy(state), plain.energy - at_rest, state.size() * rounding);
+               rounding = 300 * epsilon * depth, n = state.size();
+  EXPECT_NEAR(force.potential_energy(state), plain.energy - at_rest,
+              std::sqrt(30 * n) * epsilon * 5 * n * depth);
   for (int c = 0; c < 3; ++c)
     for (int i = 0; i < state.size(); ++i)
       EXPECT_NEAR(state.force[c][i], expected[c][i], 10 * rounding / d);
