@@ -31,13 +31,22 @@ std::size_t key_length(const std::string &text, std::size_t begin)
   return end - begin;
 }
 
-/// The first key of a scene in the text, which begins a word; empty: none.
+/// Paths of files go on with other characters, or with a line: /tmp/Cu.eam, /tmp/table:4:3.
+bool ends_word(const std::string &text, std::size_t end)
+{
+  if (end == text.size() || std::string(" ,;)").find(text[end]) != std::string::npos)
+    return true;
+  return text[end] == ':' && (end + 1 == text.size() || text[end + 1] == ' ');
+}
+
+/// The first key of a scene in the text, a word of its own; empty: none.
 std::string named_key(const std::string &text)
 {
   for (std::size_t at = text.find('/'); at != text.npos; at = text.find('/', at + 1)) {
+    const std::size_t length = key_length(text, at);
     const bool begins_word = at == 0 || text[at - 1] == ' ';
-    if (begins_word && key_length(text, at) > 1)
-      return text.substr(at, key_length(text, at));
+    if (begins_word && length > 1 && ends_word(text, at + length))
+      return text.substr(at, length);
   }
   return "";
 }

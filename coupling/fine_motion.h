@@ -48,8 +48,8 @@ public:
   /// without damper.
   void join_bath(const Overlap<dim> &overlap, const std::function<double(double)> &kept);
   bool has_bath() const { return !kept_.empty(); }
-  /// Friction and its noise, theory.md eq. (C28), after finish_kick(dt) and as it leaves off;
-  /// thermal_energy: kT in J. Streams 0 and 1 of the noise.
+  /// Friction and its noise, theory.md eq. (C28), as if half-way through the kick by dt that was
+  /// last, to be called after finish_kick(); thermal_energy: kT in J. Streams 0 and 1 of the noise.
   void exchange_heat(double thermal_energy, const core::ThermalNoise &noise, double dt,
                      const Nodal<dim> &coarse, particles::Particles<dim> &particles);
   /// What the bath has taken so far, less what it has given, in J.

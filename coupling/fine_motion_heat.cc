@@ -31,8 +31,11 @@ void FineMotion<dim>::for_each_free(Visit &&visit) const
           visit(k, l, batch.node);
 }
 
-// The mesh's part P n of white noise has the covariance kT P M^-1 P^T that w lacks before friction
-// may act atom by atom: no factor of Phi^T M Phi is needed for it.
+// Friction acts half-way through the kick: after a whole one, places would be hotter than motions by
+// half of what it takes in a step. The mesh's part P n of white noise has the covariance
+// kT P M^-1 P^T that w lacks before friction may act atom by atom: no factor of Phi^T M Phi is needed
+// for it. The same solve takes the mesh's part of half a kick out of it; what is left of that after
+// friction goes with the last projection.
 template <int dim>
 void FineMotion<dim>::exchange_heat(double thermal_energy, const core::ThermalNoise &noise,
                                     double dt, const Nodal<dim> &coarse,
@@ -46,7 +49,9 @@ void FineMotion<dim>::exchange_heat(double thermal_energy, const core::ThermalNo
     const Slot &slot = slots[k];
     const double m = slot.mass.value[l], root = std::sqrt(thermal_energy * m);
     for (int c = 0; c < dim; ++c) {
-      const double p = root * noise(particles.global_id[slot.particle[l]], c, 0);
+      const int i = slot.particle[l];
+      const double p =
+          root * noise(particles.global_id[i], c, 0) + 0.5 * dt * particles.force[c][i];
       for (int a = 0; a < nc; ++a)
         carried_(node[a][l], c) += slot.value[a].value[l] * p;
     }
@@ -64,7 +69,9 @@ void FineMotion<dim>::exchange_heat(double thermal_energy, const core::ThermalNo
       double mesh = 0;
       for (int a = 0; a < nc; ++a)
         mesh += slot.value[a].value[l] * carried_(node[a][l], c);
-      w = g * (w + mesh) + root * noise(particles.global_id[slot.particle[l]], c, 1);
+      const int i = slot.particle[l];
+      const double half = 0.5 * dt * particles.force[c][i] / m;
+      w = g * (w - half + mesh) + half + root * noise(particles.global_id[i], c, 1);
       for (int a = 0; a < nc; ++a)
         momentum(node[a][l], c) += slot.value[a].value[l] * m * w;
     }

@@ -26,17 +26,19 @@ struct SplitReport
   double patch_modulus = 0; // max |S|/(C11 V_b)
 };
 
-/// Of a run with the mesh held, theory.md eq. (C30).
+/// A run with the mesh held, theory.md eq. (C30).
 struct HeldRun
 {
   double equilibration = 0, averaging = 0; // s
   double friction = 0;                     // 1/s, on the particles outside the overlap
 };
-struct HeldReport
+/// Mean force of particles in thermal motion on the near nodes.
+template <int dim>
+struct ThermalLoad
 {
+  Nodal<dim> force; // N
+  double error = 0; // standard error of the mean, root mean square over the nodes, in N
   long steps = 0;
-  double load = 0, change = 0; // largest |g| of a node, and by how much it is another one, in N
-  double error = 0;            // standard error of the mean, root mean square over the nodes, in N
 };
 
 /// v = Phi V + w in the overlap, Phi^T M w = 0 (theory.md eqs. (C1) to (C3)).
@@ -99,10 +101,15 @@ public:
   std::vector<RestShare> shares_at_rest() const override;
   std::vector<core::SkippedPart> skipped_parts() const override;
 
-  /// Particles move at their temperature about the mesh at rest, far field and loads as at time 0;
-  /// their mean force takes the place of the dead load. From velocities drawn anew, to the state
-  /// that a run at this temperature begins with.
-  HeldReport find_thermal_load(Bodies<dim> &bodies, const HeldRun &run, double dt);
+  /// Particles move at their temperature about the mesh at rest, far field and loads as at time 0.
+  /// From velocities drawn anew; afterwards nodes have such velocities, too, and the state is that
+  /// which a run at this temperature begins with.
+  ThermalLoad<dim> held_thermal_load(Bodies<dim> &bodies, const HeldRun &run, double dt);
+  /// The same of nodes that move as well, about wherever they are drawn: theory.md eq. (C30b). From
+  /// that state; leaves bodies and coupler somewhere, to be given back their state.
+  ThermalLoad<dim> free_thermal_load(Bodies<dim> &bodies, double averaging, double dt);
+  /// From now on the load of the reference, in N.
+  void set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies);
   /// kT in J of the velocities of this moment: of w, of the particles outside the overlap.
   double thermal_energy_of_fine(const Bodies<dim> &bodies) const;
   double thermal_energy_of_zone(const Bodies<dim> &bodies) const;
@@ -123,11 +130,12 @@ private:
   void kick_coarse(const StepTime &step);
   void join_bath(const Bodies<dim> &bodies, double dt);
   void exchange_heat(Bodies<dim> &bodies, const StepTime &step);
+  /// Phi^T f of the particles at these places, loads as at time 0.
+  Nodal<dim> handed_forces(Bodies<dim> &bodies, const Components<dim> &displacement) const;
   /// Velocities of all nodes, kT in J.
   void draw_nodes(Bodies<dim> &bodies, double thermal_energy);
   void save_bath(core::State &state) const;
   void load_bath(const core::State &state, const Bodies<dim> &bodies);
-  void set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies);
   /// Without net force, and without moment where no axis repeats itself.
   Nodal<dim> balanced(Nodal<dim> load, const fem::Mesh<dim> &mesh) const;
   bool far_rests(const Bodies<dim> &bodies, const StepTime &step);

@@ -14,6 +14,40 @@ namespace ligament::coupling
 namespace
 {
 constexpr int n_blocks = 20; // whose means tell the error of the whole mean
+
+/// Mean over time of nodal forces.
+template <int dim>
+class BlockMean
+{
+public:
+  BlockMean(int n_nodes, long per_block)
+      : per_block_(per_block), block_(Nodal<dim>::Zero(n_nodes, dim)), mean_(block_),
+        square_(block_)
+  {
+  }
+  void add(const Nodal<dim> &force)
+  {
+    block_ += force / double(per_block_);
+    if (++n_ % per_block_ != 0)
+      return;
+    mean_ += block_ / n_blocks;
+    square_ += block_.cwiseProduct(block_) / n_blocks;
+    block_.setZero();
+  }
+  const Nodal<dim> &value() const { return mean_; }
+  /// Standard error, root mean square over the loaded nodes.
+  double error() const
+  {
+    const double variance =
+        (square_ - mean_.cwiseProduct(mean_)).cwiseMax(0).sum() / (n_blocks - 1);
+    const double n_loaded = (mean_.rowwise().norm().array() > 0).template cast<double>().sum();
+    return n_loaded > 0 ? std::sqrt(variance / n_loaded) : 0;
+  }
+
+private:
+  long per_block_, n_ = 0;
+  Nodal<dim> block_, mean_, square_;
+};
 } // namespace
 
 template <int dim>
@@ -63,25 +97,25 @@ std::array<double, 3> FineScaleSplit<dim>::thermal_energies(const Bodies<dim> &b
 
 // The steps before the first one have numbers below 0, and noise of their own.
 template <int dim>
-HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const HeldRun &run,
-                                                  double dt)
+ThermalLoad<dim> FineScaleSplit<dim>::held_thermal_load(Bodies<dim> &bodies, const HeldRun &run,
+                                                        double dt)
 {
   const auto timing = this->timers_.scope(this->timers_.section("thermal load"));
   auto &zone = *bodies.zone;
   const double energy = parameters_.thermal_energy;
-  const int n = overlap_.n_nodes();
-  const Nodal<dim> still = Nodal<dim>::Zero(n, dim);
+  const Nodal<dim> still = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
   const long per_block = std::max(1l, std::lround(run.averaging / dt / n_blocks)),
              n_first = std::lround(run.equilibration / dt),
              n_steps = n_first + n_blocks * per_block;
   zone_bath_->draw(2 * energy, core::ThermalNoise(parameters_.seed, -n_steps - 1), zone.state);
   fine_.take_velocities(still, zone.state);
 
-  Nodal<dim> block = still, mean = still, square = still, force = still;
+  BlockMean<dim> mean(overlap_.n_nodes(), per_block);
+  Nodal<dim> force;
   for (long k = 0; k < n_steps; ++k) {
     zone.compute_forces(0);
     zone.kick(dt);
-    force.setZero();
+    force = still;
     fine_.begin_kick(zone.state, dt, force);
     fine_.finish_kick(still, zone.state);
     const core::ThermalNoise noise(parameters_.seed, k - n_steps);
@@ -89,31 +123,62 @@ HeldReport FineScaleSplit<dim>::find_thermal_load(Bodies<dim> &bodies, const Hel
     zone_bath_->exchange_heat(std::exp(-run.friction * dt), energy, noise, dt, zone.state);
     zone.drift(dt);
     zone.update_ghosts();
-    if (k < n_first)
-      continue;
-    block += force / double(per_block);
-    if ((k + 1 - n_first) % per_block == 0) {
-      mean += block / n_blocks;
-      square += block.cwiseProduct(block) / n_blocks;
-      block.setZero();
-    }
+    if (k >= n_first)
+      mean.add(force);
   }
   // Nodes stand where they are at rest: half of what they move with becomes strain.
   draw_nodes(bodies, 2 * energy);
   fine_.reset_bath_energy();
   zone_bath_->taken = 0;
+  return {balanced(mean.value(), bodies.far->mesh()), mean.error(), n_steps};
+}
 
-  HeldReport report;
-  report.steps = n_steps;
-  const double variance = (square - mean.cwiseProduct(mean)).cwiseMax(0).sum() / (n_blocks - 1);
-  const double n_loaded = (mean.rowwise().norm().array() > 0).template cast<double>().sum();
-  report.error = n_loaded > 0 ? std::sqrt(variance / n_loaded) : 0;
-  const Nodal<dim> load = balanced(mean, bodies.far->mesh());
-  report.load = load.rowwise().norm().maxCoeff();
-  report.change =
-      (dead_load_.size() > 0 ? Nodal<dim>(load - dead_load_) : load).rowwise().norm().maxCoeff();
-  set_dead_load(load, bodies);
-  return report;
+// Held nodes stay where they are at time 0: that is when every kick ends.
+template <int dim>
+ThermalLoad<dim> FineScaleSplit<dim>::free_thermal_load(Bodies<dim> &bodies, double averaging,
+                                                        double dt)
+{
+  constexpr int interval = 4;                   // steps; the fastest vibration has thirty
+  constexpr std::int64_t before = -(1ll << 40); // the steps of all other runs
+  auto &zone = *bodies.zone;
+  const long per_block = std::max(1l, std::lround(averaging / (interval * dt * n_blocks))),
+             n_samples = n_blocks * per_block;
+  BlockMean<dim> mean(overlap_.n_nodes(), per_block);
+  Components<dim> mean_place, rest;
+  for (auto *places : {&mean_place, &rest})
+    for (auto &component : *places)
+      component.assign(zone.state.size(), 0.);
+  Nodal<dim> force;
+  StepTime step{before * parameters_.step_ratio, -dt, dt};
+  for (long k = 0; k < interval * n_samples; ++k, ++step.step) {
+    compute_forces(bodies, step);
+    if (k % interval == 0) {
+      force.setZero(overlap_.n_nodes(), dim);
+      fine_.add_forces(zone.state, force);
+      mean.add(force);
+      for (int c = 0; c < dim; ++c)
+        for (int i = 0; i < zone.state.size(); ++i)
+          mean_place[c][i] += zone.state.displacement[c][i] / double(n_samples);
+    }
+    kick(bodies, step);
+    drift(bodies, step);
+  }
+  const Nodal<dim> strained = handed_forces(bodies, mean_place) - handed_forces(bodies, rest);
+  return {balanced(mean.value() - strained, bodies.far->mesh()), mean.error(),
+          interval * n_samples};
+}
+
+template <int dim>
+Nodal<dim> FineScaleSplit<dim>::handed_forces(Bodies<dim> &bodies,
+                                              const Components<dim> &displacement) const
+{
+  auto &zone = *bodies.zone;
+  zone.state.displacement = displacement;
+  zone.update_ghosts();
+  zone.compute_forces(0);
+  Nodal<dim> force = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
+  fine_.add_forces(zone.state, force);
+  return force;
 }
 
 // Scaled to the very energy of so many: some hundreds of nodes that are hotter by chance stay so
@@ -258,8 +323,12 @@ template double FineScaleSplit<2>::thermal_energy_of_zone(const Bodies<2> &) con
 template double FineScaleSplit<3>::thermal_energy_of_zone(const Bodies<3> &) const;
 template std::array<double, 3> FineScaleSplit<2>::thermal_energies(const Bodies<2> &) const;
 template std::array<double, 3> FineScaleSplit<3>::thermal_energies(const Bodies<3> &) const;
-template HeldReport FineScaleSplit<2>::find_thermal_load(Bodies<2> &, const HeldRun &, double);
-template HeldReport FineScaleSplit<3>::find_thermal_load(Bodies<3> &, const HeldRun &, double);
+template ThermalLoad<2> FineScaleSplit<2>::held_thermal_load(Bodies<2> &, const HeldRun &, double);
+template ThermalLoad<3> FineScaleSplit<3>::held_thermal_load(Bodies<3> &, const HeldRun &, double);
+template ThermalLoad<2> FineScaleSplit<2>::free_thermal_load(Bodies<2> &, double, double);
+template ThermalLoad<3> FineScaleSplit<3>::free_thermal_load(Bodies<3> &, double, double);
+template void FineScaleSplit<2>::set_dead_load(const Nodal<2> &, const Bodies<2> &);
+template void FineScaleSplit<3>::set_dead_load(const Nodal<3> &, const Bodies<3> &);
 template void FineScaleSplit<2>::draw_nodes(Bodies<2> &, double);
 template void FineScaleSplit<3>::draw_nodes(Bodies<3> &, double);
 template void FineScaleSplit<2>::save_bath(core::State &) const;

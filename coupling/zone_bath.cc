@@ -31,7 +31,8 @@ void ZoneBath<dim>::exchange_heat(double kept, double thermal_energy,
     const double root = std::sqrt((1 - kept * kept) * thermal_energy / p.mass[i]);
     double twice = 0;
     for (int c = 0; c < dim; ++c) {
-      const double old = p.velocity[c][i], v = kept * old + root * noise(p.global_id[i], c, 2);
+      const double old = p.velocity[c][i], half = 0.5 * dt * p.force[c][i] / p.mass[i],
+                   v = kept * (old - half) + half + root * noise(p.global_id[i], c, 2);
       p.velocity[c][i] = v;
       twice += (old - v) * (p.mass[i] * (old + v) - dt * p.force[c][i]);
     }

@@ -15,7 +15,8 @@ public:
   /// On all particles.
   explicit ZoneBath(int n_particles);
 
-  /// v <- kept v + noise of thermal energy kT (J), after the kick of the step dt; stream 2.
+  /// v <- kept v + noise of thermal energy kT (J), v as half-way through the last kick, of the step
+  /// dt and the present forces; stream 2.
   void exchange_heat(double kept, double thermal_energy, const core::ThermalNoise &noise, double dt,
                      particles::Particles<dim> &particles);
   /// Velocities of this thermal energy for all particles, whatever they were; stream 3.

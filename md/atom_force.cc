@@ -59,8 +59,12 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
   const double n_nearest = double(
       std::count_if(crystal.half_bonds().begin(), crystal.half_bonds().end(),
                     [&](const Vector<dim> &b) { return b.norm() < 1.05 * crystal.spacing(); }));
-  parted_ = PartedBonds<dim>(std::move(nearest), shell_limit(),
-                             dim * crystal.volume() / (n_nearest * crystal.spacing()));
+  // What a P wave needs for ten spacings is three and more periods of the fastest vibration.
+  const double lasting =
+      options.is_warm ? 10 * crystal.spacing() / crystal.elastic_constants().wave_speed_p : 0;
+  parted_ =
+      PartedBonds<dim>(std::move(nearest), shell_limit(),
+                       dim * crystal.volume() / (n_nearest * crystal.spacing()), lasting);
   looked_build_ = list_.n_builds();
   const auto &species = body_.species;
   // Rows know no cuts.
@@ -107,7 +111,7 @@ template <int dim>
 void AtomForce<dim>::compute(Particles &atoms, double time)
 {
   const bool is_undisturbed = update_list(atoms);
-  if (list_.n_builds() != looked_build_) {
+  if (list_.n_builds() != looked_build_ || parted_.is_due(time)) {
     parted_.look(atoms, time);
     looked_build_ = list_.n_builds();
   }

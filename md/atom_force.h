@@ -19,6 +19,7 @@ struct AtomForceOptions
   double skin = 1e-10;           // m: how much farther than the cut-off the neighbour list sees
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
   bool keeps_neighbours = true;  // need not look for them while the crystal is undisturbed
+  bool is_warm = false;          // bonds must be longer for a while before they count as parted
 };
 
 /// theory.md (M1). Atoms have no orientation. Energies are differences to the reference, and as

@@ -29,9 +29,10 @@ std::array<std::complex<double>, 2> upper_roots(const Eigen::Matrix3d &b)
   core::require(n == 2, "an elastic body is not stable: its crack has no field");
   return upper;
 }
-} // namespace
 
-std::optional<double> crack_modulus(const Stiffness<3> &c)
+/// The compliance within the plane without strain along z, which is the inverse of C there; empty
+/// where planes across z are no mirrors.
+std::optional<Eigen::Matrix3d> plane_compliance(const Stiffness<3> &c)
 {
   constexpr std::array across = {voigt_index<3>(1, 2), voigt_index<3>(0, 2)};
   constexpr std::array within = {0, 1, voigt_index<3>(0, 1)};
@@ -39,14 +40,49 @@ std::optional<double> crack_modulus(const Stiffness<3> &c)
     for (const int a : across)
       if (std::abs(c(k, a)) > 1e-9 * c(0, 0))
         return {};
-  // Without strain along z the compliance within the plane is the inverse of C there.
   Eigen::Matrix3d plane;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       plane(i, j) = c(within[i], within[j]);
-  const Eigen::Matrix3d b = plane.inverse();
-  const auto roots = upper_roots(b);
-  return -2 / (b(1, 1) * ((roots[0] + roots[1]) / (roots[0] * roots[1])).imag());
+  return plane.inverse();
+}
+} // namespace
+
+std::optional<double> crack_modulus(const Stiffness<3> &c)
+{
+  const auto b = plane_compliance(c);
+  if (!b)
+    return {};
+  const auto roots = upper_roots(*b);
+  return -2 / ((*b)(1, 1) * ((roots[0] + roots[1]) / (roots[0] * roots[1])).imag());
+}
+
+CrackField::CrackField(const Stiffness<3> &c)
+{
+  const auto plane = plane_compliance(c);
+  core::require(plane.has_value(), "planes across the front of a crack are no mirrors");
+  const Eigen::Matrix3d &b = *plane;
+  roots_ = upper_roots(b);
+  if (std::abs(roots_[0] - roots_[1]) < 1e-3 * std::abs(roots_[0])) {
+    roots_[0] *= 1.001;
+    roots_[1] *= 0.999;
+  }
+  for (int k = 0; k < 2; ++k) {
+    const auto m = roots_[k];
+    const Eigen::Vector2cd pq(b(0, 0) * m * m + b(0, 1) - b(0, 2) * m,
+                              b(0, 1) * m + b(1, 1) / m - b(1, 2));
+    // The other root's share makes the faces free of traction and sigma_yy ahead real.
+    columns_[k] = (k == 0 ? -roots_[1] : roots_[0]) / (roots_[0] - roots_[1]) * pq;
+  }
+}
+
+Vector<2> CrackField::displacement(const Vector<2> &place) const
+{
+  const double r = place.norm(), angle = std::atan2(place[1], place[0]);
+  Vector<2> u = Vector<2>::Zero();
+  for (int k = 0; k < 2; ++k)
+    u += (columns_[k] * std::sqrt(std::cos(angle) + roots_[k] * std::sin(angle))).real();
+  return std::sqrt(2 * r / M_PI) * u;
 }
 
 std::optional<GriffithCrack> griffith_crack(const Crystal<3> &crystal, const Vector<3> &normal,

@@ -3,6 +3,8 @@
 
 #include "md/crystal.h"
 
+#include <array>
+#include <complex>
 #include <optional>
 
 namespace ligament::md
@@ -11,6 +13,22 @@ namespace ligament::md
 /// x, across y, its front along z. C in Pa, of any symmetry in which planes across z are mirrors;
 /// empty where they are none.
 std::optional<double> crack_modulus(const Stiffness<3> &c);
+
+/// Displacements near the front of such a crack, which lies at x < 0, y = 0: (M15).
+class CrackField
+{
+public:
+  /// C in Pa; throws core::InputError where planes across z are no mirrors. Roots of (M14) that
+  /// coincide, as those of isotropic bodies do, are taken apart by a thousandth.
+  explicit CrackField(const Stiffness<3> &c);
+
+  /// u_x and u_y in m at a place in m from the front, for K_I = 1 Pa sqrt(m).
+  Vector<2> displacement(const Vector<2> &place) const;
+
+private:
+  std::array<std::complex<double>, 2> roots_;
+  std::array<Eigen::Vector2cd, 2> columns_; // 1/Pa, of the two roots
+};
 
 struct GriffithCrack
 {

@@ -7,8 +7,10 @@
 namespace ligament::md
 {
 template <int dim>
-PartedBonds<dim>::PartedBonds(std::vector<Bond<dim>> bonds, double limit, double area)
-    : bonds_(std::move(bonds)), is_parted_(bonds_.size(), 0), limit_(limit), area_(area)
+PartedBonds<dim>::PartedBonds(std::vector<Bond<dim>> bonds, double limit, double area,
+                              double lasting)
+    : bonds_(std::move(bonds)), is_parted_(bonds_.size(), 0), limit_(limit), area_(area),
+      lasting_(lasting)
 {
 }
 
@@ -32,36 +34,83 @@ void PartedBonds<dim>::look(const Particles &atoms, double time)
     const Bond<dim> &bond = bonds_[b];
     const Vector<dim> present =
         bond.reference + get(atoms.displacement, bond.j) - get(atoms.displacement, bond.i);
-    if (present.squaredNorm() > limit_ * limit_)
-      part(b, atoms, time);
+    if (present.squaredNorm() <= limit_ * limit_) {
+      longer_.erase(b);
+      continue;
+    }
+    const double since = longer_.emplace(b, time).first->second;
+    if (time >= since + lasting_) {
+      part(b, atoms, since);
+      longer_.erase(b);
+    }
   }
+}
+
+template <int dim>
+bool PartedBonds<dim>::is_due(double time) const
+{
+  return std::any_of(longer_.begin(), longer_.end(),
+                     [&](const auto &bond) { return time >= bond.second + lasting_; });
 }
 
 // Pairs by their names; of several images of a pair by the order of the bonds.
 template <int dim>
-void PartedBonds<dim>::save(core::State &state, const Particles &atoms) const
+core::Table PartedBonds<dim>::named(const std::vector<Since> &bonds, const Particles &atoms) const
 {
-  if (parted_.empty())
-    return;
   std::map<std::array<std::int64_t, 2>, std::int64_t> n_of;
   std::vector<std::int64_t> image(bonds_.size());
   for (std::size_t b = 0; b < bonds_.size(); ++b)
     image[b] = n_of[{atoms.global_id[bonds_[b].i], atoms.global_id[bonds_[b].j]}]++;
   std::vector<std::int64_t> rows, i, j, images;
   std::vector<double> times;
-  for (std::size_t k = 0; k < parted_.size(); ++k) {
+  for (std::size_t k = 0; k < bonds.size(); ++k) {
+    const Bond<dim> &bond = bonds_[bonds[k].bond];
     rows.push_back(std::int64_t(k));
-    i.push_back(parted_[k].global_i);
-    j.push_back(parted_[k].global_j);
-    images.push_back(image[order_[k]]);
-    times.push_back(parted_[k].time);
+    i.push_back(atoms.global_id[bond.i]);
+    j.push_back(atoms.global_id[bond.j]);
+    images.push_back(image[bonds[k].bond]);
+    times.push_back(bonds[k].time);
   }
   core::Table table(std::move(rows));
   table.add("i", i);
   table.add("j", j);
   table.add("image", images);
   table.add("time", times);
-  state["parted_bonds"] = std::move(table);
+  return table;
+}
+
+template <int dim>
+std::vector<typename PartedBonds<dim>::Since>
+PartedBonds<dim>::found(const core::Table &table, const Particles &atoms) const
+{
+  std::map<std::array<std::int64_t, 2>, std::vector<std::size_t>> bonds_of;
+  for (std::size_t b = 0; b < bonds_.size(); ++b)
+    bonds_of[{atoms.global_id[bonds_[b].i], atoms.global_id[bonds_[b].j]}].push_back(b);
+  const auto i = table.integers("i"), j = table.integers("j"), images = table.integers("image");
+  const auto times = table.reals("time");
+  std::vector<Since> bonds;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto same = bonds_of.find({i[k], j[k]});
+    core::require(same != bonds_of.end() && images[k] < std::int64_t(same->second.size()),
+                  "the state is of another crystal: a bond of it is not there");
+    bonds.push_back({same->second[std::size_t(images[k])], times[k]});
+  }
+  return bonds;
+}
+
+template <int dim>
+void PartedBonds<dim>::save(core::State &state, const Particles &atoms) const
+{
+  std::vector<Since> bonds;
+  for (std::size_t k = 0; k < parted_.size(); ++k)
+    bonds.push_back({order_[k], parted_[k].time});
+  if (!bonds.empty())
+    state["parted_bonds"] = named(bonds, atoms);
+  bonds.clear();
+  for (const auto &[bond, time] : longer_)
+    bonds.push_back({bond, time});
+  if (!bonds.empty())
+    state["longer_bonds"] = named(bonds, atoms);
 }
 
 template <int dim>
@@ -70,20 +119,13 @@ void PartedBonds<dim>::load(const core::State &state, const Particles &atoms)
   std::fill(is_parted_.begin(), is_parted_.end(), 0);
   order_.clear();
   parted_.clear();
-  if (state.count("parted_bonds") == 0)
-    return;
-  std::map<std::array<std::int64_t, 2>, std::vector<std::size_t>> bonds_of;
-  for (std::size_t b = 0; b < bonds_.size(); ++b)
-    bonds_of[{atoms.global_id[bonds_[b].i], atoms.global_id[bonds_[b].j]}].push_back(b);
-  const core::Table &table = core::table(state, "parted_bonds");
-  const auto i = table.integers("i"), j = table.integers("j"), images = table.integers("image");
-  const auto times = table.reals("time");
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const auto found = bonds_of.find({i[k], j[k]});
-    core::require(found != bonds_of.end() && images[k] < std::int64_t(found->second.size()),
-                  "the state is of another crystal: a bond of it is not there");
-    part(found->second[std::size_t(images[k])], atoms, times[k]);
-  }
+  longer_.clear();
+  if (state.count("parted_bonds") > 0)
+    for (const Since &s : found(core::table(state, "parted_bonds"), atoms))
+      part(s.bond, atoms, s.time);
+  if (state.count("longer_bonds") > 0)
+    for (const Since &s : found(core::table(state, "longer_bonds"), atoms))
+      longer_[s.bond] = s.time;
 }
 
 template class PartedBonds<2>;

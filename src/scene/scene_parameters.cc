@@ -264,7 +264,7 @@ void declare_coupling(Section &s, CouplingParameters &c)
 void declare_damping(Section &s, Damping &d)
 {
   s.add("local", d.local, "fraction of the force that acts against the motion; not smooth: a load changed by 1e-13 changes the load curve by 1e-5 after 1500 steps, and bodies that move steadily are dragged; mass damping is smooth").at_least(0).below(1);
-  s.add("mass", d.mass, "force against the momentum, of both models").in("1/s").usually(0, 1e9, "1/s").at_least(0);
+  s.add("mass", d.mass, "force against the momentum, of both models").in("1/s").usually(0, 1e13, "1/s").at_least(0);
   s.add("kinetic", d.kinetic, "velocities become zero when the kinetic energy has a peak");
 }
 

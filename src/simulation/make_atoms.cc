@@ -152,6 +152,7 @@ make_atom_force(const Scene &scene, packings::Packing<dim> packing,
            dim == 2 ? "C33" : "C44", c(0, 0), c(0, 1), c(dim, dim));
   md::AtomForceOptions options;
   options.species = packing.material;
+  options.is_warm = scene.is_warm();
   return std::make_unique<md::AtomForce<dim>>(crystal, packing, options, loads);
 }
 

@@ -68,6 +68,8 @@ std::vector<Case> all_cases()
   add(softening_flow_cases());
   add(atom_cases());
   add(atom_strain_cases());
+  add(atom_cleavage_cases());
+  add(atom_crack_disc_cases());
   add(atom_emission_cases());
   add(atom_heat_cases());
   add(atom_motion_cases());

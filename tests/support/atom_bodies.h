@@ -29,8 +29,8 @@ inline std::vector<std::string> in_a_mesh(const std::vector<std::string> &furthe
 {
   std::vector<std::string> all = {
       R"(/specimen/size=["60 nm", "60 nm"])",
-      R"(/discrete_zone={"packing": "hexagonal", "region": {"lower": ["-14 nm", "-14 nm"],
-                                                            "upper": ["14 nm", "14 nm"]}})",
+      R"(/discrete_zone={"packing": "hexagonal", "region": {"lower": ["-17 nm", "-17 nm"],
+                                                            "upper": ["17 nm", "17 nm"]}})",
       R"(/far_field={"cell_size": "1.5 nm"})", R"(/coupling={"overlap_cells": 6})"};
   all.insert(all.end(), further.begin(), further.end());
   return all;

@@ -7,6 +7,8 @@ namespace ligament::program
 {
 std::vector<Case> atom_cases();
 std::vector<Case> atom_strain_cases();
+std::vector<Case> atom_cleavage_cases();
+std::vector<Case> atom_crack_disc_cases();
 std::vector<Case> atom_emission_cases();
 std::vector<Case> atom_heat_cases();
 std::vector<Case> atom_motion_cases();

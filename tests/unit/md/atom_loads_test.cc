@@ -368,6 +368,42 @@ TEST(PartedBondsTest, AreSeenOnce)
   EXPECT_EQ(n_parted, 2 * n_crossing);
 }
 
+// Heat stretches bonds for a moment: at a temperature they must stay longer for a time.
+TEST(PartedBondsTest, OfWarmAtomsMustLast)
+{
+  Body<2> body = specimen({12, 6});
+  body.options.is_warm = true;
+  const double d = body.crystal.spacing(), middle = 0.5 * body.top[1],
+               lasting = 10 * d / body.crystal.elastic_constants().wave_speed_p;
+  auto force = body.force();
+  Particles &p = body.atoms;
+  const auto open = [&](double gap, double time) {
+    for (int i = 0; i < p.size(); ++i)
+      p.displacement[1][i] = p.reference[1][i] > middle ? gap : 0;
+    force.compute(p, time * lasting);
+  };
+  open(1.2 * d, 0);
+  open(0, 0.5); // back again
+  open(1.2 * d, 1.2);
+  EXPECT_TRUE(force.broken_bonds().empty());
+  // They are looked at when their time has come, though no atom moves. Another force goes on as this
+  // one does.
+  const core::Names names(p.global_id.list());
+  core::State state;
+  force.save(state, names, p);
+  auto other = body.force();
+  other.load(state, names, p);
+  for (auto *f : {&force, &other}) {
+    f->compute(p, 2.1 * lasting);
+    EXPECT_TRUE(f->broken_bonds().empty());
+    f->compute(p, 2.3 * lasting);
+    EXPECT_GT(f->broken_bonds().size(), 20u);
+    for (const auto &bond : f->broken_bonds())
+      EXPECT_NEAR(bond.time, 1.2 * lasting, 1e-12 * lasting);
+  }
+  EXPECT_EQ(force.broken_bonds().size(), other.broken_bonds().size());
+}
+
 // A whole crystal that is strained or turns has lost no bond.
 TEST(PartedBondsTest, StrainAndRotationPartNothing)
 {

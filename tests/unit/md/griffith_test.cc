@@ -1,6 +1,7 @@
 // Griffith's load of cracks in crystals: closed forms, and an integral that knows no roots.
 #include "md/griffith.h"
 
+#include "core/check.h"
 #include "md/analytic.h"
 
 #include <Eigen/Dense>
@@ -97,10 +98,53 @@ TEST(Griffith, OfTurnedCrystals)
   EXPECT_NEAR(a.surface_energy / copper.surface_energy({1, 1, 1}), 1, 1e-12);
 }
 
+/// Stress in Pa at a place, from differences of the field over a thousandth of its distance.
+Strain<3> stress_of(const CrackField &field, const Stiffness<3> &c, const Vector<2> &place)
+{
+  const double step = 1e-3 * place.norm();
+  Eigen::Matrix2d h;
+  for (int j = 0; j < 2; ++j) {
+    const Vector<2> way = step * Vector<2>::Unit(j);
+    h.col(j) = (field.displacement(place + way) - field.displacement(place - way)) / (2 * step);
+  }
+  Strain<3> strain = Strain<3>::Zero();
+  strain[0] = h(0, 0);
+  strain[1] = h(1, 1);
+  strain[voigt_index<3>(0, 1)] = h(0, 1) + h(1, 0);
+  return c * strain;
+}
+
+TEST(Griffith, FieldOpensAsItsModulusSays)
+{
+  const auto iron = crystal("Fe", CrystalKind::bcc, orientation_of({0, 1, -1}, {1, 0, 0})),
+             copper = crystal("Cu", CrystalKind::fcc, orientation_of({1, 1, -2}, {1, 1, 1}));
+  const double r = 3e-9;
+  for (const Stiffness<3> &c : {iron.elastic_constants().stiffness,
+                                copper.elastic_constants().stiffness, isotropic(1.3e11, 0.8e11)})
+  {
+    const CrackField field(c);
+    // Irwin: G = K^2/E' asks for an opening of 8 K/E' sqrt(r/2 pi). Coinciding roots were parted
+    // by a thousandth: the mean of both stays, the error is its square.
+    const double opening = field.displacement({-r, 0.0})[1] - field.displacement({-r, -0.0})[1];
+    EXPECT_NEAR(opening * *crack_modulus(c) / (8 * std::sqrt(r / (2 * M_PI))), 1, 2e-6);
+    // What K means; differences over s leave s^2 times 5/8 or so.
+    const double ahead = 1 / std::sqrt(2 * M_PI * r);
+    const Strain<3> before = stress_of(field, c, {r, 0}),
+                    flank = stress_of(field, c, {-r, 2e-3 * r});
+    EXPECT_NEAR(before[1] / ahead, 1, 5e-6);
+    EXPECT_NEAR(before[voigt_index<3>(0, 1)] / ahead, 0, 5e-6);
+    // Without traction on the faces, from which the place is 0.002 r away: its traction grows
+    // with that distance over r, by a factor of about one.
+    EXPECT_NEAR(flank[1] / ahead, 0, 0.01);
+    EXPECT_NEAR(flank[voigt_index<3>(0, 1)] / ahead, 0, 0.01);
+  }
+}
+
 TEST(Griffith, OfNoFrontAcrossWhichNothingIsMirrored)
 {
   const auto skew = crystal("Cu", CrystalKind::fcc, orientation_of({1, 2, 3}, {-2, 1, 0}));
   EXPECT_FALSE(crack_modulus(skew.elastic_constants().stiffness));
   EXPECT_FALSE(griffith_crack(skew, {0, 1, 0}, {0, 0, 1}));
+  EXPECT_THROW(CrackField(skew.elastic_constants().stiffness), core::InputError);
 }
 } // namespace ligament::md::testing
