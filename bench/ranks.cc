@@ -15,6 +15,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <sys/resource.h>
+
 namespace
 {
 using namespace ligament;
@@ -39,12 +41,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
   law.strength = 1;
 
   double began = now();
-  auto whole = packings::make_lattice_packing(lattice);
-  const int n = whole.size();
-  const auto partition = particles::make_partition(n, ranks.size());
-  auto held =
-      packings::part_of(whole, partition, ranks.rank(), dem::ManyBodyForce<dim>::n_rings(law));
-  whole = {};
+  auto held = packings::make_lattice_part(lattice, ranks, dem::ManyBodyForce<dim>::n_rings(law));
+  const std::int64_t n = held.n_whole;
   particles::Particles<dim> p;
   packings::fill_particles(held.packing, 1, p);
   p.part = held.part;
@@ -52,7 +50,7 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
     p.velocity[0][i] = 1e-4 * std::sin(0.1 * p.reference[dim - 1][i]);
   });
   auto force = std::make_unique<dem::ManyBodyForce<dim>>(
-      held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
+      std::move(held.packing), material, std::vector<core::BoundaryLoad<dim>>{}, law);
   particles::ParticleSolver<dim> solver(std::move(p), std::move(force));
   solver.join({ranks, held.owner});
   const double dt = 0.3, set_up = now() - began;
@@ -82,14 +80,18 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
   }
   const double bytes = double(ranks.sum(std::int64_t(solver.halo().bytes(solver.state)))),
                ghosts = double(ranks.sum(std::int64_t(solver.halo().n_ghosts())));
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  const double memory = 1024. * double(ranks.sum(std::int64_t(usage.ru_maxrss)));
   if (ranks.rank() > 0)
     return;
   fmt::print(
       "{} particles, {} ranks, {:.0f} ghosts: {:.3f} ms a step ({:.1f} ns a particle), {:.3f} "
       "ms of it in the halo, forces {:.3f} ms (the slowest {:.2f} of the mean); {:.0f} bytes "
-      "in {} messages a rank and step; set-up {:.2f} s\n",
+      "in {} messages a rank and step; set-up {:.2f} s, {:.0f} bytes a particle at most\n",
       n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n, 1e3 * halo / steps,
-      1e3 * mean / steps, most / mean, bytes / ranks.size(), solver.halo().n_neighbours(), set_up);
+      1e3 * mean / steps, most / mean, bytes / ranks.size(), solver.halo().n_neighbours(), set_up,
+      memory / double(n));
 }
 } // namespace
 

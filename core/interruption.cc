@@ -16,7 +16,7 @@ namespace ligament::core
 {
 namespace
 {
-constexpr int all_signals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int all_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 
 sigset_t those_not_ignored()
 {
@@ -90,11 +90,18 @@ void Interruption::take(int signal)
   ::_exit(exit_code(signal));
 }
 
+void Interruption::block_for_threads()
+{
+  const sigset_t signals = those_not_ignored();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 const char *Interruption::name(int signal)
 {
   return signal == SIGINT    ? "SIGINT"
          : signal == SIGTERM ? "SIGTERM"
          : signal == SIGHUP  ? "SIGHUP"
+         : signal == SIGUSR1 ? "SIGUSR1"
                              : "a signal";
 }
 } // namespace ligament::core

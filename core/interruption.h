@@ -1,4 +1,5 @@
-// Signals that ask a program to end (SIGINT, SIGTERM, SIGHUP), taken where its files can be closed.
+// Signals that ask a program to end (SIGINT, SIGTERM, SIGHUP; SIGUSR1 of mpirun and
+// of schedulers), taken where its files can be closed.
 #pragma once
 
 #include <atomic>
@@ -27,6 +28,10 @@ public:
   void leave_to_caller() { left_to_caller_ = true; }
   /// The signal that asks the caller to end; 0: none.
   int signal() const { return signal_.load(std::memory_order_relaxed); }
+
+  /// For a process whose libraries start threads before it can make one: these inherit what is
+  /// blocked now.
+  static void block_for_threads();
 
   /// "SIGINT", ...
   static const char *name(int signal);

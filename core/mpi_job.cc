@@ -88,7 +88,8 @@ public:
 
   [[noreturn]] void abort(const std::string &reason, int exit_code) override
   {
-    fmt::print(stderr, "rank {}: {}\n", rank_, reason);
+    if (!reason.empty())
+      fmt::print(stderr, "rank {}: {}\n", rank_, reason);
     std::fflush(stderr);
     MPI_Abort(comm_, exit_code);
     std::_Exit(exit_code);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -60,6 +61,8 @@ public:
   int rank() const { return all_ ? all_->rank() : 0; }
   int size() const { return all_ ? all_->size() : 1; }
   bool is_one() const { return !all_; }
+  /// Of all of them it alone writes files and talks.
+  bool is_first() const { return rank() == 0; }
 
   /// See Communicator. One process has nobody to write to.
   void exchange(const std::vector<Communicator::Outgoing> &out,
@@ -82,6 +85,10 @@ public:
   template <typename T>
   std::vector<T> gather_all(const std::vector<T> &here) const;
 
+  /// The same on the first rank alone; the others get nothing.
+  template <typename T>
+  std::vector<T> gather_at_first(const std::vector<T> &here) const;
+
   /// What each rank wants of each other one: the k-th list of `to` goes to rank k; returns what
   /// came, by rank. For set-ups: all see everything for a moment.
   template <typename T>
@@ -90,7 +97,8 @@ public:
   /// Throws core::InputError on every rank where `what` is not the same number on all of them.
   void agree_on(const std::string &what, double value) const;
 
-  /// Ends all ranks. Never to be called by one process.
+  /// Ends all ranks; says why on standard error unless that is empty. Never to be called by one
+  /// process.
   [[noreturn]] void abort(const std::string &reason, int exit_code) const;
 
 private:
@@ -118,6 +126,29 @@ std::vector<T> Ranks::gather_all(const std::vector<T> &here) const
   std::vector<T> all;
   for (const auto &of : gather(here))
     all.insert(all.end(), of.begin(), of.end());
+  return all;
+}
+
+template <typename T>
+std::vector<T> Ranks::gather_at_first(const std::vector<T> &here) const
+{
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (!all_)
+    return here;
+  const auto sizes = gather_all(std::vector<std::int64_t>{std::int64_t(here.size())});
+  if (!is_first()) {
+    if (!here.empty())
+      exchange({{0, here.data(), here.size() * sizeof(T)}}, {});
+    return {};
+  }
+  std::vector<T> all = here;
+  all.resize(std::size_t(std::accumulate(sizes.begin(), sizes.end(), std::int64_t(0))));
+  std::vector<Communicator::Incoming> in;
+  std::size_t at = here.size();
+  for (int r = 1; r < size(); at += std::size_t(sizes[r++]))
+    if (sizes[r] > 0)
+      in.push_back({r, all.data() + at, std::size_t(sizes[r]) * sizeof(T)});
+  exchange({}, in);
   return all;
 }
 

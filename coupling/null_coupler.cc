@@ -83,7 +83,7 @@ double NullCoupler<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime &st
 {
   double loss = 0;
   if (bodies.zone)
-    loss += bodies.zone->damp_velocities(factor, step.dt).value();
+    loss += bodies.zone->ranks().sum(bodies.zone->damp_velocities(factor, step.dt)).value();
   if (bodies.far)
     loss += bodies.far->damp_velocities(step.dt);
   return loss;

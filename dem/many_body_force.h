@@ -153,9 +153,11 @@ public:
 
   /// Those at hand.
   const std::vector<BrokenBond<dim>> &broken_bonds() const override { return broken_.all(); }
-  /// Of the body, on every rank, in the order of breaking; particles by their names only, the
-  /// indices are -1.
-  std::vector<BrokenBond<dim>> broken_bonds_of_body(const Particles &particles) const;
+  std::int64_t n_broken() const override
+  {
+    return ranks().is_one() ? std::int64_t(broken_.all().size()) : n_broken_;
+  }
+  std::vector<BrokenBond<dim>> broken_bonds_of_body(const Particles &particles) const override;
   bool softens() const override { return fracture().softens(); }
   double last_softening() const override { return began_at_; }
   void softening(const Particles &particles, std::vector<double> &share,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 
 namespace ligament::packings
@@ -32,12 +33,20 @@ class Packer
 {
 public:
   explicit Packer(const LatticeParameters<dim> &parameters);
-  Packing<dim> pack();
+  Packing<dim> pack() { return pack(0, n_rows()); }
+  /// The particles of rows [first, last), with the faces between them.
+  Packing<dim> pack(int first, int last);
+
+  int n_rows() const { return int(layout_->rows().size()); }
+  /// Of a zone without coupled sides.
+  std::int64_t n_particles(int row) const;
+  /// Rows between two particles that may have a common face.
+  int reach() const;
 
 private:
   using Index = LatticeIndex<dim>;
 
-  void place_particles();
+  void place_particles(int first, int last);
   void join_faces();
 
   bool has_all_neighbours(const Index &k) const;
@@ -105,12 +114,34 @@ bool Packer<dim>::is_in_zone(const Vector<dim> &x, const Vector<dim> &lower,
 }
 
 template <int dim>
-void Packer<dim>::place_particles()
+std::int64_t Packer<dim>::n_particles(int row) const
+{
+  const auto &r = layout_->rows()[row];
+  std::int64_t n = 0;
+  for (int k = 0; k < r.n_points; ++k)
+    n += is_kept(shape_, lattice_.position(r.start + k * layout_->step()), lattice_.spacing);
+  return n;
+}
+
+template <int dim>
+int Packer<dim>::reach() const
+{
+  int most = 0;
+  for (const LatticeNeighbour<dim> &n : lattice_.reachable)
+    most = std::max(most, std::abs(layout_->row_step(n.offset)));
+  return most;
+}
+
+template <int dim>
+void Packer<dim>::place_particles(int first, int last)
 {
   const double d = lattice_.spacing;
   const Vector<dim> &extent = lattice_.extent;
-  for (const auto &row : layout_->rows()) {
-    auto &particle = particle_in_.emplace_back(row.n_points, -1);
+  particle_in_.resize(n_rows());
+  for (int r = first; r < last; ++r) {
+    const auto &row = layout_->rows()[r];
+    auto &particle = particle_in_[r];
+    particle.assign(row.n_points, -1);
     bool in_run = false;
     for (int n = 0; n < row.n_points; ++n, in_run = particle[n - 1] >= 0) {
       const Index k = row.start + n * layout_->step();
@@ -158,7 +189,7 @@ template <int dim>
 int Packer<dim>::particle_at(const Index &k) const
 {
   const auto [row, n] = layout_->place(k);
-  return row < 0 ? -1 : particle_in_[row][n];
+  return row < 0 || particle_in_[row].empty() ? -1 : particle_in_[row][n];
 }
 
 template <int dim>
@@ -217,10 +248,10 @@ void Packer<dim>::join_faces()
 }
 
 template <int dim>
-Packing<dim> Packer<dim>::pack()
+Packing<dim> Packer<dim>::pack(int first, int last)
 {
-  place_particles();
-  core::require(packing_.size() > 0,
+  place_particles(first, last);
+  core::require(packing_.size() > 0 || last - first < n_rows(),
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
   cut_faces(packing_, shape_.cracks);
@@ -256,6 +287,39 @@ Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters)
   });
 }
 
+template <int dim>
+PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
+                                   const core::Ranks &ranks, int rings)
+{
+  core::require(!PeriodicBox<dim>(parameters).is_any(), "joined sides are packed in one process");
+  Packer<dim> packer(parameters);
+  // Each rank counts some of the rows.
+  const int n_rows = packer.n_rows();
+  const auto share = [&](int rank) { return int(std::int64_t(n_rows) * rank / ranks.size()); };
+  std::vector<std::int64_t> counts;
+  for (int row = share(ranks.rank()); row < share(ranks.rank() + 1); ++row)
+    counts.push_back(packer.n_particles(row));
+  counts = ranks.gather_all(counts);
+  std::vector<std::int64_t> begin(n_rows + 1, 0);
+  std::partial_sum(counts.begin(), counts.end(), begin.begin() + 1);
+  core::require(begin.back() > 0, "the discrete zone holds no whole particle: widen it or make the "
+                                  "spacing smaller");
+  const auto partition = particles::make_partition(begin.back(), ranks.size());
+  const auto row_of = [&](std::int64_t place) {
+    return int(std::upper_bound(begin.begin(), begin.end(), place) - begin.begin()) - 1;
+  };
+  const std::int64_t own = partition.begin(ranks.rank()), end = partition.end(ranks.rank());
+  const int margin = rings * packer.reach(),
+            first = std::clamp(row_of(own) - margin, 0, n_rows),
+            last = own < end ? std::clamp(row_of(end - 1) + margin + 1, 0, n_rows) : first;
+  const Packing<dim> window = packer.pack(first, last);
+  core::require(window.size() == begin[last] - begin[first],
+                "rows hold another number of particles than was counted");
+  return part_of(window, partition, ranks.rank(), rings, begin[first]);
+}
+
 template Packing<2> make_lattice_packing(const LatticeParameters<2> &);
 template Packing<3> make_lattice_packing(const LatticeParameters<3> &);
+template PackingPart<2> make_lattice_part(const LatticeParameters<2> &, const core::Ranks &, int);
+template PackingPart<3> make_lattice_part(const LatticeParameters<3> &, const core::Ranks &, int);
 } // namespace ligament::packings

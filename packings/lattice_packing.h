@@ -1,7 +1,8 @@
 // Packings on a lattice: cells, faces and initial cracks of a box specimen or of a zone in it.
 #pragma once
 
-#include "packings/packing.h"
+#include "core/ranks.h"
+#include "packings/packing_part.h"
 #include "packings/specimen.h"
 
 #include <string>
@@ -67,4 +68,10 @@ struct LatticeParameters : SpecimenParameters<dim>
 /// refused).
 template <int dim>
 Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters);
+
+/// What part_of() keeps of it for one of several ranks, which all call it, in equal shares: each
+/// packs only the rows that it needs. Of a zone without joined or coupled sides.
+template <int dim>
+PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
+                                   const core::Ranks &ranks, int rings);
 } // namespace ligament::packings

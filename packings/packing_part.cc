@@ -25,16 +25,17 @@ std::vector<int> faces_to(const Packing<dim> &whole, int begin, int end, int rin
   return distance;
 }
 
+/// Empty stays empty.
 template <typename T>
-void keep(std::vector<T> &values, const std::vector<int> &places)
+std::vector<T> those_at(const std::vector<int> &places, const std::vector<T> &values)
 {
+  std::vector<T> those;
   if (values.empty())
-    return;
-  std::vector<T> kept;
-  kept.reserve(places.size());
+    return those;
+  those.reserve(places.size());
   for (const int i : places)
-    kept.push_back(values[i]);
-  values = std::move(kept);
+    those.push_back(values[i]);
+  return those;
 }
 
 /// Runs of held particles that hang together in the whole, too.
@@ -59,26 +60,29 @@ std::vector<int> rows_of(const Packing<dim> &whole, const std::vector<int> &plac
 
 template <int dim>
 PackingPart<dim> part_of(const Packing<dim> &whole, const particles::Partition &partition, int rank,
-                         int rings)
+                         int rings, std::int64_t first)
 {
-  core::require(partition.cuts.back() == whole.size(),
+  core::require(partition.end(rank) <= first + whole.size() &&
+                    (first > 0 || partition.cuts.back() >= whole.size()),
                 "the partition is one of another number of particles");
   core::require(rings >= 2, "a rank sees at least two rings around its particles");
   const std::vector<int> distance =
-      faces_to(whole, int(partition.begin(rank)), int(partition.end(rank)), rings);
+      faces_to(whole, int(partition.begin(rank) - first), int(partition.end(rank) - first), rings);
   PackingPart<dim> held;
-  std::vector<int> here(whole.size(), -1);
+  held.n_whole = partition.cuts.back();
+  std::vector<int> here(whole.size(), -1), kept; // where a particle is held; which ones are
   for (int i = 0; i < whole.size(); ++i)
     if (distance[i] != far) {
-      here[i] = int(held.place.size());
-      held.place.push_back(i);
-      held.owner.push_back(partition.owner(i));
+      here[i] = int(kept.size());
+      kept.push_back(i);
+      held.place.push_back(int(first + i));
+      held.owner.push_back(partition.owner(first + i));
     }
   const auto within = [&](int most) {
     particles::ParticleRanges ranges;
-    for (std::size_t k = 0; k < held.place.size(); ++k) {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
       const int i = int(k);
-      if (distance[held.place[k]] > most)
+      if (distance[kept[k]] > most)
         continue;
       if (!ranges.empty() && ranges.back().end == i)
         ++ranges.back().end;
@@ -92,23 +96,25 @@ PackingPart<dim> part_of(const Packing<dim> &whole, const particles::Partition &
   held.part.turned = within(rings);
 
   Packing<dim> &p = held.packing;
-  p = whole;
+  p.spacing = whole.spacing;
+  p.thickness = whole.thickness;
+  p.period = whole.period;
+  p.directions = whole.directions;
+  p.cuts = whole.cuts;
   p.whole = WholeSizes{mean_face_area(whole), largest_diameter(whole)};
-  for (auto &component : p.centre)
-    keep(component, held.place);
-  keep(p.volume, held.place);
-  keep(p.diameter, held.place);
-  keep(p.material, held.place);
-  keep(p.global_id, held.place);
-  p.row_begin = rows_of(whole, held.place);
-  p.faces.clear();
+  for (int c = 0; c < dim; ++c)
+    p.centre[c] = those_at(kept, whole.centre[c]);
+  p.volume = those_at(kept, whole.volume);
+  p.diameter = those_at(kept, whole.diameter);
+  p.material = those_at(kept, whole.material);
+  p.global_id = those_at(kept, whole.global_id);
+  p.row_begin = rows_of(whole, kept);
   for (Face<dim> face : whole.faces) {
     face.i = here[face.i];
     face.j = here[face.j];
     if (face.i >= 0 && face.j >= 0)
       p.faces.push_back(face);
   }
-  p.boundary_faces.clear();
   for (BoundaryFace<dim> face : whole.boundary_faces) {
     face.i = here[face.i];
     if (face.i >= 0)
@@ -117,6 +123,8 @@ PackingPart<dim> part_of(const Packing<dim> &whole, const particles::Partition &
   return held;
 }
 
-template PackingPart<2> part_of(const Packing<2> &, const particles::Partition &, int, int);
-template PackingPart<3> part_of(const Packing<3> &, const particles::Partition &, int, int);
+template PackingPart<2> part_of(const Packing<2> &, const particles::Partition &, int, int,
+                                std::int64_t);
+template PackingPart<3> part_of(const Packing<3> &, const particles::Partition &, int, int,
+                                std::int64_t);
 } // namespace ligament::packings

@@ -17,12 +17,14 @@ struct PackingPart
   particles::Part part;
   std::vector<int> owner; // of each that is held
   std::vector<int> place; // of each that is held, in the whole
+  std::int64_t n_whole = 0; // particles
 };
 
 /// `rings` of ghosts lie around what rank `rank` owns: all are turned, those within one ring less
 /// are pressed. Particles beside each other across a crack are neighbours, too. Made from the whole
-/// packing, which is what parts that are packed by themselves are checked against.
+/// packing, or from a piece of it that holds at least the part and begins with the `first` particle
+/// of the whole.
 template <int dim>
 PackingPart<dim> part_of(const Packing<dim> &whole, const particles::Partition &partition, int rank,
-                         int rings);
+                         int rings, std::int64_t first = 0);
 } // namespace ligament::packings

@@ -41,6 +41,13 @@ public:
   /// Most points of a layer (2D: row) that lie in the box.
   long largest_layer() const { return largest_layer_; }
 
+  /// How far apart in rows() two lattice points with this offset lie.
+  int row_step(const Index &offset) const
+  {
+    const Index number = inverse_ * offset;
+    return dim == 2 ? number[1] : number[dim - 1] * n_rows_[1] + number[1];
+  }
+
   /// Row of a lattice point and its place there, -1 when no row holds it.
   std::pair<int, int> place(const Index &k) const;
 

@@ -90,11 +90,18 @@ public:
 
   virtual long n_bonds() const { return 0; }
   virtual bool can_break() const { return false; }
-  /// All so far, in the order of breaking.
+  /// All so far of what is at hand, in the order of breaking.
   virtual const std::vector<BrokenBond<dim>> &broken_bonds() const
   {
     static const std::vector<BrokenBond<dim>> none;
     return none;
+  }
+  /// How many that are in the body, on every rank.
+  virtual std::int64_t n_broken() const { return std::int64_t(broken_bonds().size()); }
+  /// Those of the body, on every rank, which all call it. Of a body in parts the indices are -1.
+  virtual std::vector<BrokenBond<dim>> broken_bonds_of_body(const Particles<dim> &) const
+  {
+    return broken_bonds();
   }
 
   /// Of all particles, whether they lie at the faces of a crack that stands open at present, initial

@@ -132,10 +132,10 @@ void ParticleSolver<dim>::load(const core::State &all)
     body_force.load(share);
   if (!rest_)
     return;
-  if (!ranks_.is_one())
-    rest_->wake_all();
-  else if (share.count("blocks"))
+  if (ranks_.is_one() && share.count("blocks"))
     rest_->load(share, names);
+  else
+    rest_->wake_all(); // parts don't say which of their blocks rest
 }
 
 template <int dim>

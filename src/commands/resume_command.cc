@@ -7,6 +7,7 @@
 #include "src/commands/run_end.h"
 #include "src/commands/simulate.h"
 #include "src/launcher/program.h"
+#include "src/scene/check_ranks.h"
 #include "src/scene/scene_difference.h"
 
 #include <fmt/format.h>
@@ -107,27 +108,37 @@ void cut_back(const RunFolder &folder, const CheckpointManifest &manifest)
 }
 } // namespace
 
-int resume_command(const CommandLine &line)
+int resume_command(const CommandLine &line, const core::Ranks &ranks)
 {
   core::Interruption interruption;
-  RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval};
-  OpenRun run(RunFolder{line.run});
-  const Checkpoint checkpoint = newest_checkpoint(run.folder());
+  RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks};
+  const RunFolder folder{line.run};
+  std::optional<OpenRun> run; // of the first rank, which locks it before anybody reads
+  if (ranks.is_first())
+    run.emplace(folder);
+  ranks.any(false);
+  const Checkpoint checkpoint = newest_checkpoint(folder);
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
-  const ReadResult input = scene_of(line, run.folder(), manifest);
+  const ReadResult input = scene_of(line, folder, manifest);
+  const std::string name = line.scene.empty() ? folder.resolved_scene() : line.scene;
   if (!input.scene)
-    return refuse(line, line.scene.empty() ? run.folder().resolved_scene() : line.scene,
-                  input.errors, input.warnings);
+    return refuse(line, name, input.errors, input.warnings);
+  if (!ranks.is_one())
+    if (const auto refused = refused_on_ranks(input); !refused.empty())
+      return refuse(line, name, refused, input.warnings);
   refuse_another_scene(manifest.scene, input.resolved);
-  refuse_what_has_ended(run.folder(), manifest.scene, input.resolved);
+  refuse_what_has_ended(folder, manifest.scene, input.resolved);
   const std::vector<std::string> warnings = what_is_new(manifest);
+  ranks.any(false); // all have read what the first one now changes
+  if (!ranks.is_first())
+    return follow(input, folder, interruption, options);
 
   RunRecord first = first_record(*input.scene);
   first.started = manifest.started;
-  run.go_on(first);
-  cut_back(run.folder(), manifest);
-  const RunRecord record = simulate(input, warnings, run, interruption, options);
-  return end_of_run(line, line.run, run.folder(), record, interruption);
+  run->go_on(first);
+  cut_back(folder, manifest);
+  const RunRecord record = simulate(input, warnings, *run, interruption, options);
+  return end_of_run(line, line.run, folder, record, interruption);
 }
 } // namespace ligament::program

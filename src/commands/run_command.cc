@@ -3,6 +3,8 @@
 #include "core/input_file.h"
 #include "src/commands/run_end.h"
 #include "src/commands/simulate.h"
+#include "src/launcher/program.h"
+#include "src/scene/check_ranks.h"
 
 #include <fmt/format.h>
 
@@ -25,11 +27,17 @@ std::string output_folder(const CommandLine &line)
   return name + "-out";
 }
 
-int run_command(const CommandLine &line, const ReadResult &input)
+int run_command(const CommandLine &line, const ReadResult &input, const core::Ranks &ranks)
 {
+  if (!ranks.is_one())
+    if (const auto refused = refused_on_ranks(input); !refused.empty())
+      return refuse(line, line.scene, refused, input.warnings);
   core::Interruption interruption;
-  const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval};
-  OpenRun run(RunFolder{output_folder(line)}, first_record(*input.scene), stderr);
+  const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks};
+  const RunFolder folder{output_folder(line)};
+  if (!ranks.is_first())
+    return follow(input, folder, interruption, options);
+  OpenRun run(folder, first_record(*input.scene), stderr);
   std::vector<std::string> warnings;
   for (const core::Diagnostic &d : input.warnings)
     warnings.push_back(fmt::format("{}: {}", to_string(d.place), d.message));

@@ -31,7 +31,8 @@ RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &w
                       const RunFolder &folder, core::Interruption &interruption,
                       const RunOptions &options)
 {
-  Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from);
+  Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from,
+                             make_zone_force<dim>, options.ranks);
   for (const std::string &text : warnings)
     simulation.warn(text);
   simulation.keep_checkpoints(input.resolved);
@@ -58,5 +59,13 @@ RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warn
     run.end("failed", error.what());
     throw;
   }
+}
+
+int follow(const ReadResult &input, const RunFolder &folder, core::Interruption &interruption,
+           const RunOptions &options)
+{
+  const auto &in_space = input.scene->dimension == 2 ? simulate_in<2> : simulate_in<3>;
+  in_space(input, {}, folder, interruption, options);
+  return 0;
 }
 } // namespace ligament::program

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/interruption.h"
+#include "core/ranks.h"
 #include "src/output/checkpoints.h"
 #include "src/output/open_run.h"
 #include "src/scene/read_scene.h"
@@ -17,9 +18,14 @@ struct RunOptions
   EndRequest end_request;
   const Checkpoint *from = nullptr; // where it goes on
   int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
+  core::Ranks ranks = {};           // that compute it together
 };
 
 /// With checkpoints; what stops it is in its record, and warnings in its log.
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
                    core::Interruption &interruption, const RunOptions &options);
+
+/// The same on all ranks but the first, which write nothing. Returns what a rank ends with.
+int follow(const ReadResult &input, const RunFolder &folder, core::Interruption &interruption,
+           const RunOptions &options);
 } // namespace ligament::program

@@ -1,8 +1,10 @@
-// The program that computes: started by `ligament` with the same arguments.
+// The program that computes: started by `ligament` with the same arguments, alone or as one of
+// several ranks.
 #include "core/flush_denormals.h"
 #include "core/input_file.h"
 #include "core/keyed_error.h"
 #include "src/commands/commands.h"
+#include "src/commands/rank_process.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
 
@@ -19,22 +21,28 @@ ReadResult read_again(const CommandLine &line)
              : parse_scene(core::read_input("-"), scene_name(line.scene), line.overrides);
 }
 
-int dispatch(const CommandLine &line, int, char **)
+/// `process`: null for one that is alone.
+int dispatch(const CommandLine &line, RankProcess *process)
 {
-  require_one_rank(line.ranks);
+  const core::Ranks ranks = process ? process->ranks() : core::Ranks();
+  if (line.command == "resume")
+    return resume_command(line, ranks);
+  if (line.command != "run")
+    require_one_rank(line.command);
   if (line.command == "verify")
     return verify_command(line);
-  if (line.command == "resume")
-    return resume_command(line);
   const ReadResult input = read_again(line);
   if (!input.scene)
     return refuse(line, line.scene, input.errors, input.warnings);
   try {
-    return line.command == "run" ? run_command(line, input) : check_command(line, input);
+    return line.command == "run" ? run_command(line, input, ranks) : check_command(line, input);
   } catch (const core::KeyedError &error) {
     const core::Diagnostic found = {core::place_of(input.json, error.key), error.key, error.message,
                                     error.reason, error.remedy};
-    return refuse(line, line.scene, {found}, input.warnings);
+    const int code = refuse(line, line.scene, {found}, input.warnings);
+    if (!ranks.is_one())
+      process->end_all(to_string(found), code);
+    return code;
   }
 }
 } // namespace
@@ -43,5 +51,10 @@ int dispatch(const CommandLine &line, int, char **)
 int main(int argc, char **argv)
 {
   core::flush_denormals();
-  return run_program(argc, argv, dispatch);
+  if (launched_ranks() > 1)
+    return run_rank(argc, argv, [](const CommandLine &line, RankProcess &process) {
+      return dispatch(line, &process);
+    });
+  return run_program(
+      argc, argv, [](const CommandLine &line, int, char **) { return dispatch(line, nullptr); });
 }

@@ -49,7 +49,11 @@ void add_scene_options(CLI::App &app, CommandLine &line)
   app.add_option("scene", line.scene, "scene file")->required()->type_name("SCENE");
   add_override_option(app, line);
   app.add_option("--output,-o", line.output, "folder for the results")->type_name("DIR");
-  app.add_option("-n", line.ranks, "number of ranks (only 1 so far)")->type_name("RANKS");
+}
+
+void add_ranks_option(CLI::App &app, CommandLine &line, const char *text)
+{
+  app.add_option("-n", line.ranks, text)->type_name("RANKS")->check(CLI::Range(1, 1 << 16));
 }
 
 void declare(CLI::App &app, CommandLine &line)
@@ -61,6 +65,8 @@ void declare(CLI::App &app, CommandLine &line)
 
   CLI::App &run = *app.add_subcommand("run", "computes a scene");
   add_scene_options(run, line);
+  add_ranks_option(run, line,
+                   "processes that compute it together; bodies of particles alone, for now");
   add_wall_time_option(run, line);
   add_rebuild_option(run, line);
 
@@ -72,12 +78,14 @@ void declare(CLI::App &app, CommandLine &line)
                   "written may differ")
       ->type_name("SCENE");
   add_override_option(resume, line);
+  add_ranks_option(resume, line, "processes that go on with it, as many as you like");
   add_wall_time_option(resume, line);
   add_rebuild_option(resume, line);
 
   CLI::App &check =
       *app.add_subcommand("check", "everything but time stepping: errors, sizes, steps, cost");
   add_scene_options(check, line);
+  add_ranks_option(check, line, "says whether so many processes may compute it together");
   check.add_flag("--draw", line.draw, "also draws zones and boundary conditions");
   check.add_flag("--full", line.full,
                  "builds the bodies whatever their size, instead of answering from volumes");

@@ -18,7 +18,7 @@ struct CommandLine
   std::vector<std::string> overrides; // run, check: "/path=value", in their order
   std::string kind;                   // new: of scene; empty: lists them
   std::string output;                 // what is written: folder, new: file; empty: of that name
-  int ranks = 1;                      // run, check
+  int ranks = 1;                      // run, resume, check
   bool draw = false;                  // check: also a picture
   std::string study;                  // sweep: file
   int jobs = 1;                       // sweep: runs at the same time

@@ -7,11 +7,12 @@
 #include "src/analysis/report.h"
 #include "src/launcher/new_command.h"
 #include "src/launcher/program.h"
+#include "src/launcher/ranks_start.h"
 #include "src/launcher/solver_start.h"
 #include "src/launcher/sweep_command.h"
 #include "src/output/run_folder.h"
 #include "src/output/run_record.h"
-#include "src/scene/read_scene.h"
+#include "src/scene/check_ranks.h"
 #include "src/sweep/study.h"
 
 #include <fmt/format.h>
@@ -25,10 +26,20 @@ using namespace ligament::program;
 
 int compute(const CommandLine &line, int argc, char **argv)
 {
-  require_one_rank(line.ranks);
+  if (launched_ranks() > 1) // one of several: the solver says on the first one what is wrong
+    start_solver(argc, argv);
   const ReadResult result = read_scene(line.scene, line.overrides);
   for (const core::Diagnostic &d : result.warnings)
     core::tell(stderr, to_string(d) + "\n");
+  if (result.scene && line.ranks > 1) {
+    core::require(core::is_named_file(line.scene) || line.command == "check",
+                  "standard input and pipes reach the first rank alone; give a file");
+    const auto refused = refused_on_ranks(result);
+    if (!refused.empty())
+      return refuse(line, line.scene, refused, result.warnings);
+    if (line.command == "run")
+      return run_on_ranks(line.ranks, argc, argv);
+  }
   if (result.scene) {
     if (!core::is_named_file(line.scene))
       refill_standard_input(result.text);
@@ -110,10 +121,10 @@ int dispatch(const CommandLine &line, int argc, char **argv)
     return sweep_command(line);
   if (line.command == "run" || line.command == "check")
     return compute(line, argc, argv);
-  if (line.command == "verify" || line.command == "resume") {
-    require_one_rank(line.ranks);
+  if (line.command == "resume" && line.ranks > 1 && launched_ranks() == 1)
+    return run_on_ranks(line.ranks, argc, argv);
+  if (line.command == "verify" || line.command == "resume")
     start_solver(argc, argv);
-  }
   if (line.command == "explain")
     print_explanation(line);
   else if (line.command == "compare")

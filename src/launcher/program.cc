@@ -33,33 +33,38 @@ Json as_json(const std::vector<core::Diagnostic> &diagnostics)
   return list;
 }
 
-int fail(const CommandLine &line, const std::string &message, const char *status, ExitCode code)
+int fail(const CommandLine &line, const OnFailure &on_failure, const std::string &message,
+         const char *status, ExitCode code)
 {
   core::tell(stderr,
              fmt::format("{}error: {}\n", line.scene.empty() ? "" : line.scene + ": ", message));
   if (line.json)
     fmt::print("{}\n", error_json(status, message));
+  std::fflush(stdout);
+  if (on_failure)
+    on_failure(message, int(code));
   return int(code);
 }
 
-int run_command_line(const CommandLine &line, int argc, char **argv, Dispatch dispatch)
+int run_command_line(const CommandLine &line, int argc, char **argv, const Dispatch &dispatch,
+                     const OnFailure &on_failure)
 {
   try {
     return dispatch(line, argc, argv);
   } catch (const core::InputError &error) {
-    return fail(line, error.what(), "wrong input", ExitCode::wrong_input);
+    return fail(line, on_failure, error.what(), "wrong input", ExitCode::wrong_input);
   } catch (const core::GuardStop &error) {
-    return fail(line, error.what(), "stopped", ExitCode::stopped_by_guard);
+    return fail(line, on_failure, error.what(), "stopped", ExitCode::stopped_by_guard);
   } catch (const std::bad_alloc &) {
-    return fail(line, "not enough memory; `ligament check` predicts what the scene needs", "failed",
+    return fail(line, on_failure, "not enough memory; `ligament check` predicts what the scene needs", "failed",
                 ExitCode::bad_environment);
   } catch (const std::exception &error) {
-    return fail(line, error.what(), "failed", ExitCode::bad_environment);
+    return fail(line, on_failure, error.what(), "failed", ExitCode::bad_environment);
   }
 }
 } // namespace
 
-int run_program(int argc, char **argv, Dispatch dispatch)
+int run_program(int argc, char **argv, const Dispatch &dispatch, const OnFailure &on_failure)
 {
   // A limit on the size of files is to be an error of the write, not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -67,7 +72,8 @@ int run_program(int argc, char **argv, Dispatch dispatch)
   std::string reason;
   try {
     const CommandLine line = parse_command_line(argc, argv);
-    code = line.exit_code ? *line.exit_code : run_command_line(line, argc, argv, dispatch);
+    code = line.exit_code ? *line.exit_code
+                          : run_command_line(line, argc, argv, dispatch, on_failure);
   } catch (const std::system_error &error) { // of fmt::print, on a full device
     reason = error.what();
   }

@@ -63,12 +63,11 @@ int launched_ranks()
   return 1;
 }
 
-void require_one_rank(int asked)
+void require_one_rank(const std::string &command)
 {
-  core::require(asked >= 1, fmt::format("-n {}: give at least 1 rank", asked));
-  const int ranks = std::max(asked, launched_ranks());
-  core::require(ranks == 1, fmt::format("{} ranks: several ranks are not supported yet; start one "
-                                        "process, without mpirun, srun or -n",
-                                        ranks));
+  const int ranks = launched_ranks();
+  core::require(ranks == 1, fmt::format("{} ranks: {} runs in one process; start it without mpirun "
+                                        "or srun",
+                                        ranks, command));
 }
 } // namespace ligament::program

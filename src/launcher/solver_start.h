@@ -19,6 +19,6 @@ void refill_standard_input(const std::string &text);
 /// How many processes mpirun or srun has started beside this one; 1 without them.
 int launched_ranks();
 
-/// Throws core::InputError when more than one rank was asked for (-n) or started.
-void require_one_rank(int asked);
+/// Throws core::InputError where mpirun or srun has started several for a command that needs one.
+void require_one_rank(const std::string &command);
 } // namespace ligament::program

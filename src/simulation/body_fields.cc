@@ -1,8 +1,9 @@
 #include "src/simulation/body_fields.h"
 
-#include "core/sums.h"
+#include "core/exact_sum.h"
 #include "fem/cell_map.h"
 #include "src/simulation/kept_tables.h"
+#include "src/simulation/whole_body.h"
 
 #include <fmt/format.h>
 
@@ -50,14 +51,12 @@ void add_flow(const particles::ParticleForce<dim> &force, const particles::Parti
   fields.push_back(make_field("plastic_strain", std::move(accumulated)));
   fields.push_back(make_field("inelastic_strain", std::move(strain)));
 }
-} // namespace
 
+/// Of the particles at hand.
 template <int dim>
-ParticleFields particle_fields(const CoupledBody<dim> &body)
+ParticleFields fields_at_hand(const CoupledBody<dim> &body)
 {
   ParticleFields fields;
-  if (!body.zone)
-    return fields;
   const auto &state = body.zone->state;
   fields.reference = interleave(state.reference);
   fields.fields.push_back(make_field("displacement", interleave(state.displacement)));
@@ -82,6 +81,19 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
     fields.fields.push_back(make_field("softened", std::move(share)));
     fields.fields.push_back(make_field("opening", std::move(opening)));
   }
+  return fields;
+}
+} // namespace
+
+template <int dim>
+ParticleFields particle_fields(const CoupledBody<dim> &body)
+{
+  if (!body.zone)
+    return {};
+  ParticleFields fields = fields_at_hand(body);
+  fields.reference = at_first(*body.zone, std::move(fields.reference), 3);
+  for (Field &field : fields.fields)
+    field.values = at_first(*body.zone, std::move(field.values), field.n_components());
   return fields;
 }
 
@@ -166,7 +178,7 @@ std::vector<Field> constant_cell_fields(const CoupledBody<dim> &body)
 } // namespace
 
 template <int dim>
-void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
+void StateFields<dim>::look_at_what_stays(const CoupledBody<dim> &body)
 {
   const auto &state = body.zone->state;
   n_faces_.assign(state.size(), 0);
@@ -181,29 +193,31 @@ void StateFields<dim>::count_faces(const CoupledBody<dim> &body)
   for (int i = 0; i < state.size() && !cut.empty(); ++i)
     if (const auto found = cut.find(state.global_id[i]); found != cut.end())
       n_faces_[i] += std::uint8_t(found->second);
+  material_.resize(state.size());
+  for (int i = 0; i < state.size(); ++i)
+    material_[i] = body.force()->material(i);
+  n_faces_ = at_first(*body.zone, std::move(n_faces_));
+  material_ = at_first(*body.zone, std::move(material_));
+  names_ = names_at_first(*body.zone);
 }
 
 template <int dim>
 void StateFields<dim>::add_particle_fields(const CoupledBody<dim> &body, BodyState &state)
 {
-  const std::vector<std::int64_t> ids = body.zone->state.global_id.list();
-  const std::size_t n = ids.size();
-  if (n_faces_.empty())
-    count_faces(body);
-  std::vector<double> material(n), zone(n, double(ZoneNumber::discrete)), share(n);
+  const std::size_t n = names_.size();
+  std::vector<double> zone(n, double(ZoneNumber::discrete)), share(n);
   const auto open = open_faces(state.bonds, body.cut_faces);
   for (std::size_t i = 0; i < n; ++i) {
-    material[i] = body.force()->material(int(i));
-    if (const auto found = open.find(ids[i]); found != open.end())
+    if (const auto found = open.find(names_[i]); found != open.end())
       share[i] = double(found->second) / std::max<int>(n_faces_[i], 1);
   }
   if (const auto *overlap = body.coupler->overlap())
     for (const auto &m : overlap->members)
       zone[m.particle] = double(m.pad ? ZoneNumber::pad : ZoneNumber::overlap);
   auto &fields = state.particles.fields;
-  fields.push_back(make_field("radius", radii(body, ids)));
-  fields.push_back(make_field("global_id", {ids.begin(), ids.end()}));
-  fields.push_back(make_field("material", std::move(material)));
+  fields.push_back(make_field("radius", radii(body, names_)));
+  fields.push_back(make_field("global_id", {names_.begin(), names_.end()}));
+  fields.push_back(make_field("material", material_));
   fields.push_back(make_field("zone", std::move(zone)));
   fields.push_back(make_field("broken_bond_share", std::move(share)));
 }
@@ -214,6 +228,10 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
   for (auto *fields : {&state.particles.fields, &state.cells.node_fields})
     if (const Field *stress = find_field(*fields, "stress"))
       fields->push_back(make_field("equivalent_stress", equivalent_stress(stress->values)));
+  if (body.zone && !has_looked_) { // all ranks at once
+    look_at_what_stays(body);
+    has_looked_ = true;
+  }
   state.cuts = body.cut_faces;
   if (state.cells.n_cells() > 0)
     state.cells.cell_fields = constant_cell_fields(body);
@@ -313,23 +331,18 @@ BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState
 }
 
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
-                  const Components<dim> &velocity)
+Snapshot empty_snapshot(const CoupledBody<dim> &body)
 {
   Snapshot s;
   s.dimension = dim;
-  s.time = time;
   s.spacing = body.spacing;
   if (!body.zone)
     return s;
-  const auto &state = body.zone->state;
-  s.global_id = state.global_id.list();
-  for (int i = 0; i < state.size(); ++i)
-    for (int c = 0; c < dim; ++c) {
-      s.reference.push_back(state.reference[c][i]);
-      s.displacement.push_back(displacement[c][i]);
-      s.velocity.push_back(velocity[c][i]);
-    }
+  s.global_id = names_at_first(*body.zone);
+  const auto reference = at_first(*body.zone, body.zone->state.reference);
+  for (std::size_t i = 0; i < s.global_id.size(); ++i)
+    for (int c = 0; c < dim; ++c)
+      s.reference.push_back(reference[c][i]);
   return s;
 }
 
@@ -339,7 +352,7 @@ std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body)
   std::vector<BrokenBond> bonds;
   if (!body.force())
     return bonds;
-  for (const auto &broken : body.force()->broken_bonds()) {
+  for (const auto &broken : body.force()->broken_bonds_of_body(body.zone->state)) {
     BrokenBond b = {};
     b.i = broken.global_i;
     b.j = broken.global_j;
@@ -360,11 +373,11 @@ double crack_length(const CoupledBody<dim> &body, int axis)
 {
   if (!body.force())
     return 0;
-  const auto &broken = body.force()->broken_bonds();
-  const core::ExactSum sum = core::exact_sum(broken.size(), [&](std::size_t k) {
-    return broken[k].area * std::abs(broken[k].normal[axis]);
-  });
-  return sum.value() / body.thickness;
+  core::ExactSum sum;
+  for (const auto &broken : body.force()->broken_bonds())
+    if (body.zone->state.part.owns(broken.i)) // else another rank counts it
+      sum.add(broken.area * std::abs(broken.normal[axis]));
+  return body.ranks.sum(sum).value() / body.thickness;
 }
 
 template ParticleFields particle_fields(const CoupledBody<2> &);
@@ -379,10 +392,8 @@ template BodyState load_fields(const core::State &, BodyNames<2> &, BodyState);
 template BodyState load_fields(const core::State &, BodyNames<3> &, BodyState);
 template class StateFields<2>;
 template class StateFields<3>;
-template Snapshot snapshot<2>(const CoupledBody<2> &, double, const Components<2> &,
-                              const Components<2> &);
-template Snapshot snapshot<3>(const CoupledBody<3> &, double, const Components<3> &,
-                              const Components<3> &);
+template Snapshot empty_snapshot(const CoupledBody<2> &);
+template Snapshot empty_snapshot(const CoupledBody<3> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<2> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<3> &);
 template double crack_length(const CoupledBody<2> &, int);

@@ -1,4 +1,6 @@
-// The present state of a body as the output sees it: fields, snapshots, broken faces.
+// The present state of a body as the output sees it: fields, snapshots, broken faces. Of a body in
+// parts all ranks ask for it at once; the first one gets the fields of all particles, the others
+// empty ones.
 #pragma once
 
 #include "src/output/fields.h"
@@ -30,9 +32,13 @@ public:
 
 private:
   void add_particle_fields(const CoupledBody<dim> &body, BodyState &state);
-  void count_faces(const CoupledBody<dim> &body);
+  void look_at_what_stays(const CoupledBody<dim> &body);
 
-  std::vector<std::uint8_t> n_faces_; // per particle, shared with others; found when first needed
+  bool has_looked_ = false;
+  // Of the body's particles; found when first needed.
+  std::vector<std::uint8_t> n_faces_; // shared with others
+  std::vector<double> material_;
+  std::vector<std::int64_t> names_;
 };
 
 /// The values of all fields as tables "particles" and "nodes" whose rows have names.
@@ -42,10 +48,9 @@ core::State save_fields(const BodyState &kept, BodyNames<dim> &names);
 template <int dim>
 BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState like);
 
-/// A motion of the particles at `time` in s: m and m/s.
+/// Of the particles, without a motion.
 template <int dim>
-Snapshot snapshot(const CoupledBody<dim> &body, double time, const Components<dim> &displacement,
-                  const Components<dim> &velocity);
+Snapshot empty_snapshot(const CoupledBody<dim> &body);
 
 /// All faces broken so far, in the order of breaking.
 template <int dim>

@@ -3,17 +3,24 @@
 
 #include "core/names.h"
 #include "src/simulation/coupled_body.h"
+#include "src/simulation/whole_body.h"
 
 #include <optional>
 
 namespace ligament::program
 {
-/// The body must outlive it.
+/// The body must outlive it. Of a body in parts the first rank has the names of all particles, the
+/// others none.
 template <int dim>
 class BodyNames
 {
 public:
-  explicit BodyNames(const CoupledBody<dim> &body) : body_(body) {}
+  /// On all ranks at once.
+  explicit BodyNames(const CoupledBody<dim> &body) : body_(body)
+  {
+    if (!body.ranks.is_one())
+      particles_ = core::Names(names_at_first(*body.zone));
+  }
 
   /// None without a zone.
   const core::Names &particles()

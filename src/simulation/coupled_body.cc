@@ -318,9 +318,11 @@ std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim
 
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
-                           Reference &reference, const ForceMaker<dim> &make_force)
+                           Reference &reference, const ForceMaker<dim> &make_force,
+                           const core::Ranks &ranks)
 {
   CoupledBody<dim> body;
+  body.ranks = ranks;
   body.lower = to_vector<dim>(scene.specimen.lower());
   body.upper = to_vector<dim>(scene.specimen.upper());
   body.thickness = dim == 2 ? scene.specimen.thickness : 1;
@@ -370,7 +372,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
 }
 
 template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &, Reference &,
-                                     const ForceMaker<2> &);
+                                     const ForceMaker<2> &, const core::Ranks &);
 template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &, Reference &,
-                                     const ForceMaker<3> &);
+                                     const ForceMaker<3> &, const core::Ranks &);
 } // namespace ligament::program

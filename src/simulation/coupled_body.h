@@ -16,6 +16,8 @@ namespace ligament::program
 template <int dim>
 struct CoupledBody
 {
+  core::Ranks ranks; // of whose parts of it this is one
+
   std::unique_ptr<particles::ParticleSolver<dim>> zone;
   std::unique_ptr<fem::FemSolver<dim>> far;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
@@ -36,6 +38,7 @@ struct CoupledBody
   double regime_change = 0;              // J, taken by changes of regime so far
   double started = 0;                    // J, kinetic energy that the body began with
   double settled = 0;                    // J, taken by settling into equilibria so far
+  std::int64_t n_particles = 0;          // of the zone, on all ranks
   std::int64_t equivalent_particles = 0; // of the pure discrete model
   std::int64_t n_cracked_faces = 0;      // cut by initial cracks
   std::vector<BrokenBond> cut_faces;     // these, as the output lists broken ones
@@ -48,11 +51,13 @@ struct CoupledBody
 };
 
 /// Throws core::InputError where the scene can't be built: reason and remedy in the message. What
-/// `reference` knows is not sought again; what it doesn't is added.
+/// `reference` knows is not sought again; what it doesn't is added. Of several ranks, which all call
+/// it, each has its part of the particles.
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
                            Reference &reference,
-                           const ForceMaker<dim> &make_force = make_zone_force<dim>);
+                           const ForceMaker<dim> &make_force = make_zone_force<dim>,
+                           const core::Ranks &ranks = {});
 
 /// Where nothing is known.
 template <int dim>

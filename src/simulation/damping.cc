@@ -1,6 +1,6 @@
 #include "src/simulation/damping.h"
 
-#include "core/sums.h"
+#include "core/exact_sum.h"
 #include "src/simulation/energy_ledger.h"
 
 #include <algorithm>
@@ -12,36 +12,37 @@ namespace
 {
 /// damping <- -min(fraction |force|, what stops it) sign(velocity); force += damping. The velocity
 /// is the one half-way through the kick: at large steps stiff modes change sign in every step, and
-/// a force against the old velocity would drive them.
+/// a force against the old velocity would drive them. Of the entries in these ranges.
 template <std::size_t n, typename InverseMass>
-void oppose(double fraction, double dt, const InverseMass &inverse_mass,
-            const std::array<std::vector<double>, n> &velocity,
+void oppose(double fraction, double dt, const particles::ParticleRanges &entries,
+            const InverseMass &inverse_mass, const std::array<std::vector<double>, n> &velocity,
             std::array<std::vector<double>, n> &force, std::array<std::vector<double>, n> &damping)
 {
   for (std::size_t c = 0; c < n; ++c) {
     damping[c].resize(force[c].size());
-    for (std::size_t i = 0; i < force[c].size(); ++i) {
+    particles::for_each(entries, [&](int i) {
       const double half = 0.5 * dt * inverse_mass(i);
       const double v = velocity[c][i] + half * force[c][i];
       const double f = fraction * std::abs(force[c][i]);
       damping[c][i] = -std::copysign(half > 0 ? std::min(f, std::abs(v) / half) : 0, v);
       force[c][i] += damping[c][i];
-    }
+    });
   }
 }
 
 template <std::size_t n>
-double power(const std::array<std::vector<double>, n> &velocity,
-             const std::array<std::vector<double>, n> &force)
+double power(const particles::ParticleRanges &entries,
+             const std::array<std::vector<double>, n> &velocity,
+             const std::array<std::vector<double>, n> &force, const core::Ranks &ranks)
 {
-  return core::exact_sum(force[0].size(),
-                         [&](std::size_t i) {
-                           double power = 0;
-                           for (std::size_t c = 0; c < n; ++c)
-                             power += velocity[c][i] * force[c][i];
-                           return power;
-                         })
-      .value();
+  core::ExactSum sum;
+  particles::for_each(entries, [&](int i) {
+    double power = 0;
+    for (std::size_t c = 0; c < n; ++c)
+      power += velocity[c][i] * force[c][i];
+    sum.add(power);
+  });
+  return ranks.sum(sum).value();
 }
 } // namespace
 
@@ -64,12 +65,14 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
 {
   if (body.zone) {
     auto &state = body.zone->state;
+    const auto &own = state.part.owned;
     oppose(
-        parameters_.local, dt, [&](int i) { return state.inverse_mass(i); }, state.velocity,
+        parameters_.local, dt, own, [&](int i) { return state.inverse_mass(i); }, state.velocity,
         state.force, zone_force_);
-    oppose(
-        parameters_.local, dt, [&](int i) { return state.inverse_inertia(i); }, state.spin,
-        state.torque, zone_torque_);
+    if (state.turns)
+      oppose(
+          parameters_.local, dt, own, [&](int i) { return state.inverse_inertia(i); }, state.spin,
+          state.torque, zone_torque_);
     if (const auto *overlap = body.coupler->overlap())
       for (const auto &member : overlap->members)
         if (member.pad) {
@@ -89,7 +92,7 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
       for (const double mass : far.lumped_mass())
         inverse_far_mass_.push_back(mass > 0 ? 1 / mass : 0);
     oppose(
-        parameters_.local, dt * body.coupler->step_ratio(),
+        parameters_.local, dt * body.coupler->step_ratio(), {{0, far.mesh().n_nodes()}},
         [&](int i) { return inverse_far_mass_[i]; }, far.velocity, far.force, far_force_);
     if (const auto *overlap = body.coupler->overlap())
       for (const int node : overlap->near_nodes)
@@ -107,11 +110,15 @@ template <int dim>
 double BodyDamping<dim>::local_power(const CoupledBody<dim> &body) const
 {
   double sum = 0;
-  if (body.zone)
-    sum +=
-        power(body.zone->state.velocity, zone_force_) + power(body.zone->state.spin, zone_torque_);
+  if (body.zone) {
+    const auto &state = body.zone->state;
+    sum += power(state.part.owned, state.velocity, zone_force_, body.ranks);
+    if (state.turns)
+      sum += power(state.part.owned, state.spin, zone_torque_, body.ranks);
+  }
   if (body.far)
-    sum += body.coupler->step_ratio() * power(body.far->velocity, far_force_);
+    sum += body.coupler->step_ratio() *
+           power({{0, body.far->mesh().n_nodes()}}, body.far->velocity, far_force_, {});
   return sum;
 }
 

@@ -14,14 +14,13 @@ struct EndRequest
   const core::Interruption *interruption = nullptr;
   std::optional<std::chrono::steady_clock::time_point> deadline = {}; // of the time loop
 
+  /// The signal that asks; 0: none does.
+  int signal() const { return interruption ? interruption->signal() : 0; }
+  bool is_late() const { return deadline && std::chrono::steady_clock::now() >= *deadline; }
   /// Who asks, in a word; empty: nobody.
-  std::string reason() const
+  static std::string reason(int signal, bool is_late)
   {
-    if (interruption && interruption->signal() != 0)
-      return core::Interruption::name(interruption->signal());
-    if (deadline && std::chrono::steady_clock::now() >= *deadline)
-      return "--wall-time";
-    return {};
+    return signal != 0 ? core::Interruption::name(signal) : is_late ? "--wall-time" : "";
   }
 };
 } // namespace ligament::program

@@ -65,47 +65,51 @@ HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
     : has_phases_(scene.time.has_phases()), has_tools_(!scene.tools.empty()),
       has_flow_(scene.flows()), has_viscosity_(scene.is_viscous()), has_rebonding_(scene.rebonds()),
       kelvin_(scene.is_warm() ? thermal_energy_of(scene) / scene.atoms->temperature : 0),
-      gauges_(scene, body), servos_(servo_targets(scene, body, gauges_)),
-      writer_(folder.history(), all_columns(scene, gauges_, servos_), rows_per_flush, goes_on)
+      gauges_(scene, body), servos_(servo_targets(scene, body, gauges_))
 {
+  const auto columns = all_columns(scene, gauges_, servos_);
+  if (body.ranks.is_first())
+    writer_.emplace(folder.history(), columns, rows_per_flush, goes_on);
 }
 
 template <int dim>
 void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTime &step,
                            const HistoryRow &row)
 {
-  writer_.set("time", step.time);
-  writer_.set("step", double(step.step));
-  writer_.set("load", row.reading.load);
-  writer_.set("stress", row.reading.stress);
-  writer_.set("displacement", row.reading.displacement);
-  writer_.set("strain", row.reading.strain);
+  const std::vector<double> values = gauges_.read(body, step.time);
+  if (!writer_)
+    return;
+  writer_->set("time", step.time);
+  writer_->set("step", double(step.step));
+  writer_->set("load", row.reading.load);
+  writer_->set("stress", row.reading.stress);
+  writer_->set("displacement", row.reading.displacement);
+  writer_->set("strain", row.reading.strain);
   for (const auto &[name, value] : row.ledger.channels())
     if ((name != "settled" || has_phases_) && (name.compare(0, 5, "tool_") != 0 || has_tools_))
-      writer_.set(name, value);
+      writer_->set(name, value);
   if (has_flow_)
     for (const auto &[name, value] : row.ledger.flow_channels())
-      writer_.set(name, value);
+      writer_->set(name, value);
   if (has_viscosity_)
-    writer_.set(viscous.name, row.ledger.force.viscous);
+    writer_->set(viscous.name, row.ledger.force.viscous);
   if (has_rebonding_)
-    writer_.set(rebonding.name, row.ledger.force.rebonding);
+    writer_->set(rebonding.name, row.ledger.force.rebonding);
   if (kelvin_ > 0) {
-    writer_.set(thermostat.name, row.ledger.body.thermostat);
+    writer_->set(thermostat.name, row.ledger.body.thermostat);
     const auto energies = body.coupler->thermal_energies(body.bodies());
     for (int k = 0; k < (body.far ? 3 : 1); ++k)
-      writer_.set(temperatures[k], energies[k] / kelvin_);
+      writer_->set(temperatures[k], energies[k] / kelvin_);
   }
   if (has_phases_)
-    writer_.set("static", row.is_static);
-  writer_.set("broken_bonds", double(row.n_broken));
-  writer_.set("crack_length", row.crack_length);
-  const std::vector<double> values = gauges_.read(body, step.time);
+    writer_->set("static", row.is_static);
+  writer_->set("broken_bonds", double(row.n_broken));
+  writer_->set("crack_length", row.crack_length);
   for (std::size_t k = 0; k < values.size(); ++k)
-    writer_.set(gauges_.columns()[k].name, values[k]);
+    writer_->set(gauges_.columns()[k].name, values[k]);
   for (const auto &servo : servos_)
-    writer_.set(servo.column().name, servo.measured(body, values) - servo.wanted(step.time));
-  writer_.end_row();
+    writer_->set(servo.column().name, servo.measured(body, values) - servo.wanted(step.time));
+  writer_->end_row();
 }
 
 template class HistoryRows<2>;

@@ -7,6 +7,8 @@
 #include "src/simulation/servo_target.h"
 #include "src/simulation/test_machine.h"
 
+#include <optional>
+
 namespace ligament::program
 {
 /// What a row says besides the body itself.
@@ -28,9 +30,17 @@ public:
               bool goes_on);
 
   void add(const CoupledBody<dim> &body, const coupling::StepTime &step, const HistoryRow &row);
-  void flush() { writer_.flush(); }
+  void flush()
+  {
+    if (writer_)
+      writer_->flush();
+  }
   /// All rows are on the disk.
-  void sync() { writer_.sync(); }
+  void sync()
+  {
+    if (writer_)
+      writer_->sync();
+  }
 
   GaugeSet<dim> &gauges() { return gauges_; }
 
@@ -39,6 +49,6 @@ private:
   double kelvin_; // k in J/K where atoms have a temperature
   GaugeSet<dim> gauges_;
   std::vector<ServoTarget<dim>> servos_;
-  HistoryWriter writer_;
+  std::optional<HistoryWriter> writer_; // of the first rank
 };
 } // namespace ligament::program

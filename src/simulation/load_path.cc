@@ -1,7 +1,9 @@
 #include "src/simulation/load_path.h"
 
+#include "core/names.h"
 #include "core/sums.h"
 #include "src/simulation/disjoint_sets.h"
+#include "src/simulation/whole_body.h"
 
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
@@ -11,6 +13,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 namespace ligament::program
 {
@@ -23,13 +26,21 @@ struct Link
   double area; // m^2
 };
 
+/// Faces that carry, and particles at the two sides, of all particles in their order.
+struct Faces
+{
+  int n_particles = 0;
+  std::vector<Link> links; // ascending
+  std::vector<std::array<int, 2>> held; // a particle, and whether it lies at the low side
+};
+
 /// Items that nothing can part are one: particles, then nodes, then the two sides.
 template <int dim>
 class Items
 {
 public:
-  Items(const CoupledBody<dim> &body, int axis)
-      : n_particles_(body.zone ? body.zone->state.size() : 0),
+  Items(const CoupledBody<dim> &body, int n_particles, int axis)
+      : n_particles_(n_particles),
         n_nodes_(body.far ? body.far->mesh().n_nodes() : 0), low_(n_particles_ + n_nodes_),
         sets_(low_ + 2)
   {
@@ -112,49 +123,109 @@ double maximum_flow(int n_items, const std::vector<Link> &links, int source, int
 }
 } // namespace
 
-template <int dim>
-double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carrying)
+namespace
 {
-  Items<dim> items(body, axis);
+/// Of a part, with the particles as the first rank numbers those of the body; it alone has all.
+template <int dim>
+Faces faces_at_first(const CoupledBody<dim> &body, const Faces &part)
+{
+  struct NamedLink
+  {
+    std::int64_t from, to;
+    double area;
+  };
+  const auto &id = body.zone->state.global_id;
+  std::vector<NamedLink> links;
+  for (const Link &l : part.links)
+    links.push_back({id[l.from], id[l.to], l.area});
+  std::vector<std::array<std::int64_t, 2>> held;
+  for (const auto &[particle, at_low] : part.held)
+    held.push_back({id[particle], at_low});
+  links = body.ranks.gather_at_first(links);
+  held = body.ranks.gather_at_first(held);
+  const core::Names names(names_at_first(*body.zone));
+  Faces all;
+  all.n_particles = names.size();
+  for (const NamedLink &l : links)
+    all.links.push_back({names.index(l.from), names.index(l.to), l.area});
+  for (const auto &[name, at_low] : held)
+    all.held.push_back({names.index(name), int(at_low)});
+  return all;
+}
+
+/// Of the body; of several ranks the first one has them.
+template <int dim>
+Faces carrying_faces(const CoupledBody<dim> &body, int axis, Carrying carrying)
+{
+  Faces faces;
+  if (!body.zone)
+    return faces;
+  const auto &state = body.zone->state;
   std::set<std::pair<int, int>> broken;
-  if (body.zone && carrying == Carrying::at_start)
+  if (carrying == Carrying::at_start)
     for (const auto &b : body.force()->broken_bonds())
       broken.insert(std::minmax(b.i, b.j));
-  std::vector<Link> links;
-  if (body.zone)
-    body.force()->for_each_face(body.zone->state, [&](const particles::FaceView<dim> &face) {
-      if (face.j >= 0) {
-        if (face.i < face.j && (face.bonded || broken.count({face.i, face.j})))
-          links.push_back({face.i, face.j, face.area});
-      } else if (std::abs(face.normal[axis]) > 0.999 &&
-                 std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
-        items.hold(face.i, face.centroid[axis] < 0);
-    });
+  body.force()->for_each_face(state, [&](const particles::FaceView<dim> &face) {
+    if (!state.part.owns(face.i))
+      return; // another rank has it
+    if (face.j >= 0) {
+      if (face.i < face.j && (face.bonded || broken.count({face.i, face.j})))
+        faces.links.push_back({face.i, face.j, face.area});
+    } else if (std::abs(face.normal[axis]) > 0.999 &&
+               std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
+      faces.held.push_back({face.i, face.centroid[axis] < 0});
+  });
+  faces.n_particles = state.size();
+  if (!body.ranks.is_one())
+    faces = faces_at_first(body, faces);
+  std::sort(faces.links.begin(), faces.links.end(), [](const Link &a, const Link &b) {
+    return std::tie(a.from, a.to) < std::tie(b.from, b.to);
+  });
+  return faces;
+}
+
+/// Of what is at hand.
+template <int dim>
+double smallest_section(const CoupledBody<dim> &body, int axis, Faces faces)
+{
+  Items<dim> items(body, faces.n_particles, axis);
+  for (const auto &[particle, at_low] : faces.held)
+    items.hold(particle, at_low);
   const int low = items.low(), high = items.high();
   if (low == high)
     return std::numeric_limits<double>::infinity();
-  for (Link &l : links)
+  for (Link &l : faces.links)
     l = {items.particle(l.from), items.particle(l.to), l.area};
-  return maximum_flow(items.size(), links, low, high);
+  return maximum_flow(items.size(), faces.links, low, high);
+}
+} // namespace
+
+template <int dim>
+double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carrying)
+{
+  const Faces faces = carrying_faces(body, axis, carrying);
+  const double section = body.ranks.is_first() ? smallest_section(body, axis, faces) : 0;
+  return body.ranks.gather_all(std::vector<double>{section}).front();
 }
 
 // Breaking faces takes at most their area from any section.
 template <int dim>
 std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
 {
-  if (!body.force() || body.force()->broken_bonds().empty())
+  const std::size_t n_broken = body.force() ? std::size_t(body.force()->n_broken()) : 0;
+  if (n_broken == 0)
     return {};
-  const auto &broken = body.force()->broken_bonds();
   if (at_start_ < 0)
     at_least_ = at_start_ = smallest_section(body, axis_, Carrying::at_start);
   if (std::isinf(at_start_)) // the mesh goes round the zone
     return {};
   const double least = lost_share * at_start_;
-  if (counted_ < broken.size()) {
-    at_least_ -= core::exact_sum(broken.size() - counted_, [&](std::size_t k) {
+  if (counted_ < n_broken) {
+    const auto broken = body.force()->broken_bonds_of_body(body.zone->state);
+    at_least_ -= core::exact_sum(n_broken - counted_, [&](std::size_t k) {
                    return broken[counted_ + k].area;
                  }).value();
-    counted_ = broken.size();
+    counted_ = n_broken;
     if (at_least_ <= least)
       at_least_ = smallest_section(body, axis_, Carrying::now);
   }

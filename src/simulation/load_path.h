@@ -15,7 +15,8 @@ enum class Carrying
 
 /// Least area in m^2 of bonded faces whose removal leaves nothing between the two sides across the
 /// axis: the maximum flow from side to side when each face lets its area pass. Cells of the mesh
-/// don't break, nor what moves with them: infinite where they alone join the sides.
+/// don't break, nor what moves with them: infinite where they alone join the sides. The first of
+/// several ranks finds it and tells the others.
 template <int dim>
 double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carrying);
 

@@ -227,6 +227,16 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
 } // namespace
 
 template <int dim>
+int ghost_rings(const Scene &scene)
+{
+  dem::FractureLaw law;
+  law.criteria.push_back(criterion_of(scene.material));
+  for (const Inclusion &inclusion : scene.inclusions)
+    law.criteria.push_back(criterion_of(inclusion.material));
+  return dem::ManyBodyForce<dim>::n_rings(law);
+}
+
+template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene)
 {
   if (scene.atoms)
@@ -258,6 +268,8 @@ make_zone_force(const Scene &scene, packings::Packing<dim> packing,
   return make(scene, std::move(packing), loads, figures, log);
 }
 
+template int ghost_rings<2>(const Scene &);
+template int ghost_rings<3>(const Scene &);
 template particles::ElasticConstants<2> elastic_constants_of(const Scene &);
 template particles::ElasticConstants<3> elastic_constants_of(const Scene &);
 template std::unique_ptr<particles::ParticleForce<2>>

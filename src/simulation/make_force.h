@@ -49,6 +49,10 @@ make_atom_force(const Scene &scene, packings::Packing<dim> packing,
 template <int dim>
 packings::Packing<dim> make_crystal_packing(const Scene &scene, core::Log &log);
 
+/// So many rings of ghosts does the law of discrete elements need around the particles of a rank.
+template <int dim>
+int ghost_rings(const Scene &scene);
+
 /// Of the solid that particles and far field share: the scene's /material, or its crystal.
 template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene);

@@ -291,6 +291,18 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
   return zone;
 }
 
+template <int dim>
+PartOfZone<dim> make_packing_part(const Scene &scene, Reference &reference,
+                                  const core::Ranks &ranks, int rings, core::Log &log)
+{
+  if (!scene.zone.is_irregular())
+    return {packings::make_lattice_part<dim>(lattice_of<dim>(scene), ranks, rings), {}, {}};
+  auto [whole, seeds, n_healed] = make_packing<dim>(scene, reference, log);
+  return {packings::part_of(whole, particles::make_partition(whole.size(), ranks.size()),
+                            ranks.rank(), rings),
+          std::move(seeds), n_healed};
+}
+
 template packings::SpecimenParameters<2> packed_specimen_of(const Scene &);
 template packings::SpecimenParameters<3> packed_specimen_of(const Scene &);
 template packings::LatticeParameters<2> lattice_of(const Scene &);
@@ -299,4 +311,8 @@ template packings::RandomParameters<2> random_packing_of(const Scene &);
 template packings::RandomParameters<3> random_packing_of(const Scene &);
 template PackedZone<2> make_packing(const Scene &, Reference &, core::Log &);
 template PackedZone<3> make_packing(const Scene &, Reference &, core::Log &);
+template PartOfZone<2> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
+                                         core::Log &);
+template PartOfZone<3> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
+                                         core::Log &);
 } // namespace ligament::program

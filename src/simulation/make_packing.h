@@ -24,6 +24,19 @@ struct PackedZone
 template <int dim>
 PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log);
 
+/// The part of it that a rank of several has, with so many rings of ghosts. Lattices are packed by
+/// part; of other packings each rank makes the whole and keeps its part.
+template <int dim>
+struct PartOfZone
+{
+  packings::PackingPart<dim> held;
+  std::optional<packings::Seeds<dim>> seeds; // of the whole
+  std::optional<int> n_healed;
+};
+template <int dim>
+PartOfZone<dim> make_packing_part(const Scene &scene, Reference &reference,
+                                  const core::Ranks &ranks, int rings, core::Log &log);
+
 /// The specimen and the zone as packings see them.
 template <int dim>
 packings::SpecimenParameters<dim> packed_specimen_of(const Scene &scene);

@@ -33,6 +33,53 @@ BrokenBond cut_face(const packings::Packing<dim> &packing, const packings::Face<
   return cut;
 }
 
+/// Of one process the whole.
+template <int dim>
+PartOfZone<dim> pack_part(const Scene &scene, Reference &reference, const core::Ranks &ranks,
+                          core::Log &log)
+{
+  if (!ranks.is_one())
+    return make_packing_part<dim>(scene, reference, ranks, ghost_rings<dim>(scene), log);
+  auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
+  PartOfZone<dim> zone;
+  zone.seeds = std::move(seeds);
+  zone.n_healed = n_healed;
+  zone.held.part = particles::Part::whole(packing.size());
+  zone.held.n_whole = packing.size();
+  zone.held.packing = std::move(packing);
+  return zone;
+}
+
+/// Areas in m^2 of the faces on which each load acts, of the body.
+template <int dim>
+std::vector<double> loaded_areas(const CoupledBody<dim> &body,
+                                 const packings::PackingPart<dim> &held)
+{
+  std::vector<core::ExactSum> areas(body.loads.size());
+  for (const auto &face : held.packing.boundary_faces)
+    for (std::size_t l = 0; l < body.loads.size(); ++l)
+      if (face.boundary == body.loads[l].boundary && held.part.owns(face.i))
+        if (const auto inside =
+                packings::OuterFace<dim>(face, held.packing).inside({body.loads[l].part}))
+          areas[l].add(inside->area);
+  std::vector<double> values;
+  for (const core::ExactSum &area : body.ranks.sum(areas))
+    values.push_back(area.value());
+  return values;
+}
+
+/// Faces that initial cracks cut, of the body.
+template <int dim>
+std::vector<BrokenBond> all_cut_faces(const CoupledBody<dim> &body,
+                                      const packings::PackingPart<dim> &held)
+{
+  std::vector<BrokenBond> cut;
+  for (const auto &face : held.packing.faces)
+    if (face.cracked && held.part.owns(face.i))
+      cut.push_back(cut_face<dim>(held.packing, face, body.thickness));
+  return body.ranks.gather_all(cut);
+}
+
 template <int dim>
 void require_same_solid(const particles::ElasticConstants<dim> &force,
                         const particles::ElasticConstants<dim> &scene)
@@ -49,26 +96,21 @@ template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
                CoupledBody<dim> &body, ContactSurface<dim> &surface, core::Log &log)
 {
-  auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
+  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, log);
+  packings::Packing<dim> &packing = held.packing;
   body.seeds = std::move(seeds);
   if (n_healed)
     body.figures["healed_radii"] = {double(*n_healed), ""};
+  body.n_particles = held.n_whole;
+  body.loaded_faces = loaded_areas(body, held);
+  body.cut_faces = all_cut_faces(body, held);
+  body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   particles::Particles<dim> state;
   packings::fill_particles(packing, scene.densities(), state);
-  body.loaded_faces.assign(body.loads.size(), 0.);
-  for (const auto &face : packing.boundary_faces)
-    for (std::size_t l = 0; l < body.loads.size(); ++l)
-      if (face.boundary == body.loads[l].boundary)
-        if (const auto inside =
-                packings::OuterFace<dim>(face, packing).inside({body.loads[l].part}))
-          body.loaded_faces[l] += inside->area;
+  state.part = held.part;
   const auto constants = elastic_constants_of<dim>(scene);
   auto dashpots = packings::absorbing_dashpots(packing, state, body.loads, scene.material.density,
                                                constants.wave_speed_p, constants.wave_speed_s);
-  for (const auto &face : packing.faces)
-    if (face.cracked)
-      body.cut_faces.push_back(cut_face<dim>(packing, face, body.thickness));
-  body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};
   std::optional<packings::Packing<dim>> faces; // the force keeps the packing
@@ -81,12 +123,20 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   require_same_solid(force->elastic_constants(), constants);
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);
+  if (!body.ranks.is_one())
+    body.zone->join({body.ranks, held.owner});
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   if (faces)
     surface.add_particles(*faces, body.zone->state, contact_stiffness_of(scene), body.dt_zone);
-  log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
-           body.zone->state.size(), body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
+  if (body.ranks.is_one())
+    log.info("{} particles, {} bonds, {} faces cut by cracks, stable step {:.4g} s",
+             body.n_particles, body.force()->n_bonds(), body.n_cracked_faces, body.dt_zone);
+  else
+    log.info("{} particles on {} ranks, {} with {} ghosts on the first one; {} faces cut by "
+             "cracks, stable step {:.4g} s",
+             body.n_particles, body.ranks.size(), particles::count(held.part.owned),
+             body.zone->halo().n_ghosts(), body.n_cracked_faces, body.dt_zone);
 }
 
 template void make_zone(const Scene &, const ForceMaker<2> &, Reference &, CoupledBody<2> &,

@@ -36,7 +36,7 @@ constexpr double largest_settled = 0.02;
 template <int dim>
 std::int64_t n_broken(const CoupledBody<dim> &body)
 {
-  return body.force() ? std::int64_t(body.force()->broken_bonds().size()) : 0;
+  return body.force() ? body.force()->n_broken() : 0;
 }
 
 double history_interval_of(const Scene &scene)
@@ -110,7 +110,7 @@ Recorder<dim>::Recorder(const Scene &scene, const RunFolder &folder, const Coupl
     : scene_(scene), folder_(folder), log_(log), timers_(timers),
       section_(timers.section("output")), machine_(body), history_(scene, folder, body, goes_on),
       progress_(progress, dim, scene.output.progress_interval), fields_(folder, dim),
-      n_steps_(n_steps), draws_pictures_(draws_pictures),
+      n_steps_(n_steps), draws_pictures_(draws_pictures), writes_(body.ranks.is_first()),
       history_interval_(row_interval(scene, body)), guard_(body), path_(machine_.axis())
 {
 }
@@ -138,7 +138,7 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
 
   const bool history = in_static_phase_ || step.time >= next_history_ - 1e-9 * history_interval_;
   const bool fields = step.time >= next_fields_;
-  const bool progress = step.step / ratio % 20 == 0 && progress_.is_due();
+  const bool progress = step.step / ratio % 20 == 0 && body.ranks.any(progress_.is_due());
   if (!history && !fields && !progress)
     return {};
   const auto timing = timers_.scope(section_);
@@ -212,7 +212,8 @@ void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::
   BodyState state = present_state(body, step.time);
   state.bonds = broken_bonds(body);
   state_fields_.complete(body, state);
-  writer_.submit([this, state = std::move(state)] { fields_.write(state); });
+  if (writes_)
+    writer_.submit([this, state = std::move(state)] { fields_.write(state); });
 }
 
 template <int dim>
@@ -257,7 +258,7 @@ void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling:
   const auto left = path_.lost(body);
   if (!left)
     return;
-  const auto &bonds = body.force()->broken_bonds();
+  const auto bonds = body.force()->broken_bonds_of_body(body.zone->state);
   const int axis = machine_.axis();
   if (machine_.is_answer() && !curve_.has_fallen()) {
     const bool pulled = machine_.component() == axis && curve_.largest_load() > 0;
@@ -344,6 +345,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
     all.push_back(&state);
   }
+  if (!writes_)
+    return;
   attempt([&] {
     writer_.submit([&] {
       for (const BodyState &state : states)
@@ -387,9 +390,10 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
     history_.flush();
   });
   progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
-  attempt([&] { write_broken_bonds(folder_.broken_bonds(), broken_bonds(body), dim); });
+  const auto bonds = broken_bonds(body);
+  attempt([&] { write_bonds(folder_.broken_bonds(), bonds); });
   if (!body.cut_faces.empty())
-    attempt([&] { write_broken_bonds(folder_.cut_faces(), body.cut_faces, dim); });
+    attempt([&] { write_bonds(folder_.cut_faces(), body.cut_faces); });
   attempt([&] { snapshots_.write(body, folder_); });
   attempt([&] { history_.gauges().write(body, folder_); });
   record.gauges = history_.gauges().entries();
@@ -421,8 +425,17 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
 }
 
 template <int dim>
+void Recorder<dim>::write_bonds(const std::string &path, const std::vector<BrokenBond> &bonds) const
+{
+  if (writes_)
+    write_broken_bonds(path, bonds, dim);
+}
+
+template <int dim>
 std::map<std::string, std::int64_t> Recorder<dim>::sync()
 {
+  if (!writes_)
+    return {};
   history_.sync();
   std::map<std::string, std::int64_t> sizes;
   for (const std::string &file : {folder_.history(), folder_.log()}) {
@@ -494,8 +507,9 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   snapshots_.load(state, kept, names);
   residual_ = core::table(state, "history").reals("residual");
   work_ = core::table(state, "history").reals("work");
-  fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
-                body.far != nullptr);
+  if (writes_)
+    fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
+                  body.far != nullptr);
   const auto take = [&](const char *kind) -> std::optional<BodyState> {
     const auto time = load_optional(state, "recorder", kind);
     const auto found = time ? kept.find(kept_name(kind, *time)) : kept.end();

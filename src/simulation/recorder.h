@@ -30,7 +30,8 @@ template <int dim>
 double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_steps);
 
 /// Everything that looks at the body between forces and kick, each part with its own trigger. Only
-/// called in steps in which both models stand at the same time.
+/// called in steps in which both models stand at the same time. Of several ranks, which look alike,
+/// the first one writes.
 template <int dim>
 class Recorder
 {
@@ -93,6 +94,7 @@ private:
   void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record);
   std::string report(const std::string &finding, const coupling::StepTime &step);
   void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  void write_bonds(const std::string &path, const std::vector<BrokenBond> &bonds) const;
   void add_warnings(const CoupledBody<dim> &body, RunRecord &record) const;
   ProgressState progress_state(const CoupledBody<dim> &body, const coupling::StepTime &step,
                                const EnergyLedger &ledger) const;
@@ -107,7 +109,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_, first_step_ = 0;
-  bool draws_pictures_, in_static_phase_ = false;
+  bool draws_pictures_, writes_, in_static_phase_ = false;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   OverlapGuard<dim> guard_;

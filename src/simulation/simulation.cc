@@ -1,6 +1,7 @@
 #include "src/simulation/simulation.h"
 
 #include "core/check.h"
+#include "core/ranks_state.h"
 #include "core/version.h"
 #include "packings/packing_file.h"
 #include "particles/instruction_set.h"
@@ -21,18 +22,24 @@ namespace
 {
 // Files of a checkpoint.
 const std::string body_file = "body", run_file = "run";
+
+// Several ranks ask each other so often whether the run is to end or a checkpoint is due, in steps
+// of the far field.
+constexpr long agreed_interval = 50;
 } // namespace
 
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
                             bool draws_pictures, const Checkpoint *from,
-                            const ForceMaker<dim> &make_force)
-    : scene_(scene), folder_(folder), log_(folder.log(), progress), make_force_(make_force),
-      reference_(from ? from->reference : core::State()),
-      body_(make_body<dim>(scene_, log_, timers_, reference_, make_force)),
+                            const ForceMaker<dim> &make_force, const core::Ranks &ranks)
+    : scene_(scene), folder_(folder),
+      log_(ranks.is_first() ? folder.log() : "", ranks.is_first() ? progress : nullptr),
+      make_force_(make_force), reference_(from ? from->reference : core::State()),
+      body_(make_body<dim>(scene_, log_, timers_, reference_, make_force, ranks)),
       regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
-      phases_(scene_, body_, log_), recorder_(scene_, folder_, body_, log_, timers_, progress,
-                                              clock_.n_steps, draws_pictures, from != nullptr),
+      phases_(scene_, body_, log_),
+      recorder_(scene_, folder_, body_, log_, timers_, ranks.is_first() ? progress : nullptr,
+                clock_.n_steps, draws_pictures, from != nullptr),
       servos_(scene_, body_, log_),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
@@ -43,7 +50,7 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
     start_heat(scene_, body_, log_);
   if (from)
     go_on_from(*from);
-  else if (body_.seeds)
+  else if (body_.seeds && ranks.is_first())
     packings::write_packing_file(folder_.packing(), *body_.seeds);
 }
 
@@ -97,17 +104,17 @@ core::State Simulation<dim>::run_state() const
 template <int dim>
 void Simulation<dim>::build_anew()
 {
-  const core::State body = take_state(body_);
+  const core::State body = core::merged(take_state(body_), body_.ranks);
   core::State run;
   regime_.save(run);
   core::Log nothing_new;
-  body_ = make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_);
+  body_ = make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, body_.ranks);
   regime_ = RegimeControl<dim>(scene_.coupling.regime, body_);
   give(body, run);
   recorder_.watch(body_);
   servos_.watch(body_);
   ++n_rebuilt_;
-  n_broken_at_rebuild_ = body_.force() ? long(body_.force()->broken_bonds().size()) : 0;
+  n_broken_at_rebuild_ = body_.force() ? long(body_.force()->n_broken()) : 0;
 }
 
 template <int dim>
@@ -135,20 +142,31 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   manifest.commit = core::commit();
   manifest.instructions = particles::instruction_set();
   manifest.scene = resolved_;
+  const core::State body = core::merged(take_state(body_), body_.ranks);
+  const std::vector<KeptState> kept = recorder_.kept(body_);
+  if (!body_.ranks.is_first())
+    return;
   if (!reference_sum_)
     reference_sum_ = checkpoints.write_reference(reference_.tables());
   manifest.reference = reference_sum_;
-  checkpoints.write(std::move(manifest), {{body_file, take_state(body_)}, {run_file, run_state()}},
-                    recorder_.kept(body_));
+  checkpoints.write(std::move(manifest), {{body_file, body}, {run_file, run_state()}}, kept);
 }
 
 template <int dim>
 void Simulation<dim>::look_at_the_clock(const EndRequest &request)
 {
-  asked_by_ = request.reason();
+  const bool is_at_end = clock_.is_at_end();
+  if (!body_.ranks.is_one() && !is_at_end &&
+      clock_.now.step / body_.coupler->step_ratio() % agreed_interval != 0)
+    return;
+  // Ranks hear of signals and look at clocks at different times.
+  const std::vector<std::int64_t> seen =
+      body_.ranks.max({request.signal(), request.is_late(), keeper_ && keeper_->has_some(),
+                       keeper_ && keeper_->is_due()});
+  asked_by_ = EndRequest::reason(int(seen[0]), seen[1] != 0);
   // A run that is at its end may be prolonged from there.
-  const bool ends = !asked_by_.empty() || (clock_.is_at_end() && keeper_ && keeper_->has_some());
-  if (!keeper_ || (!ends && !keeper_->is_due()))
+  const bool ends = !asked_by_.empty() || (is_at_end && seen[2] != 0);
+  if (!keeper_ || (!ends && seen[3] == 0))
     return;
   const auto timing = timers_.scope(timers_.section("checkpoints"));
   recorder_.wait(); // a disk that refuses results ends the run, other than one for checkpoints
@@ -191,7 +209,10 @@ void Simulation<dim>::report_rest(RunRecord &record)
   };
   if (!body_.zone || !body_.zone->rest())
     return;
-  report("share_at_rest", "particle-steps", body_.zone->rest()->share_at_rest());
+  core::ExactSum share; // mean of the ranks, which own so many each
+  share.add(body_.zone->rest()->share_at_rest() *
+            particles::count(body_.zone->state.part.owned) / double(body_.n_particles));
+  report("share_at_rest", "particle-steps", body_.ranks.sum(share).value());
   for (const auto &[name, steps, share] : body_.coupler->shares_at_rest())
     report(name, steps, share);
 }
@@ -282,7 +303,7 @@ RunRecord Simulation<dim>::make_record() const
   for (int c = 0; c < dim; ++c)
     r.size.push_back(scene_.specimen.size[c]);
   r.thickness = body_.thickness;
-  r.particles = body_.zone ? body_.zone->state.size() : 0;
+  r.particles = int(body_.n_particles);
   r.cells = body_.far ? body_.far->mesh().n_cells() : 0;
   const auto *overlap = body_.coupler->overlap();
   r.overlap_particles = overlap ? int(overlap->members.size()) : 0;
@@ -311,6 +332,8 @@ void Simulation<dim>::run_loop(const EndRequest &request, RunRecord &record)
                                   clock_.now.step, clock_.n_steps);
     }
   } catch (const core::EnvironmentError &error) {
+    if (!body_.ranks.is_one())
+      throw; // the others wait
     record.status = "failed";
     record.reason = fmt::format("{} (at {:.4g} s, in step {} of {})", error.what(), clock_.now.time,
                                 clock_.now.step, clock_.n_steps);
@@ -318,12 +341,20 @@ void Simulation<dim>::run_loop(const EndRequest &request, RunRecord &record)
 }
 
 template <int dim>
+void Simulation<dim>::write(const RunRecord &record) const
+{
+  if (body_.ranks.is_first())
+    write_run_record(folder_.record(), record);
+}
+
+template <int dim>
 RunRecord Simulation<dim>::run(const EndRequest &request)
 {
-  log_.info("ligament {}, commit {}", core::version(), core::commit());
+  log_.info("ligament {}, commit {}{}", core::version(), core::commit(),
+            body_.ranks.is_one() ? "" : fmt::format(", on {} ranks", body_.ranks.size()));
   RunRecord record = make_record();
   record.setup_seconds = setup_seconds_;
-  write_run_record(folder_.record(), record);
+  write(record);
   for (const auto &part : body_.skipped)
     log_.info("not needed: {} ({})", part.what, part.why);
 
@@ -351,7 +382,7 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
     record.discrete_seconds = discrete;
   record.verdict = verdict(record);
   try {
-    write_run_record(folder_.record(), record);
+    write(record);
   } catch (const core::EnvironmentError &error) {
     record.status = "failed";
     record.reason = error.what();

@@ -20,10 +20,13 @@ class Simulation
 public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
   /// scenes take less time than their pictures, which may be left out. With a checkpoint the run
-  /// goes on from it: the files that grow have been cut back to its positions.
+  /// goes on from it: the files that grow have been cut back to its positions. Several ranks, which
+  /// all make the same calls, run one body together; only the first one writes. What goes wrong on
+  /// one of them is thrown there: it has to end the others.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
              bool draws_pictures = true, const Checkpoint *from = nullptr,
-             const ForceMaker<dim> &make_force = make_zone_force<dim>);
+             const ForceMaker<dim> &make_force = make_zone_force<dim>,
+             const core::Ranks &ranks = {});
 
   /// From now on the run writes checkpoints: by the interval of the scene, and where it ends before
   /// its time. `resolved`: the scene.
@@ -67,6 +70,7 @@ private:
   /// for, and writes a checkpoint if it is, if one is due, or behind others at the end.
   void look_at_the_clock(const EndRequest &request);
   void write_checkpoint(const Checkpoints &checkpoints);
+  void write(const RunRecord &record) const;
   /// Runs the loop and says in the record how it ended.
   void run_loop(const EndRequest &request, RunRecord &record);
 

@@ -2,6 +2,7 @@
 
 #include "src/simulation/body_fields.h"
 #include "src/simulation/kept_tables.h"
+#include "src/simulation/whole_body.h"
 
 #include <algorithm>
 
@@ -12,7 +13,8 @@ namespace
 template <int dim>
 Motion<dim> motion(const CoupledBody<dim> &body, double time)
 {
-  return {time, body.zone->state.displacement, body.zone->state.velocity};
+  const auto &state = body.zone->state;
+  return {time, at_first(*body.zone, state.displacement), at_first(*body.zone, state.velocity)};
 }
 
 /// Names and slots of what is kept.
@@ -136,11 +138,24 @@ void SnapshotKeeper<dim>::keep(const Motion<dim> &motion)
 template <int dim>
 void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &folder) const
 {
-  for (std::size_t i = 0; i < kept_.size(); ++i)
-    if (kept_[i])
-      write_snapshot(
-          folder.snapshots()[i],
-          snapshot<dim>(body, kept_[i]->time, kept_[i]->displacement, kept_[i]->velocity));
+  if (!kept_[0])
+    return;
+  Snapshot snapshot = empty_snapshot(body);
+  for (std::size_t k = 0; k < kept_.size() && body.ranks.is_first(); ++k) {
+    if (!kept_[k])
+      continue;
+    const auto in_turn = [&](const Components<dim> &components) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < snapshot.size(); ++i)
+        for (int c = 0; c < dim; ++c)
+          values.push_back(components[c][i]);
+      return values;
+    };
+    snapshot.time = kept_[k]->time;
+    snapshot.displacement = in_turn(kept_[k]->displacement);
+    snapshot.velocity = in_turn(kept_[k]->velocity);
+    write_snapshot(folder.snapshots()[k], snapshot);
+  }
 }
 
 template <int dim>

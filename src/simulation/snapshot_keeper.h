@@ -1,4 +1,5 @@
-// The motion of the particles at the last common times, for comparisons with other runs.
+// The motion of the particles at the last common times, for comparisons with other runs. Of a body
+// in parts the first rank keeps that of all.
 #pragma once
 
 #include "src/output/checkpoints.h"

@@ -21,8 +21,8 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
                                  int component)
 {
   using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
-  std::array<core::ExactSum, (dim + 1) * (dim + 1)> squares;
-  std::array<core::ExactSum, dim + 1> sums;
+  constexpr int n = dim + 1;
+  std::vector<core::ExactSum> sums(n * n + n); // of the matrix, then of the right side
   const auto &state = body.zone->state;
   particles::for_each(state.part.owned, [&](int i) {
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
@@ -32,18 +32,19 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
     for (int c = 0; c < dim; ++c)
       row[c] = state.reference[c][i] / body.spacing;
     row[axis] = depth;
-    for (int a = 0; a <= dim; ++a) {
+    for (int a = 0; a < n; ++a) {
       for (int b = 0; b <= a; ++b)
-        squares[a * (dim + 1) + b].add(row[a] * row[b]);
-      sums[a].add(state.displacement[component][i] * row[a]);
+        sums[a * n + b].add(row[a] * row[b]);
+      sums[n * n + a].add(state.displacement[component][i] * row[a]);
     }
   });
+  sums = body.ranks.sum(sums);
   Eigen::Matrix<double, dim + 1, dim + 1> matrix;
   Row right;
-  for (int a = 0; a <= dim; ++a) {
+  for (int a = 0; a < n; ++a) {
     for (int b = 0; b <= a; ++b)
-      matrix(a, b) = matrix(b, a) = squares[a * (dim + 1) + b].value();
-    right[a] = sums[a].value();
+      matrix(a, b) = matrix(b, a) = sums[a * n + b].value();
+    right[a] = sums[n * n + a].value();
   }
   return matrix.ldlt().solve(right)[dim];
 }

@@ -1,0 +1,71 @@
+#include "src/commands/rank_process.h"
+
+#include "core/interruption.h"
+#include "core/mpi_job.h"
+#include "src/launcher/program.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+namespace ligament::program
+{
+namespace
+{
+// What all ranks find wrong the first one says, and ends the others; one that finds something alone
+// waits so long for that before it speaks.
+constexpr auto patience = std::chrono::seconds(3);
+} // namespace
+
+RankProcess::RankProcess(core::Ranks ranks) : ranks_(std::move(ranks))
+{
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (ranks_.is_first())
+    return;
+  error_ = ::dup(STDERR_FILENO);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+  ::close(nowhere);
+}
+
+RankProcess::~RankProcess()
+{
+  if (error_ >= 0)
+    ::close(error_);
+}
+
+void RankProcess::end_all(const std::string &message, int exit_code)
+{
+  std::fflush(stdout);
+  if (ranks_.is_first())
+    ranks_.abort("", exit_code);
+  std::this_thread::sleep_for(patience);
+  ::dup2(error_, STDERR_FILENO);
+  ranks_.abort(message, exit_code);
+}
+
+int run_rank(int argc, char **argv,
+             const std::function<int(const CommandLine &, RankProcess &)> &dispatch)
+{
+  core::Interruption::block_for_threads(); // MPI starts some
+  const core::MpiJob job;
+  RankProcess process(job.ranks());
+  const core::Ranks &ranks = process.ranks();
+  const int code = run_program(
+      argc, argv,
+      [&](const CommandLine &line, int, char **) { return dispatch(line, process); },
+      [&](const std::string &message, int exit_code) {
+        if (!ranks.is_one())
+          process.end_all(message, exit_code);
+      });
+  // mpirun ends all others when one has ended with a code that is not 0.
+  ranks.any(false);
+  return ranks.is_first() ? code : 0;
+}
+} // namespace ligament::program

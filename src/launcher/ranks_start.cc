@@ -1,0 +1,117 @@
+#include "src/launcher/ranks_start.h"
+
+#include "core/check.h"
+#include "src/launcher/solver_start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace ligament::program
+{
+namespace
+{
+/// mpirun's command line. Where there are fewer cores than ranks, those that wait make room.
+std::vector<std::string> mpirun_words(int ranks, int argc, char *const *argv)
+{
+  std::vector<std::string> words = {"mpirun",          "--quiet",  "-n",  std::to_string(ranks),
+                                    "--oversubscribe", "--bind-to", "none"};
+  if (ranks > int(std::thread::hardware_concurrency()))
+    words.insert(words.end(), {"--mca", "mpi_yield_when_idle", "1"});
+  words.push_back(solver_path());
+  words.insert(words.end(), argv + 1, argv + argc);
+  return words;
+}
+
+/// Those that this process doesn't ignore, and the end of a child.
+sigset_t awaited_signals()
+{
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGCHLD);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action;
+    if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+      sigaddset(&set, signal);
+  }
+  return set;
+}
+
+/// In the child. A failure is written to the pipe, which otherwise closes.
+[[noreturn]] void become_mpirun(std::vector<std::string> words, const sigset_t &mask, pid_t parent,
+                                int failure)
+{
+  ::setpgid(0, 0); // a terminal's signals reach the parent alone
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent)
+    ::_exit(int(SIGTERM));
+  pthread_sigmask(SIG_SETMASK, &mask, nullptr);
+  if (::geteuid() == 0) {
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  }
+  std::vector<char *> arguments;
+  for (std::string &word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execvp(arguments[0], arguments.data());
+  const int error = errno;
+  [[maybe_unused]] const auto written = ::write(failure, &error, sizeof(error));
+  ::_exit(127);
+}
+
+/// Waits for the child's end, and hands on what asks for it; returns the last signal, 0: none.
+int wait_for(pid_t child, const sigset_t &signals, int &status)
+{
+  int asked_by = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    const int signal = ::sigwaitinfo(&signals, nullptr);
+    if (signal <= 0 || signal == SIGCHLD)
+      continue;
+    ::kill(child, asked_by == 0 ? SIGUSR1 : SIGTERM);
+    asked_by = signal;
+  }
+  return asked_by;
+}
+} // namespace
+
+int run_on_ranks(int ranks, int argc, char *const *argv)
+{
+  const auto words = mpirun_words(ranks, argc, argv);
+  const sigset_t signals = awaited_signals();
+  sigset_t before;
+  pthread_sigmask(SIG_BLOCK, &signals, &before);
+  int failure[2];
+  core::require<core::EnvironmentError>(::pipe2(failure, O_CLOEXEC) == 0,
+                                        fmt::format("cannot start ranks: {}",
+                                                    std::strerror(errno)));
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child == 0)
+    become_mpirun(words, before, parent, failure[1]);
+  ::close(failure[1]);
+  int error = child < 0 ? errno : 0, status = 0;
+  if (child > 0 && ::read(failure[0], &error, sizeof(error)) < 0)
+    error = 0;
+  ::close(failure[0]);
+  const int asked_by = child > 0 ? wait_for(child, signals, status) : 0;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  core::require<core::EnvironmentError>(
+      error == 0, fmt::format("cannot start mpirun: {}; install Open MPI's programs (Debian: "
+                              "openmpi-bin), or leave -n out",
+                              std::strerror(error)));
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return asked_by != 0 && code > 128 ? 128 + asked_by : code;
+}
+} // namespace ligament::program

@@ -1,0 +1,90 @@
+#include "src/scene/check_ranks.h"
+
+#include "src/scene/fracture_energy.h"
+
+#include <fmt/format.h>
+
+namespace ligament::program
+{
+namespace
+{
+const std::string remedy = "leave -n out, or mpirun and srun";
+
+class Refusals
+{
+public:
+  explicit Refusals(const core::JsonValue &json) : json_(json) {}
+
+  void add_where(bool is_there, const std::string &key, const std::string &what,
+                 const std::string &reason)
+  {
+    if (is_there)
+      found_.push_back(
+          {core::place_of(json_, key), key, what + " on several ranks", reason, remedy});
+  }
+  std::vector<core::Diagnostic> take() { return std::move(found_); }
+
+private:
+  const core::JsonValue &json_;
+  std::vector<core::Diagnostic> found_;
+};
+
+// A strain or an opening of a face that particles of another rank answer to.
+void look_at_material(const Scene &scene, const MaterialParameters &material,
+                      const std::string &key, Refusals &refusals)
+{
+  const std::string reason = "what such a material remembers stays with its rank";
+  refusals.add_where(material.plasticity.has_value(), key + "/plasticity", "flow", reason);
+  refusals.add_where(material.viscosity.has_value(), key + "/viscosity", "viscosity", reason);
+  refusals.add_where(material.fracture.criterion != Criterion::none &&
+                         fracture_energy(scene, material).value_or(0) > 0,
+                     key + "/fracture", "faces that soften", reason);
+  refusals.add_where(material.fracture.crack_velocity.has_value(),
+                     key + "/fracture/crack_velocity", "a limit of the velocity of cracks", reason);
+  refusals.add_where(material.fracture.rebonding.has_value(), key + "/fracture/rebonding",
+                     "faces that are bonded again", reason);
+}
+
+void look_at_loads(const Scene &scene, Refusals &refusals)
+{
+  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
+    const LoadParameters &load = scene.loads[k];
+    const std::string key = fmt::format("/loads/{}", k);
+    refusals.add_where(load.servo.has_value(), key + "/servo", "a servo",
+                       "what it follows is read in one process");
+    refusals.add_where(load.pressure.has_value(), key + "/pressure", "a pressure",
+                       "it follows the turns of neighbours on other ranks");
+    refusals.add_where(load.absorbing, key + "/absorbing", "absorbing sides",
+                       "their work is booked in one process");
+  }
+  refusals.add_where(scene.body_force.is_any(), "/body_force", "an acceleration of the body",
+                     "its work is booked in one process");
+}
+} // namespace
+
+std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
+{
+  const Scene &scene = *input.scene;
+  Refusals refusals(input.json);
+  refusals.add_where(scene.far_field.has_value() || scene.zone.extent != DiscreteZone::Extent::all,
+                     "/far_field", "finite elements", "mesh and overlap are whole in one process");
+  refusals.add_where(scene.atoms.has_value(), "/atoms", "atoms",
+                     "their forces know no parts of a body");
+  look_at_material(scene, scene.material, "/material", refusals);
+  refusals.add_where(!scene.inclusions.empty(), "/inclusions", "inclusions",
+                     "pressures where materials meet are solved for in one process");
+  refusals.add_where(!scene.specimen.periodic.empty(), "/specimen/periodic", "joined sides",
+                     "images of particles are looked for in one process");
+  look_at_loads(scene, refusals);
+  refusals.add_where(!scene.tools.empty(), "/tools", "tools",
+                     "the surface that they touch is known in one process");
+  refusals.add_where(!scene.gauges.empty(), "/gauges", "gauges",
+                     "what they measure is read in one process");
+  refusals.add_where(scene.time.has_phases(), "/time/loading", "loading by equilibria",
+                     "they are solved for in one process");
+  refusals.add_where(scene.time.rest_threshold > 0, "/time/rest_threshold",
+                     "a threshold below which blocks rest",
+                     "which blocks there are depends on the parts");
+  return refusals.take();
+}
+} // namespace ligament::program

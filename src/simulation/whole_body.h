@@ -1,0 +1,40 @@
+// What observers see of a body in parts: the first rank has all of it, in the one order of the
+// particles, the others nothing.
+#pragma once
+
+#include "particles/particle_solver.h"
+
+namespace ligament::program
+{
+/// From values of the particles at hand, n of each, those of the body's on the first rank; nothing
+/// on the others. One process has them already. All ranks call it.
+template <int dim, typename T>
+std::vector<T> at_first(const particles::ParticleSolver<dim> &zone, std::vector<T> values,
+                        int n = 1)
+{
+  if (zone.ranks().is_one())
+    return values;
+  std::vector<T> own;
+  for (const auto &[begin, end] : zone.state.part.owned)
+    own.insert(own.end(), values.begin() + std::ptrdiff_t(n) * begin,
+               values.begin() + std::ptrdiff_t(n) * end);
+  return zone.ranks().gather_at_first(own);
+}
+
+/// Component by component.
+template <int dim, std::size_t n>
+std::array<std::vector<double>, n> at_first(const particles::ParticleSolver<dim> &zone,
+                                            std::array<std::vector<double>, n> values)
+{
+  for (auto &component : values)
+    component = at_first<dim, double>(zone, std::move(component));
+  return values;
+}
+
+/// The names of the body's particles.
+template <int dim>
+std::vector<std::int64_t> names_at_first(const particles::ParticleSolver<dim> &zone)
+{
+  return at_first<dim, std::int64_t>(zone, zone.state.global_id.list());
+}
+} // namespace ligament::program

@@ -1,0 +1,294 @@
+// Runs on several ranks: byte for byte what one process writes, also where they go on on other
+// numbers of ranks. Through the programs.
+#include "core/state_file.h"
+#include "tests/support/run_results.h"
+
+#include <csignal>
+#include <thread>
+
+using namespace ligament;
+using namespace ligament::tests;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace
+{
+const std::string program = LIGAMENT_PROGRAM;
+
+/// A body of particles alone, in units of d = 1, E = 1, rho = 1.
+Json scene_of(int dim, const std::string &packing, std::vector<double> size)
+{
+  Json scene = {
+      {"title", packing},
+      {"dimension", dim},
+      {"specimen", {{"size", size}}},
+      {"material",
+       {{"youngs_modulus", 1},
+        {"poissons_ratio", 0.25},
+        {"density", 1},
+        {"friction", 0.4},
+        {"fracture", {{"criterion", "maximum_tension"}, {"strength", 2e-3}}}}},
+      {"discrete_zone", {{"extent", "all"}, {"packing", packing}, {"spacing", 1}}},
+      {"time", {{"duration", 160}}},
+      {"output",
+       {{"history_interval", 1.7},
+        {"field_interval", 60},
+        {"progress_interval", 1000},
+        {"checkpoint_interval", 0.01}}}};
+  return scene;
+}
+
+/// The two sides across an axis move apart, or along each other.
+void pull(Json &scene, int axis, int component, double velocity, double ramp = 40)
+{
+  const char *const sides[][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  for (const int side : {0, 1}) {
+    Json v = Json::array();
+    for (int c = 0; c < scene["dimension"]; ++c)
+      v.push_back(c == component ? Json(side ? velocity : -velocity) : Json());
+    scene["loads"].push_back({{"boundary", sides[axis][side]}, {"velocity", v}, {"ramp", ramp}});
+  }
+}
+
+std::string written(const Json &scene, const std::string &name)
+{
+  std::ofstream(name) << scene.dump(2);
+  return name;
+}
+
+/// The newest state without what it says of blocks at rest, which each rank cuts otherwise.
+core::State last_state(const std::string &run)
+{
+  core::State state = core::read_state_file(newest_checkpoint(run) + "/body.bin");
+  for (const char *table : {"blocks", "rest"})
+    state.erase(table);
+  return state;
+}
+
+/// All that they computed; how much of it rested is not part of that.
+void expect_same_body(const std::string &run, const std::string &reference)
+{
+  auto found = results(run), expected = results(reference);
+  EXPECT_GT(expected.size(), 4u);
+  found.erase("body.bin");
+  expected.erase("body.bin");
+  EXPECT_EQ(found.size(), expected.size()) << run;
+  for (const auto &[name, content] : expected) {
+    EXPECT_FALSE(content.empty()) << name;
+    EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
+  }
+  EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
+  const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
+  for (const char *key : {"status", "reason", "steps", "particles", "dt", "broken_bonds",
+                          "crack_length", "peak_load", "external_work", "energy_residual", "states",
+                          "warnings", "magnification", "stiffness", "broken_time"})
+    EXPECT_EQ(record.value(key, nlohmann::json()), wanted.value(key, nlohmann::json())) << key;
+}
+
+class RanksProgram : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    const auto *test = testing::UnitTest::GetInstance()->current_test_info();
+    const std::string folder = std::string("ranks_") + test->name();
+    fs::remove_all(folder);
+    fs::create_directory(folder);
+    fs::current_path(folder);
+  }
+  void TearDown() override { fs::current_path(".."); }
+
+  /// On one process and on 2, 3 and 4 ranks; a test in which nothing breaks would prove little.
+  static void expect_the_same_on_ranks(const Json &scene, int least_broken)
+  {
+    written(scene, "scene.json");
+    ASSERT_EQ(run_ligament("run scene.json -o on_1").code, 0);
+    EXPECT_GE(file_json("on_1/run.json")["broken_bonds"], least_broken);
+    for (const char *n : {"2", "3", "4"}) {
+      const Outcome outcome =
+          run_ligament(std::string("run scene.json -n ") + n + " -o on_" + n);
+      ASSERT_EQ(outcome.code, 0) << outcome.errors;
+      expect_same_body(std::string("on_") + n, "on_1");
+    }
+  }
+
+  /// Half of the time on every number of ranks, the rest on every other one.
+  static void expect_to_go_on(const Json &scene, int most)
+  {
+    written(scene, "scene.json");
+    ASSERT_EQ(run_ligament("run scene.json -o whole").code, 0);
+    const double duration = scene["time"]["duration"];
+    const auto number = [](int n) { return std::to_string(n); };
+    for (int a = 1; a <= most; ++a) {
+      const std::string half = "half_" + number(a);
+      ASSERT_EQ(run_ligament("run scene.json --set /time/duration=" +
+                             std::to_string(duration / 2) + " -n " + number(a) + " -o " + half)
+                    .code,
+                0);
+      for (int b = 1; b <= most; ++b) {
+        const std::string run = "from_" + number(a) + "_to_" + number(b);
+        fs::copy(half, run, fs::copy_options::recursive);
+        const Outcome outcome =
+            run_ligament("resume " + run + " -n " + number(b) + " --set /time/duration=" +
+                         std::to_string(duration));
+        ASSERT_EQ(outcome.code, 0) << outcome.errors;
+        expect_same_body(run, "whole");
+      }
+    }
+  }
+};
+
+// Rows lie along the crack, and so do the seams.
+TEST_F(RanksProgram, HexagonalWithACrackAlongTheSeam)
+{
+  Json scene = scene_of(2, "hexagonal", {40, 60});
+  scene["specimen"]["cracks"] = {{{"points", {{-8, 0}, {8, 0}}}}};
+  pull(scene, 1, 1, 4e-4);
+  expect_the_same_on_ranks(scene, 20);
+}
+
+// The crack runs across the seams, its flanks slide along each other.
+TEST_F(RanksProgram, HexagonalTurnedWithACrackAcrossTheSeam)
+{
+  Json scene = scene_of(2, "hexagonal", {40, 50});
+  scene["discrete_zone"]["orientation"] = 20;
+  scene["specimen"]["cracks"] = {{{"points", {{2, -12}, {-2, 14}}}}};
+  scene["loads"] = Json::array();
+  pull(scene, 0, 1, 2e-3);
+  scene["damping"] = {{"mass", 1e-3}, {"local", 0.05}};
+  expect_the_same_on_ranks(scene, 20);
+}
+
+TEST_F(RanksProgram, SquareWithAHole)
+{
+  Json scene = scene_of(2, "square", {36, 50});
+  scene["specimen"]["holes"] = {{{"center", {3, -2}}, {"radius", 7}}};
+  pull(scene, 1, 1, 1e-3);
+  expect_the_same_on_ranks(scene, 10);
+}
+
+// Pieces meet others that they never touched.
+TEST_F(RanksProgram, RandomThatIsCrushed)
+{
+  Json scene = scene_of(2, "random", {30, 40});
+  scene["material"]["fracture"] = {{"criterion", "principal_stress"}, {"strength", 1e-3}};
+  scene["specimen"]["notches"] = {{{"lower", {-15, -1}}, {"upper", {-8, 1}}}};
+  pull(scene, 1, 1, -8e-3, 10);
+  scene["time"]["duration"] = 240;
+  expect_the_same_on_ranks(scene, 50);
+}
+
+TEST_F(RanksProgram, FccWithACrack)
+{
+  Json scene = scene_of(3, "fcc", {12, 10, 14});
+  scene["specimen"]["cracks"] = {{{"points", {{-6.5, 0.3}, {0, 0.3}}}}};
+  pull(scene, 1, 1, 1.5e-3);
+  scene["time"]["duration"] = 60;
+  expect_the_same_on_ranks(scene, 10);
+}
+
+TEST_F(RanksProgram, RandomInSpace)
+{
+  Json scene = scene_of(3, "random", {8, 8, 12});
+  pull(scene, 2, 2, 2e-3);
+  scene["time"]["duration"] = 60;
+  expect_the_same_on_ranks(scene, 10);
+}
+
+// Most of a long bar rests until the wave arrives, and one of two blocks for ever.
+TEST_F(RanksProgram, ABarThatRests)
+{
+  Json scene = scene_of(2, "hexagonal", {16, 160});
+  scene["loads"] = {{{"boundary", "top"}, {"velocity", {nullptr, 4e-3}}, {"ramp", 10}}};
+  scene["time"]["duration"] = 100;
+  expect_the_same_on_ranks(scene, 5);
+}
+
+TEST_F(RanksProgram, GoOnOnAnyNumber)
+{
+  Json scene = scene_of(2, "hexagonal", {30, 40});
+  scene["discrete_zone"]["orientation"] = 10;
+  scene["specimen"]["cracks"] = {{{"points", {{0, -20.5}, {0, 20.5}}}}};
+  pull(scene, 0, 1, 2e-3);
+  expect_to_go_on(scene, 4);
+}
+
+TEST_F(RanksProgram, SlowGoOnInSpace)
+{
+  Json scene = scene_of(3, "fcc", {12, 10, 14});
+  pull(scene, 1, 1, 1.5e-3);
+  scene["time"]["duration"] = 60;
+  expect_to_go_on(scene, 4);
+}
+
+TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
+{
+  Json scene = scene_of(2, "hexagonal", {20, 20});
+  pull(scene, 1, 1, 4e-4);
+  scene["gauges"] = {{{"name", "top"}, {"kind", "force"}, {"side", "top"}}};
+  scene["body_force"] = {{"acceleration", {0, -1e-6}}};
+  written(scene, "scene.json");
+  for (const char *how : {"exec " LIGAMENT_PROGRAM " run scene.json -n 2 -o out",
+                          "exec mpirun -q -n 2 --oversubscribe " LIGAMENT_PROGRAM
+                          " run scene.json -o out"}) {
+    const Outcome outcome = run_shell(how);
+    EXPECT_EQ(outcome.code, 2);
+    for (const char *part : {"gauges on several ranks", "an acceleration of the body"})
+      EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
+    EXPECT_FALSE(fs::exists("out"));
+  }
+}
+
+// A signal to the program that users started ends all ranks in good order; they can go on.
+TEST_F(RanksProgram, ASignalEndsAllInGoodOrder)
+{
+  Json scene = scene_of(2, "hexagonal", {40, 60});
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 1e5;
+  written(scene, "scene.json");
+  Process process("exec " + program + " run scene.json -n 2 -o out");
+  std::error_code none;
+  while (!fs::exists("out/history.csv", none) || fs::file_size("out/history.csv", none) < 4000)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  process.send(SIGTERM);
+  EXPECT_EQ(process.wait().code, 128 + SIGTERM);
+  EXPECT_EQ(file_json("out/run.json")["status"], "interrupted");
+  EXPECT_FALSE(newest_checkpoint("out").empty());
+}
+
+/// Whether a solver that runs this scene is left.
+bool is_left(const std::string &scene)
+{
+  return run_shell("pgrep -f 'ligament-solver run " + scene + "'").code == 0;
+}
+
+// Killed, it leaves nobody behind.
+TEST_F(RanksProgram, NobodyOutlivesTheProgram)
+{
+  Json scene = scene_of(2, "hexagonal", {40, 60});
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 1e5;
+  const std::string name = written(scene, "orphans_of_nobody.json");
+  Process process("exec " + program + " run " + name + " -n 2 -o out");
+  std::error_code none;
+  while (!fs::exists("out/history.csv", none) || fs::file_size("out/history.csv", none) < 4000)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  process.send(SIGKILL);
+  process.wait();
+  for (int k = 0; k < 100 && is_left(name); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(is_left(name));
+}
+
+// What only the first rank finds ends the others, too.
+TEST_F(RanksProgram, AFolderThatCannotBeOneEndsAll)
+{
+  Json scene = scene_of(2, "hexagonal", {20, 20});
+  pull(scene, 1, 1, 4e-4);
+  written(scene, "scene.json");
+  std::ofstream("out") << "a file";
+  const Outcome outcome = run_ligament("run scene.json -n 3 -o out");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.errors.find("out is a file"), std::string::npos) << outcome.errors;
+}
+} // namespace
