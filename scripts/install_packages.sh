@@ -4,13 +4,13 @@
 set -eu
 
 packages="git ca-certificates g++ cmake ninja-build libdeal.ii-dev libtrilinos-amesos-dev
-  libtrilinos-ml-dev libsuitesparse-dev libeigen3-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhwy-dev zlib1g-dev libcairo2-dev
+  libtrilinos-ml-dev libopenmpi-dev openmpi-bin libsuitesparse-dev libeigen3-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhwy-dev zlib1g-dev libcairo2-dev
   fonts-dejavu-core libgtest-dev
   voro++-dev libboost-dev libassimp-dev $*"
 
 if ! command -v apt-get >/dev/null 2>&1; then
   echo "error: apt-get not found. Ligament builds on Debian 12; elsewhere provide:" >&2
-  echo "  g++ 12, cmake 3.22, ninja, git, deal.II 9.4 with Trilinos (Amesos, ML) and p4est, CHOLMOD 3, Eigen 3.4," >&2
+  echo "  g++ 12, cmake 3.22, ninja, git, deal.II 9.4 with Trilinos (Amesos, ML) and p4est, Open MPI 4.1 with mpirun, CHOLMOD 3, Eigen 3.4," >&2
   echo "  nlohmann-json 3.11, CLI11 2.1, fmt 9, Highway 1.0, zlib, Cairo 1.16 with a font, GoogleTest, Voro++ 0.4," >&2
   echo "  Boost (Graph, Geometry) 1.74, Assimp 5.2; for the tests the potential tables of lammps-data" >&2
   echo "  in /usr/share/lammps/potentials" >&2
