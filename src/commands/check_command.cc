@@ -4,6 +4,7 @@
 #include "src/commands/check_volumes.h"
 #include "src/commands/cost_advice.h"
 #include "src/commands/peak_memory.h"
+#include "src/commands/ranks_cost.h"
 #include "src/commands/scene_picture.h"
 #include "src/commands/static_cost.h"
 #include "src/launcher/program.h"
@@ -92,6 +93,11 @@ int check(const CommandLine &line, const ReadResult &input)
   fmt::print("  {:<20} {:>12}{}{}\n", equilibrium ? "time without phases" : "predicted time",
              duration_text(seconds), equilibrium ? " of a purely dynamic run" : "",
              scene.time.stop_when == StopWhen::end ? "" : ", less if it breaks earlier");
+  std::optional<RanksCost> on_ranks;
+  if (line.ranks > 1) {
+    on_ranks = ranks_cost(scene, body, line.ranks, cost, memory);
+    fmt::print("{}", to_text(*on_ranks, cost.seconds_per_step));
+  }
   double saving = 0;
   std::optional<CostAdvice> advice;
   if (joined) {
@@ -140,6 +146,13 @@ int check(const CommandLine &line, const ReadResult &input)
       json["gauges"] = gauges_json(gauges.entries());
     if (advice)
       json["advice"] = to_json(*advice);
+    if (on_ranks)
+      json["on_ranks"] = {{"ranks", on_ranks->ranks},
+                          {"particles", on_ranks->largest_part},
+                          {"ghosts", on_ranks->ghosts},
+                          {"seconds_per_step", on_ranks->seconds_per_step},
+                          {"memory_bytes", on_ranks->memory},
+                          {"other_memory_bytes", on_ranks->other_memory}};
     fmt::print("{}\n", json_text(json));
   }
   return int(ExitCode::done);

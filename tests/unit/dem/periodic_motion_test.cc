@@ -87,24 +87,27 @@ TEST(PeriodicRandom, MomentumStaysAndTheWorkOfTheJumpIsTheEnergy)
 
 TEST(PeriodicRandom, ABondThatBreaksAcrossTheSidesIsFeltOnBoth)
 {
-  auto body = sheared_body(1e-5, 4e-5);
-  body.go(2000);
-  int n_across = 0, n_all = 0;
-  for (const auto &broken : body.law->broken_bonds()) {
-    ++n_all;
-    n_across +=
-        (get(body.packing.centre, broken.i) - get(body.packing.centre, broken.j)).norm() > 0.05;
+  for (const double strain : {1e-4, 1e-6}) {
+    auto body = sheared_body(0.1 * strain, 0.4 * strain);
+    body.go(2000);
+    int n_across = 0, n_all = 0;
+    for (const auto &broken : body.law->broken_bonds()) {
+      ++n_all;
+      n_across +=
+          (get(body.packing.centre, broken.i) - get(body.packing.centre, broken.j)).norm() > 0.05;
+    }
+    EXPECT_GT(n_all, 10);
+    EXPECT_GT(n_across, 2);
+    // Nothing is lost: what acts is minus the gradient, and the ledger closes.
+    body.solver->drift(body.dt);
+    body.solver->compute_forces(++body.step * body.dt);
+    const auto losses = body.law->losses();
+    const double energy = body.solver->kinetic_energy(body.dt) + body.solver->potential_energy() +
+                          losses.fracture + losses.friction + losses.breaking_step_error;
+    // What is booked of contacts that open and close is exact but for their turns over a step, of
+    // the order of the strain.
+    EXPECT_NEAR(energy, body.law->external_work(), strain * std::abs(losses.breaking_step_error));
   }
-  EXPECT_GT(n_all, 10);
-  EXPECT_GT(n_across, 2);
-  // Nothing is lost: what acts is minus the gradient, and the ledger closes.
-  body.solver->drift(body.dt);
-  body.solver->compute_forces(++body.step * body.dt);
-  const auto losses = body.law->losses();
-  const double energy = body.solver->kinetic_energy(body.dt) + body.solver->potential_energy() +
-                        losses.fracture + losses.friction + losses.breaking_step_error;
-  // The rest is the law's own curvature, of the order of the strain of 1e-4 squared.
-  EXPECT_NEAR(energy, body.law->external_work(), 1e-7 * body.law->external_work());
 }
 
 TEST(PeriodicRandom, ResumesToTheBit)
