@@ -9,8 +9,8 @@ namespace ligament::program
 {
 /// Watches the motion of overlap and far field every 50 of its steps (theory.md, "Large rotation
 /// and finite strain"). A scene's fixed regime acts from the start; "automatic" starts linear and
-/// changes where rotations are still so small that the regimes hardly differ. Of a body of warm atoms
-/// it is the mean motion (C33): heat strains single cells by per cents and deforms nothing.
+/// changes where rotations are still so small that the regimes hardly differ. Of a body of warm
+/// atoms it is the mean motion (C33): heat strains single cells by per cents and deforms nothing.
 template <int dim>
 class RegimeControl
 {

@@ -30,9 +30,10 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
     : scene_(scene), folder_(folder), log_(folder.log(), progress), make_force_(make_force),
       reference_(from ? from->reference : core::State()),
       body_(make_body<dim>(scene_, log_, timers_, reference_, make_force)),
-      regime_(scene_.coupling.regime, body_, scene_.is_warm()), damping_(scene_.damping), clock_(clock_of()),
-      phases_(scene_, body_, log_), recorder_(scene_, folder_, body_, log_, timers_, progress,
-                                              clock_.n_steps, draws_pictures, from != nullptr),
+      regime_(scene_.coupling.regime, body_, scene_.is_warm()), damping_(scene_.damping),
+      clock_(clock_of()), phases_(scene_, body_, log_),
+      recorder_(scene_, folder_, body_, log_, timers_, progress, clock_.n_steps, draws_pictures,
+                from != nullptr),
       servos_(scene_, body_, log_),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
 {
