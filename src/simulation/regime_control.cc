@@ -33,10 +33,19 @@ constexpr double largest_strain = 0.1, largest_crystal_strain = 0.08;
 constexpr double largest_strain_of_linear = 0.03;
 // Which errs by as much as a strain of 1e-3, phi^2/2.
 constexpr double largest_corotated_bending = 2.5 * degree;
+
+// Over which the motion of warm bodies is averaged, in critical steps of the far field: three
+// periods of its fastest vibration.
+constexpr double mean_steps = 10;
+
+std::string mean_name(int c)
+{
+  return std::string("mean_") + "xyz"[c];
+}
 } // namespace
 
 template <int dim>
-RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
+RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm)
     : can_turn_(body.coupler->can_turn()), can_strain_(body.coupler->can_strain()),
       has_law_(body.force() && body.force()->finite_strain_law()),
       automatic_(choice == RegimeChoice::automatic && can_turn_)
@@ -48,6 +57,31 @@ RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body)
   else if (choice == RegimeChoice::nonlinear)
     set(Regime::nonlinear, body);
   history_.emplace_back(regime_, 0);
+  if (is_warm)
+    for (auto &component : mean_)
+      component.assign(body.far->mesh().n_nodes(), 0.);
+}
+
+template <int dim>
+void RegimeControl<dim>::follow(const CoupledBody<dim> &body, double dt)
+{
+  const double share = std::min(1., dt / (mean_steps * body.dt_far));
+  for (int c = 0; c < dim; ++c)
+    for (std::size_t i = 0; i < mean_[c].size(); ++i)
+      mean_[c][i] += share * (body.far->displacement[c][i] - mean_[c][i]);
+}
+
+// The coupler reads the far field's displacements.
+template <int dim>
+void RegimeControl<dim>::measure(CoupledBody<dim> &body)
+{
+  const bool by_mean = !mean_[0].empty();
+  if (by_mean)
+    std::swap(body.far->displacement, mean_);
+  far_ = body.far->largest_motion();
+  near_ = body.coupler->largest_motion();
+  if (by_mean)
+    std::swap(body.far->displacement, mean_);
 }
 
 template <int dim>
@@ -108,10 +142,11 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
                                                     const coupling::StepTime &step, core::Log &log)
 {
   const int ratio = body.coupler->step_ratio();
+  if (body.far && step.step % ratio == 0)
+    follow(body, ratio * step.dt);
   if (!body.far || step.step % (ratio * look_interval) != 0)
     return {};
-  far_ = body.far->largest_motion();
-  near_ = body.coupler->largest_motion();
+  measure(body);
   const Regime needed = automatic_ ? this->needed() : regime_;
   if (needed > regime_) {
     auto bodies = body.bodies();
@@ -156,6 +191,12 @@ void RegimeControl<dim>::save(core::State &state) const
   rows.add("regime", regimes);
   rows.add("time", times);
   state.emplace("regimes", std::move(rows));
+  if (!mean_[0].empty()) {
+    core::Table nodes = numbered_rows(mean_[0].size());
+    for (int c = 0; c < dim; ++c)
+      nodes.add(mean_name(c), mean_[c]);
+    state.emplace("mean_motion", std::move(nodes));
+  }
   core::save_value(state, "regime", "warned", std::int64_t(warned_));
 }
 
@@ -170,6 +211,9 @@ void RegimeControl<dim>::load(const core::State &state, CoupledBody<dim> &body)
     history_.emplace_back(Regime(regimes[k]), times[k]);
   if (!history_.empty() && history_.back().first != regime_)
     set(history_.back().first, body);
+  if (!mean_[0].empty())
+    for (int c = 0; c < dim; ++c)
+      mean_[c] = core::table(state, "mean_motion").reals(mean_name(c));
   warned_ = core::load_integer(state, "regime", "warned") != 0;
 }
 

@@ -9,12 +9,13 @@ namespace ligament::program
 {
 /// Watches the motion of overlap and far field every 50 of its steps (theory.md, "Large rotation
 /// and finite strain"). A scene's fixed regime acts from the start; "automatic" starts linear and
-/// changes where rotations are still so small that the regimes hardly differ.
+/// changes where rotations are still so small that the regimes hardly differ. Of a body of warm
+/// atoms it is the mean motion (C33): heat strains single cells by per cents and deforms nothing.
 template <int dim>
 class RegimeControl
 {
 public:
-  RegimeControl(RegimeChoice choice, CoupledBody<dim> &body);
+  RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm = false);
 
   /// Between forces and kick of a step in which the far field acts: may change the regime and
   /// compute the forces again; what the energy changes by is booked in the body. Returns why the
@@ -34,11 +35,14 @@ private:
   double largest_allowed_strain() const;
   std::optional<std::string> excess() const;
   void set(coupling::Regime regime, CoupledBody<dim> &body);
+  void follow(const CoupledBody<dim> &body, double dt);
+  void measure(CoupledBody<dim> &body);
 
   bool can_turn_;   // else the coupler is linear
   bool can_strain_; // else it is linear or turns
   bool has_law_;    // of finite strain, which the cells obey in the nonlinear regime
   bool automatic_;
+  Components<dim> mean_; // m, displacements of all nodes; none, where they are taken as they are
   coupling::Regime regime_ = coupling::Regime::linear;
   coupling::NearMotion near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;

@@ -36,8 +36,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       log_(ranks.is_first() ? folder.log() : "", ranks.is_first() ? progress : nullptr),
       make_force_(make_force), reference_(from ? from->reference : core::State()),
       body_(make_body<dim>(scene_, log_, timers_, reference_, make_force, ranks)),
-      regime_(scene_.coupling.regime, body_), damping_(scene_.damping), clock_(clock_of()),
-      phases_(scene_, body_, log_),
+      regime_(scene_.coupling.regime, body_, scene_.is_warm()), damping_(scene_.damping),
+      clock_(clock_of()), phases_(scene_, body_, log_),
       recorder_(scene_, folder_, body_, log_, timers_, ranks.is_first() ? progress : nullptr,
                 clock_.n_steps, draws_pictures, from != nullptr),
       servos_(scene_, body_, log_),
@@ -109,7 +109,7 @@ void Simulation<dim>::build_anew()
   regime_.save(run);
   core::Log nothing_new;
   body_ = make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, body_.ranks);
-  regime_ = RegimeControl<dim>(scene_.coupling.regime, body_);
+  regime_ = RegimeControl<dim>(scene_.coupling.regime, body_, scene_.is_warm());
   give(body, run);
   recorder_.watch(body_);
   servos_.watch(body_);

@@ -19,8 +19,8 @@ struct WatchedPlate
   coupling::StepTime step{0, 0, small.body.dt};
 
   WatchedPlate(RegimeChoice regime, double degrees, double strain,
-               const std::vector<std::string> &kind = {})
-      : small(small_scene(kind)), control(regime, small.body)
+               const std::vector<std::string> &kind = {}, bool is_warm = false)
+      : small(small_scene(kind)), control(regime, small.body, is_warm)
   {
     const double angle = degrees * M_PI / 180;
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
@@ -118,5 +118,41 @@ TEST(RegimeControl, FixedRegimesAreKeptAndTheirLimitsReported)
 
   WatchedPlate torn(RegimeChoice::nonlinear, 0, 0.12);
   EXPECT_TRUE(torn.look());
+}
+
+// Strains of 12 % to and fro every two critical steps of the mesh are no strain of 10 %; once they
+// stay they are, when the mean has come to 10/12 of them: after ln 6 = 1.79 of its times, ten
+// critical steps each.
+TEST(RegimeControl, LimitsOfWarmBodiesAreThoseOfTheMeanMotion)
+{
+  WatchedPlate plate(RegimeChoice::nonlinear, 0, 0, {}, true);
+  auto &body = plate.small.body;
+  const double dt = plate.step.dt, mean_time = 10 * body.dt_far;
+  const int ratio = body.coupler->step_ratio();
+  const auto strained = [&](double strain) {
+    plate.small.deform(Eigen::Vector2d(0, strain).asDiagonal());
+    plate.step.step += ratio;
+    return plate.look().has_value();
+  };
+  const long half_period = std::lround(2 * body.dt_far / (ratio * dt)),
+             look_interval = 50 * ratio; // steps
+  for (long k = 0; k < 2000; ++k)
+    ASSERT_FALSE(strained(k / half_period % 2 == 0 ? 0.12 : -0.12)) << k;
+  const long begin = plate.step.step;
+  while (!strained(0.12))
+    ASSERT_LT(double(plate.step.step - begin) * dt, 4 * mean_time);
+  // The mean of before is at most 0.12 tanh(1/10), and looks are 50 steps of the mesh apart.
+  const double expected = mean_time * std::log(6.),
+               late = mean_time * std::tanh(0.1) + double(look_interval) * dt;
+  EXPECT_NEAR(double(plate.step.step - begin) * dt, expected, late);
+
+  // A run that is taken up again goes on with the same mean.
+  core::State state;
+  plate.control.save(state);
+  RegimeControl<2> again(RegimeChoice::nonlinear, body, true);
+  again.load(state, body);
+  core::State same;
+  again.save(same);
+  EXPECT_EQ(state.at("mean_motion"), same.at("mean_motion"));
 }
 } // namespace
