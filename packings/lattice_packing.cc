@@ -309,8 +309,7 @@ PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
     return int(std::upper_bound(begin.begin(), begin.end(), place) - begin.begin()) - 1;
   };
   const std::int64_t own = partition.begin(ranks.rank()), end = partition.end(ranks.rank());
-  const int margin = rings * packer.reach(),
-            first = std::clamp(row_of(own) - margin, 0, n_rows),
+  const int margin = rings * packer.reach(), first = std::clamp(row_of(own) - margin, 0, n_rows),
             last = own < end ? std::clamp(row_of(end - 1) + margin + 1, 0, n_rows) : first;
   const Packing<dim> window = packer.pack(first, last);
   core::require(window.size() == begin[last] - begin[first],

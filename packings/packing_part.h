@@ -15,8 +15,8 @@ struct PackingPart
   Packing<dim> packing;
   /// Owned, which are stepped, and what lies within so many faces of them.
   particles::Part part;
-  std::vector<int> owner; // of each that is held
-  std::vector<int> place; // of each that is held, in the whole
+  std::vector<int> owner;   // of each that is held
+  std::vector<int> place;   // of each that is held, in the whole
   std::int64_t n_whole = 0; // particles
 };
 

@@ -147,12 +147,10 @@ int check(const CommandLine &line, const ReadResult &input)
     if (advice)
       json["advice"] = to_json(*advice);
     if (on_ranks)
-      json["on_ranks"] = {{"ranks", on_ranks->ranks},
-                          {"particles", on_ranks->largest_part},
-                          {"ghosts", on_ranks->ghosts},
-                          {"seconds_per_step", on_ranks->seconds_per_step},
-                          {"memory_bytes", on_ranks->memory},
-                          {"other_memory_bytes", on_ranks->other_memory}};
+      json["on_ranks"] = {
+          {"ranks", on_ranks->ranks},         {"particles", on_ranks->largest_part},
+          {"ghosts", on_ranks->ghosts},       {"seconds_per_step", on_ranks->seconds_per_step},
+          {"memory_bytes", on_ranks->memory}, {"other_memory_bytes", on_ranks->other_memory}};
     fmt::print("{}\n", json_text(json));
   }
   return int(ExitCode::done);

@@ -58,8 +58,7 @@ int run_rank(int argc, char **argv,
   RankProcess process(job.ranks());
   const core::Ranks &ranks = process.ranks();
   const int code = run_program(
-      argc, argv,
-      [&](const CommandLine &line, int, char **) { return dispatch(line, process); },
+      argc, argv, [&](const CommandLine &line, int, char **) { return dispatch(line, process); },
       [&](const std::string &message, int exit_code) {
         if (!ranks.is_one())
           process.end_all(message, exit_code);

@@ -91,8 +91,7 @@ std::string to_text(const RanksCost &cost, double seconds_per_step)
       "  on {} ranks           up to {} particles and {} ghosts each; {:.3g} ms a step, {:.2f}x; "
       "{:.0f} MiB on the first one, {:.0f} MiB on others\n",
       cost.ranks, cost.largest_part, cost.ghosts, 1e3 * cost.seconds_per_step,
-      seconds_per_step / cost.seconds_per_step, cost.memory / 1048576,
-      cost.other_memory / 1048576);
+      seconds_per_step / cost.seconds_per_step, cost.memory / 1048576, cost.other_memory / 1048576);
   const unsigned cores = std::thread::hardware_concurrency();
   if (cost.ranks > int(cores))
     text += fmt::format("  this machine has {} cores: more ranks wait for each other\n", cores);

@@ -31,8 +31,8 @@ RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &w
                       const RunFolder &folder, core::Interruption &interruption,
                       const RunOptions &options)
 {
-  Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from,
-                             make_zone_force<dim>, options.ranks);
+  Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from, make_zone_force<dim>,
+                             options.ranks);
   for (const std::string &text : warnings)
     simulation.warn(text);
   simulation.keep_checkpoints(input.resolved);

@@ -55,6 +55,6 @@ int main(int argc, char **argv)
     return run_rank(argc, argv, [](const CommandLine &line, RankProcess &process) {
       return dispatch(line, &process);
     });
-  return run_program(
-      argc, argv, [](const CommandLine &line, int, char **) { return dispatch(line, nullptr); });
+  return run_program(argc, argv,
+                     [](const CommandLine &line, int, char **) { return dispatch(line, nullptr); });
 }

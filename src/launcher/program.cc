@@ -56,7 +56,8 @@ int run_command_line(const CommandLine &line, int argc, char **argv, const Dispa
   } catch (const core::GuardStop &error) {
     return fail(line, on_failure, error.what(), "stopped", ExitCode::stopped_by_guard);
   } catch (const std::bad_alloc &) {
-    return fail(line, on_failure, "not enough memory; `ligament check` predicts what the scene needs", "failed",
+    return fail(line, on_failure,
+                "not enough memory; `ligament check` predicts what the scene needs", "failed",
                 ExitCode::bad_environment);
   } catch (const std::exception &error) {
     return fail(line, on_failure, error.what(), "failed", ExitCode::bad_environment);
@@ -72,8 +73,8 @@ int run_program(int argc, char **argv, const Dispatch &dispatch, const OnFailure
   std::string reason;
   try {
     const CommandLine line = parse_command_line(argc, argv);
-    code = line.exit_code ? *line.exit_code
-                          : run_command_line(line, argc, argv, dispatch, on_failure);
+    code =
+        line.exit_code ? *line.exit_code : run_command_line(line, argc, argv, dispatch, on_failure);
   } catch (const std::system_error &error) { // of fmt::print, on a full device
     reason = error.what();
   }

@@ -26,7 +26,7 @@ namespace
 /// mpirun's command line. Where there are fewer cores than ranks, those that wait make room.
 std::vector<std::string> mpirun_words(int ranks, int argc, char *const *argv)
 {
-  std::vector<std::string> words = {"mpirun",          "--quiet",  "-n",  std::to_string(ranks),
+  std::vector<std::string> words = {"mpirun",          "--quiet",   "-n",  std::to_string(ranks),
                                     "--oversubscribe", "--bind-to", "none"};
   if (ranks > int(std::thread::hardware_concurrency()))
     words.insert(words.end(), {"--mca", "mpi_yield_when_idle", "1"});
@@ -94,9 +94,9 @@ int run_on_ranks(int ranks, int argc, char *const *argv)
   sigset_t before;
   pthread_sigmask(SIG_BLOCK, &signals, &before);
   int failure[2];
-  core::require<core::EnvironmentError>(::pipe2(failure, O_CLOEXEC) == 0,
-                                        fmt::format("cannot start ranks: {}",
-                                                    std::strerror(errno)));
+  core::require<core::EnvironmentError>(
+      ::pipe2(failure, O_CLOEXEC) == 0,
+      fmt::format("cannot start ranks: {}", std::strerror(errno)));
   const pid_t parent = ::getpid(), child = ::fork();
   if (child == 0)
     become_mpirun(words, before, parent, failure[1]);

@@ -39,8 +39,8 @@ void look_at_material(const Scene &scene, const MaterialParameters &material,
   refusals.add_where(material.fracture.criterion != Criterion::none &&
                          fracture_energy(scene, material).value_or(0) > 0,
                      key + "/fracture", "faces that soften", reason);
-  refusals.add_where(material.fracture.crack_velocity.has_value(),
-                     key + "/fracture/crack_velocity", "a limit of the velocity of cracks", reason);
+  refusals.add_where(material.fracture.crack_velocity.has_value(), key + "/fracture/crack_velocity",
+                     "a limit of the velocity of cracks", reason);
   refusals.add_where(material.fracture.rebonding.has_value(), key + "/fracture/rebonding",
                      "faces that are bonded again", reason);
 }

@@ -30,7 +30,7 @@ struct Link
 struct Faces
 {
   int n_particles = 0;
-  std::vector<Link> links; // ascending
+  std::vector<Link> links;              // ascending
   std::vector<std::array<int, 2>> held; // a particle, and whether it lies at the low side
 };
 
@@ -40,9 +40,8 @@ class Items
 {
 public:
   Items(const CoupledBody<dim> &body, int n_particles, int axis)
-      : n_particles_(n_particles),
-        n_nodes_(body.far ? body.far->mesh().n_nodes() : 0), low_(n_particles_ + n_nodes_),
-        sets_(low_ + 2)
+      : n_particles_(n_particles), n_nodes_(body.far ? body.far->mesh().n_nodes() : 0),
+        low_(n_particles_ + n_nodes_), sets_(low_ + 2)
   {
     if (body.far)
       join_mesh(body, axis);

@@ -131,10 +131,9 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     surface.add_particles(*faces, body.zone->state, contact_stiffness_of(scene), body.dt_zone);
   const auto most =
       body.ranks.max({particles::count(held.part.owned), body.zone->halo().n_ghosts()});
-  const std::string where = body.ranks.is_one()
-                                ? fmt::format("{} bonds", body.force()->n_bonds())
-                                : fmt::format("on {} ranks up to {} and {} ghosts",
-                                              body.ranks.size(), most[0], most[1]);
+  const std::string where = body.ranks.is_one() ? fmt::format("{} bonds", body.force()->n_bonds())
+                                                : fmt::format("on {} ranks up to {} and {} ghosts",
+                                                              body.ranks.size(), most[0], most[1]);
   log.info("{} particles, {}, {} faces cut by cracks, stable step {:.4g} s", body.n_particles,
            where, body.n_cracked_faces, body.dt_zone);
 }

@@ -210,8 +210,8 @@ void Simulation<dim>::report_rest(RunRecord &record)
   if (!body_.zone || !body_.zone->rest())
     return;
   core::ExactSum share; // mean of the ranks, which own so many each
-  share.add(body_.zone->rest()->share_at_rest() *
-            particles::count(body_.zone->state.part.owned) / double(body_.n_particles));
+  share.add(body_.zone->rest()->share_at_rest() * particles::count(body_.zone->state.part.owned) /
+            double(body_.n_particles));
   report("share_at_rest", "particle-steps", body_.ranks.sum(share).value());
   for (const auto &[name, steps, share] : body_.coupler->shares_at_rest())
     report(name, steps, share);

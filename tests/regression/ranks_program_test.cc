@@ -18,23 +18,22 @@ const std::string program = LIGAMENT_PROGRAM;
 /// A body of particles alone, in units of d = 1, E = 1, rho = 1.
 Json scene_of(int dim, const std::string &packing, std::vector<double> size)
 {
-  Json scene = {
-      {"title", packing},
-      {"dimension", dim},
-      {"specimen", {{"size", size}}},
-      {"material",
-       {{"youngs_modulus", 1},
-        {"poissons_ratio", 0.25},
-        {"density", 1},
-        {"friction", 0.4},
-        {"fracture", {{"criterion", "maximum_tension"}, {"strength", 2e-3}}}}},
-      {"discrete_zone", {{"extent", "all"}, {"packing", packing}, {"spacing", 1}}},
-      {"time", {{"duration", 160}}},
-      {"output",
-       {{"history_interval", 1.7},
-        {"field_interval", 60},
-        {"progress_interval", 1000},
-        {"checkpoint_interval", 0.01}}}};
+  Json scene = {{"title", packing},
+                {"dimension", dim},
+                {"specimen", {{"size", size}}},
+                {"material",
+                 {{"youngs_modulus", 1},
+                  {"poissons_ratio", 0.25},
+                  {"density", 1},
+                  {"friction", 0.4},
+                  {"fracture", {{"criterion", "maximum_tension"}, {"strength", 2e-3}}}}},
+                {"discrete_zone", {{"extent", "all"}, {"packing", packing}, {"spacing", 1}}},
+                {"time", {{"duration", 160}}},
+                {"output",
+                 {{"history_interval", 1.7},
+                  {"field_interval", 60},
+                  {"progress_interval", 1000},
+                  {"checkpoint_interval", 0.01}}}};
   return scene;
 }
 
@@ -99,8 +98,7 @@ protected:
   void TearDown() override { fs::current_path(".."); }
 
   /// On one process and on so many ranks; a test in which nothing breaks would prove little.
-  static void expect_the_same_on(const std::vector<int> &ranks, const Json &scene,
-                                 int least_broken)
+  static void expect_the_same_on(const std::vector<int> &ranks, const Json &scene, int least_broken)
   {
     written(scene, "scene.json");
     ASSERT_EQ(run_ligament("run scene.json -o on_1").code, 0);
@@ -123,16 +121,15 @@ protected:
     const auto number = [](int n) { return std::to_string(n); };
     for (int a = 1; a <= most; ++a) {
       const std::string half = "half_" + number(a);
-      ASSERT_EQ(run_ligament("run scene.json --set /time/duration=" +
-                             std::to_string(duration / 2) + " -n " + number(a) + " -o " + half)
+      ASSERT_EQ(run_ligament("run scene.json --set /time/duration=" + std::to_string(duration / 2) +
+                             " -n " + number(a) + " -o " + half)
                     .code,
                 0);
       for (int b = 1; b <= most; ++b) {
         const std::string run = "from_" + number(a) + "_to_" + number(b);
         fs::copy(half, run, fs::copy_options::recursive);
-        const Outcome outcome =
-            run_ligament("resume " + run + " -n " + number(b) + " --set /time/duration=" +
-                         std::to_string(duration));
+        const Outcome outcome = run_ligament("resume " + run + " -n " + number(b) +
+                                             " --set /time/duration=" + std::to_string(duration));
         ASSERT_EQ(outcome.code, 0) << outcome.errors;
         expect_same_body(run, "whole");
       }
@@ -242,7 +239,8 @@ TEST_F(RanksProgram, SlowAllOnAnyNumber)
 {
   for (const Json &scene :
        {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
-        random_that_is_crushed(), fcc_with_a_crack(), random_in_space(), bar_that_rests()}) {
+        random_that_is_crushed(), fcc_with_a_crack(), random_in_space(), bar_that_rests()})
+  {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 5);
   }
@@ -287,9 +285,10 @@ TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
   scene["gauges"] = {{{"name", "top"}, {"kind", "force"}, {"side", "top"}}};
   scene["body_force"] = {{"acceleration", {0, -1e-6}}};
   written(scene, "scene.json");
-  for (const char *how : {"exec " LIGAMENT_PROGRAM " run scene.json -n 2 -o out",
-                          "exec mpirun -q -n 2 --oversubscribe " LIGAMENT_PROGRAM
-                          " run scene.json -o out"}) {
+  for (const char *how :
+       {"exec " LIGAMENT_PROGRAM " run scene.json -n 2 -o out",
+        "exec mpirun -q -n 2 --oversubscribe " LIGAMENT_PROGRAM " run scene.json -o out"})
+  {
     const Outcome outcome = run_shell(how);
     EXPECT_EQ(outcome.code, 2);
     for (const char *part : {"gauges on several ranks", "an acceleration of the body"})
