@@ -176,15 +176,15 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
   const EnergyLedger ledger = read_ledger(body, step, damping);
-  history_.add(body, step,
-               {r, ledger, n_broken(body), crack_length(body, machine_.axis()), in_static_phase_});
-
+  const HistoryRow row = {r, ledger, n_broken(body), crack_length(body, machine_.axis()),
+                          in_static_phase_};
   curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
     keep_copies(body, step.time, r.load);
+  history_.add(body, step, row); // last: a disk may refuse it, when ranks have told each other all
 }
 
 // A crack that runs moves within microseconds, while the grips still feel a rising load: the states

@@ -128,6 +128,11 @@ void Simulation<dim>::keep_checkpoints(const nlohmann::ordered_json &resolved)
 template <int dim>
 void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
 {
+  // What all ranks take part in comes first: a disk may refuse what follows.
+  const core::State body = core::merged(take_state(body_), body_.ranks);
+  const std::vector<KeptState> kept = recorder_.kept(body_);
+  if (!body_.ranks.is_first())
+    return;
   CheckpointManifest manifest;
   manifest.positions = recorder_.sync();
   manifest.step = clock_.now.step;
@@ -142,10 +147,6 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   manifest.commit = core::commit();
   manifest.instructions = particles::instruction_set();
   manifest.scene = resolved_;
-  const core::State body = core::merged(take_state(body_), body_.ranks);
-  const std::vector<KeptState> kept = recorder_.kept(body_);
-  if (!body_.ranks.is_first())
-    return;
   if (!reference_sum_)
     reference_sum_ = checkpoints.write_reference(reference_.tables());
   manifest.reference = reference_sum_;
