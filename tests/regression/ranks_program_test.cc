@@ -264,6 +264,14 @@ TEST_F(RanksProgram, GoOnOnAnotherNumber)
   expect_to_go_on(scene, 3);
 }
 
+// States of parts don't say what rests: whoever goes on wakes all.
+TEST_F(RanksProgram, GoOnFromABarThatRests)
+{
+  Json scene = bar_that_rests();
+  scene["time"]["duration"] = 60;
+  expect_to_go_on(scene, 2);
+}
+
 TEST_F(RanksProgram, SlowGoOnOnAnyNumber)
 {
   expect_to_go_on(halves_that_slide(), 4);
