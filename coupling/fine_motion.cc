@@ -1,6 +1,6 @@
 #include "coupling/fine_motion.h"
 
-#include "core/exact_sum.h"
+#include "core/check.h"
 #include "core/polar_rotation.h"
 #include "particles/orientation.h"
 
@@ -42,52 +42,108 @@ ScalarMatrix<dim> loss_matrix(const Overlap<dim> &overlap,
 } // namespace
 
 template <int dim>
-FineMotion<dim>::FineMotion(const Overlap<dim> &overlap, const particles::Particles<dim> &particles,
-                            const std::function<double(double)> &damping, Solver solver)
-    : carrier_(
-          overlap,
-          [&](const typename Overlap<dim>::Member &m) {
-            return particles.mass[m.particle] * (1 - float(damping(m.position)) / 2.);
+FineMotion<dim>::FineMotion(const OverlapView<dim> &whole, const OverlapView<dim> &here,
+                            const std::function<double(double)> &damping, Solver solver,
+                            const core::Ranks &ranks)
+    : ranks_(ranks),
+      carrier_(
+          whole.overlap,
+          [&](const Member &m) {
+            return whole.particles.mass[m.particle] * (1 - float(damping(m.position)) / 2.);
           },
           solver),
-      carried_(overlap.n_nodes(), dim), lost_(overlap.n_nodes(), dim),
-      loss_(loss_matrix(overlap, particles, damping))
+      carried_(whole.overlap.n_nodes(), dim), lost_(whole.overlap.n_nodes(), dim),
+      loss_(loss_matrix(whole.overlap, whole.particles, damping))
 {
-  make_lanes(overlap, particles, damping);
+  for (const Member &m : whole.overlap.members)
+    n_free_members_ += !m.pad;
+  const auto held = held_cells(whole, here);
+  std::vector<Cell> cells = find_cells(whole, here);
+  make_lanes(here, held, damping, cells);
+  make_pads(here, held, cells);
+  note_own(here.particles, cells);
+  nodal_ = NodalSums<dim>(cells, whole.overlap.n_nodes(), n_member_sums, ranks);
   motion_.resize(dim * lanes_.slots.size());
   cell_loss_.resize(lanes_.batches.size());
-  for (const auto &m : overlap.members)
-    if (m.pad && particles.turns) { // what pads have of their own is how they turn
-      Pad pad = {m.particle, m.nodes, m.gradient, {}};
-      for (int a = 0; a < nc; ++a)
-        pad.spin[a] = Overlap<dim>::spin_block(m, a);
-      pads_.push_back(pad);
-    }
+  sums_.resize(nodal_.n_sums(lanes_.batches.size()));
 }
 
 template <int dim>
-void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
-                                 const particles::Particles<dim> &particles,
-                                 const std::function<double(double)> &damping)
+auto FineMotion<dim>::held_cells(const OverlapView<dim> &whole, const OverlapView<dim> &here) const
+    -> std::map<int, std::vector<const Member *>>
 {
-  using Member = typename Overlap<dim>::Member;
-  std::map<std::array<int, nc>, std::vector<const Member *>> members_of_cell;
-  for (const Member &m : overlap.members)
-    members_of_cell[m.nodes].push_back(&m);
-  std::vector<const std::vector<const Member *> *> cells;
-  for (const auto &[nodes, members] : members_of_cell)
-    cells.push_back(&members);
+  std::map<int, std::size_t> n_members;
+  for (const Member &m : whole.overlap.members)
+    ++n_members[m.cell];
+  std::map<int, std::vector<const Member *>> held;
+  for (const Member &m : here.overlap.members)
+    if (here.particles.part.owns(m.particle))
+      held[m.cell];
+  for (const Member &m : here.overlap.members)
+    if (const auto cell = held.find(m.cell); cell != held.end())
+      cell->second.push_back(&m);
+  for (const auto &[cell, members] : held) {
+    bool is_whole = members.size() == n_members[cell];
+    for (const Member *m : members)
+      is_whole = is_whole && particles::contains(here.particles.part.stepped, m->particle);
+    core::require(is_whole, "a rank steps some particles of a cell of the overlap, but not all");
+  }
+  return held;
+}
 
-  for (std::size_t first = 0; first < cells.size(); first += lane_array_size) {
-    const auto begin = cells.begin() + first,
-               end = cells.begin() + std::min(first + lane_array_size, cells.size());
+template <int dim>
+auto FineMotion<dim>::find_cells(const OverlapView<dim> &whole, const OverlapView<dim> &here) const
+    -> std::vector<Cell>
+{
+  std::map<int, std::int64_t> first; // members of the cells, by name
+  for (const Member &m : whole.overlap.members)
+    first.emplace(m.cell, whole.particles.global_id[m.particle]);
+  const core::Names names = here.particles.names();
+  std::vector<int> own;
+  for (const auto &[cell, name] : first)
+    if (const int i = names.index(name); i >= 0 && here.particles.part.owns(i))
+      own.push_back(cell);
+  std::map<int, int> rank_of;
+  const auto of_ranks = ranks_.gather(own);
+  for (std::size_t r = 0; r < of_ranks.size(); ++r)
+    for (const int cell : of_ranks[r])
+      rank_of[cell] = int(r);
+  std::vector<Cell> cells;
+  for (const auto &[cell, name] : first)
+    cells.push_back({whole.overlap.cells[cell].nodes, rank_of.at(cell), -1, -1});
+  return cells;
+}
+
+template <int dim>
+void FineMotion<dim>::make_lanes(const OverlapView<dim> &here,
+                                 const std::map<int, std::vector<const Member *>> &held,
+                                 const std::function<double(double)> &damping,
+                                 std::vector<Cell> &cells)
+{
+  using Members = std::vector<const Member *>;
+  std::vector<const Members *> of_cells;
+  for (const auto &[cell, members] : held)
+    of_cells.push_back(&members);
+  std::map<std::array<int, nc>, Cell *> cell_of;
+  for (Cell &cell : cells)
+    cell_of[cell.nodes] = &cell;
+
+  for (std::size_t first = 0; first < of_cells.size(); first += lane_array_size) {
+    const auto begin = of_cells.begin() + first,
+               end = of_cells.begin() + std::min(first + lane_array_size, of_cells.size());
     // Fullest first, so that idle lanes come last in every slot.
     std::stable_sort(begin, end, [](auto *a, auto *b) { return a->size() > b->size(); });
     typename MemberBatches<dim>::Batch batch{};
     batch.n_cells = int(end - begin);
-    for (int l = 0; l < lane_array_size; ++l)
+    for (int l = 0; l < lane_array_size; ++l) {
+      const auto &nodes = begin[l < batch.n_cells ? l : 0]->front()->nodes;
       for (int a = 0; a < nc; ++a)
-        batch.node[a][l] = begin[l < batch.n_cells ? l : 0]->front()->nodes[a];
+        batch.node[a][l] = nodes[a];
+      if (l < batch.n_cells) {
+        cell_of.at(nodes)->batch = int(lanes_.batches.size());
+        cell_of.at(nodes)->lane = l;
+      }
+    }
     batch.begin = int(lanes_.slots.size());
     for (std::size_t k = 0; k < (*begin)->size(); ++k) {
       Slot slot{};
@@ -103,9 +159,8 @@ void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
           slot.value[a].value[l] = m.value[a];
         if (m.pad)
           continue;
-        slot.mass.value[l] = particles.mass[m.particle];
+        slot.mass.value[l] = here.particles.mass[m.particle];
         slot.damping[l] = float(damping(m.position));
-        ++n_free_members_;
       }
       lanes_.slots.push_back(slot);
       lanes_.n_members.push_back(n_members);
@@ -115,26 +170,70 @@ void FineMotion<dim>::make_lanes(const Overlap<dim> &overlap,
   }
 }
 
+// What pads have of their own is how they turn.
 template <int dim>
-void FineMotion<dim>::add_pad_torques(const particles::Particles<dim> &particles,
-                                      Nodal<dim> &force) const
+void FineMotion<dim>::make_pads(const OverlapView<dim> &here,
+                                const std::map<int, std::vector<const Member *>> &held,
+                                const std::vector<Cell> &cells)
+{
+  std::map<std::array<int, nc>, const Cell *> cell_of;
+  for (const Cell &cell : cells)
+    cell_of[cell.nodes] = &cell;
+  for (const Member &m : here.overlap.members)
+    if (m.pad && here.particles.turns && held.count(m.cell)) {
+      const Cell &cell = *cell_of.at(m.nodes);
+      Pad pad = {m.particle, cell.batch, cell.lane, m.nodes, m.gradient, {}};
+      for (int a = 0; a < nc; ++a)
+        pad.spin[a] = Overlap<dim>::spin_block(m, a);
+      pads_.push_back(pad);
+    }
+}
+
+template <int dim>
+void FineMotion<dim>::note_own(const particles::Particles<dim> &particles,
+                               const std::vector<Cell> &cells)
+{
+  own_.assign(lanes_.slots.size(), 0);
+  for (std::size_t k = 0; k < lanes_.slots.size(); ++k)
+    for (int l = 0; l < lanes_.n_members[k]; ++l)
+      if (particles.part.owns(lanes_.slots[k].particle[l]))
+        own_[k] |= std::uint8_t(1u << l);
+  for (const Cell &cell : cells)
+    if (cell.rank == ranks_.rank())
+      own_cells_.push_back({cell.batch, cell.lane});
+}
+
+template <int dim>
+template <typename Visit>
+void FineMotion<dim>::for_each_pad_force(const particles::Particles<dim> &particles,
+                                         Visit &&visit) const
 {
   for (const auto &pad : pads_) {
     const Spin<dim> torque = get(particles.torque, pad.particle);
     for (int a = 0; a < nc; ++a)
-      force.row(pad.nodes[a]) += torque.transpose() * pad.spin[a];
+      visit(pad, a, Vector<dim>(pad.spin[a].transpose() * torque));
   }
+}
+
+template <int dim>
+void FineMotion<dim>::add_pad_torques(const particles::Particles<dim> &particles,
+                                      std::vector<LaneArray> &sums) const
+{
+  for_each_pad_force(particles, [&](const Pad &pad, int a, const Vector<dim> &force) {
+    for (int c = 0; c < dim; ++c)
+      sums[nodal_.index(pad.batch, force_sum, c, a)].value[pad.lane] += force[c];
+  });
 }
 
 template <int dim>
 void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
                                  Nodal<dim> &force) const
 {
-  std::vector<LaneArray> motion(motion_.size()), loss(cell_loss_.size());
-  Nodal<dim> other = Nodal<dim>::Zero(carried_.rows(), dim);
-  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), force.data(),
-                             other.data(), other.data(), loss.data()});
-  add_pad_torques(particles, force);
+  std::vector<LaneArray> motion(motion_.size()), loss(cell_loss_.size()), sums(sums_.size());
+  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), sums.data(),
+                             loss.data()});
+  add_pad_torques(particles, sums);
+  nodal_.add(sums, force_sum, {&force});
 }
 
 // The damper takes (C20) with w = w' - (1 - damping/2) Phi x: the parts of x are sums over nodes.
@@ -144,19 +243,23 @@ void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, dou
 {
   carried_.setZero();
   lost_.setZero();
-  kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(), force.data(),
-                             carried_.data(), lost_.data(), cell_loss_.data()});
-  add_pad_torques(particles, force);
+  kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(), sums_.data(),
+                             cell_loss_.data()});
+  add_pad_torques(particles, sums_);
+  if (loss_.is_empty())
+    nodal_.add(sums_, force_sum, {&force, &carried_});
+  else
+    nodal_.add(sums_, force_sum, {&force, &carried_, &lost_});
   carrier_.solve(carried_);
   if (loss_.is_empty())
     return;
+  for (const auto &[batch, lane] : own_cells_)
+    damper_energy_.add(cell_loss_[batch].value[lane]);
+  if (!ranks_.is_first())
+    return;
   Nodal<dim> square;
   loss_.multiply(carried_, square);
-  core::ExactSum sum;
-  for (std::size_t b = 0; b < cell_loss_.size(); ++b)
-    for (int l = 0; l < lanes_.batches[b].n_cells; ++l)
-      sum.add(cell_loss_[b].value[l]);
-  damper_energy_ += (sum.value() - carried_.cwiseProduct(lost_ - 0.5 * square).sum()) / 2;
+  damper_energy_.add(-carried_.cwiseProduct(lost_ - 0.5 * square).sum());
 }
 
 template <int dim>
@@ -183,8 +286,9 @@ template <int dim>
 void FineMotion<dim>::take_velocities(const Nodal<dim> &coarse,
                                       particles::Particles<dim> &particles)
 {
-  carried_.setZero();
-  for (const auto &batch : lanes_.batches)
+  std::fill(sums_.begin(), sums_.end(), LaneArray());
+  for (std::size_t b = 0; b < lanes_.batches.size(); ++b) {
+    const auto &batch = lanes_.batches[b];
     for (int k = batch.begin; k < batch.end; ++k) {
       const Slot &slot = lanes_.slots[k];
       for (int l = 0; l < lanes_.n_members[k]; ++l)
@@ -196,9 +300,13 @@ void FineMotion<dim>::take_velocities(const Nodal<dim> &coarse,
             w = 0;
           motion_[k * dim + c].value[l] = w;
           for (int a = 0; a < nc; ++a)
-            carried_(batch.node[a][l], c) += slot.value[a].value[l] * slot.mass.value[l] * w;
+            sums_[nodal_.index(int(b), momentum_sum, c, a)].value[l] +=
+                slot.value[a].value[l] * slot.mass.value[l] * w;
         }
     }
+  }
+  carried_.setZero();
+  nodal_.add(sums_, momentum_sum, {&carried_});
   carrier_.solve(carried_);
   finish_kick(coarse, particles);
 }
@@ -220,21 +328,24 @@ void FineMotion<dim>::scale(double factor)
 }
 
 template <int dim>
-double FineMotion<dim>::kinetic_energy(const particles::Particles<dim> &particles, double dt) const
+core::ExactSum FineMotion<dim>::kinetic_sum(const particles::Particles<dim> &particles,
+                                            double dt) const
 {
   core::ExactSum sum;
   for (std::size_t k = 0; k < lanes_.slots.size(); ++k) {
     const Slot &slot = lanes_.slots[k];
     for (int l = 0; l < lanes_.n_members[k]; ++l) {
+      if (!(own_[k] >> l & 1u))
+        continue;
       double twice = 0;
       for (int c = 0; c < dim; ++c) {
         const double w = motion_[k * dim + c].value[l];
         twice += w * (slot.mass.value[l] * w + dt * particles.force[c][slot.particle[l]]);
       }
-      sum.add(twice);
+      sum.add(twice / 2);
     }
   }
-  return sum.value() / 2;
+  return sum;
 }
 
 template <int dim>
@@ -271,7 +382,7 @@ void FineMotion<dim>::save(core::State &state, const particles::Particles<dim> &
   for (int c = 0; c < dim; ++c)
     table.add("velocity_" + std::to_string(c), motion[c]);
   state["fluctuation"] = std::move(table);
-  core::save_value(state, "fine_motion", "damper_energy", damper_energy_);
+  core::save_sum(state, "fine_damper", damper_energy_);
   if (has_bath())
     core::save_value(state, "fine_motion", "bath_energy", bath_energy_);
 }
@@ -291,7 +402,7 @@ void FineMotion<dim>::load(const core::State &state, const particles::Particles<
         motion_[k * dim + c].value[l] = row == rows.end() ? 0 : motion[row->second];
       }
   }
-  damper_energy_ = core::load_real(state, "fine_motion", "damper_energy");
+  damper_energy_ = ranks_.is_first() ? core::load_sum(state, "fine_damper") : core::ExactSum();
   if (has_bath())
     bath_energy_ = core::load_real(state, "fine_motion", "bath_energy");
 }
@@ -361,7 +472,9 @@ void FineMotion<dim>::restrict_forces(particles::Particles<dim> &particles, Noda
         force(nodes[a], c) += value[a] * taken;
     }
   });
-  add_pad_torques(particles, force);
+  for_each_pad_force(particles, [&](const Pad &pad, int a, const Vector<dim> &f) {
+    force.row(pad.nodes[a]) += f.transpose();
+  });
   for (const auto &pad : pads_)
     set(particles.torque, pad.particle, Spin<dim>(Spin<dim>::Zero()));
 }

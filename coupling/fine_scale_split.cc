@@ -14,25 +14,29 @@ namespace ligament::coupling
 template <int dim>
 FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
                                     const FineScaleSplitParameters &parameters, double dt,
-                                    core::Timers &timers, const fem::Body<dim> *still)
-    : Coupler<dim>(timers), parameters_(parameters),
-      overlap_(bodies.zone->state, *bodies.zone->force, bodies.far->mesh(), overlap),
+                                    core::Timers &timers, const fem::Body<dim> *still,
+                                    const particles::ParticleSolver<dim> *whole)
+    : Coupler<dim>(timers), parameters_(parameters), whole_(whole ? whole : bodies.zone),
+      overlap_(whole_->state, *whole_->force, bodies.far->mesh(), overlap),
+      at_hand_(whole ? std::make_unique<Overlap<dim>>(
+                           overlap_at_hand<dim>({overlap_, whole->state}, bodies.zone->state))
+                     : nullptr),
       near_(*bodies.far, overlap_.near_nodes),
       fine_(
-          overlap_, bodies.zone->state,
+          {overlap_, whole_->state}, {here(), bodies.zone->state},
           [&, speed = bodies.zone->force->elastic_constants().wave_speed_p](double s) {
             const double rate =
                 fine_damper_rate(parameters.fine_damper, speed, overlap_.cell_size, s);
             return parameters.thermal_energy > 0 ? 0 : 1 - std::exp(-rate * dt);
           },
-          parameters.solver),
+          parameters.solver, bodies.zone->ranks()),
       parts_(overlap_), mass_solver_(make_linear_solver(parameters.solver))
 {
   auto &far = *bodies.far;
   const int n = overlap_.n_nodes();
   const fem::Body<dim> &near_body = still ? *still : far.body();
-  const auto operators = make_blended_operators(overlap_, bodies.zone->state, *bodies.zone->force,
-                                                near_body, parameters.coarse_mass);
+  const auto operators = make_blended_operators(overlap_, whole_->state, *whole_->force, near_body,
+                                                parameters.coarse_mass);
   stiffness_ = operators.stiffness;
   if (parameters.patch_fit) {
     const PatchFit fit = fit_patch(overlap_, operators, near_body);
@@ -69,9 +73,10 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
                                           parameters.step_ratio * dt, operators.mass_bound));
   force_ = change_ = Nodal<dim>::Zero(n, dim);
   report_.overlap_particles = int(overlap_.members.size());
-  report_.pad_particles = fine_.n_pads();
+  for (const auto &member : overlap_.members)
+    report_.pad_particles += member.pad && whole_->state.turns;
   report_.near_nodes = n;
-  bodies.zone->force->set_coupled_edge(bodies.zone->state, overlap_.coupled_edge(far.displacement));
+  bodies.zone->force->set_coupled_edge(bodies.zone->state, here().coupled_edge(far.displacement));
   for (const double period : overlap.period)
     is_periodic_ = is_periodic_ || period > 0;
   if (parameters.thermal_energy > 0)
@@ -105,13 +110,13 @@ void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &b
   if (regime == Regime::corotated)
     coarse_ = std::make_unique<CorotatedCoarseEnergy<dim>>(stiffness_, parts_, dead_load_);
   else {
-    const auto &force = *bodies.zone->force;
+    const auto &force = *whole_->force;
     core::require(
         can_strain(),
         "/coupling/regime: bonds bear a stress in the reference, which cells under finite "
         "strain don't know; choose \"linear\" or \"corotated\"");
     coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
-        overlap_, parts_, bodies.zone->state, force, bodies.far->body(), correction_, dead_load_);
+        overlap_, parts_, whole_->state, force, bodies.far->body(), correction_, dead_load_);
     if (const auto law = force.finite_strain_law())
       bodies.far->set_strain_law(law);
   }
@@ -129,12 +134,15 @@ void FineScaleSplit<dim>::drift(Bodies<dim> &bodies, const StepTime &step)
   {
     const auto timing = this->timers_.scope(this->motion_);
     bodies.zone->drift(step.dt);
-    bodies.zone->update_ghosts();
   }
   if (!rests_)
     near_.drift(step.dt);
   if (regime_ != Regime::linear)
     fine_.turn_pads(near_.displacement(), bodies.zone->state);
+  {
+    const auto timing = this->timers_.scope(this->motion_);
+    bodies.zone->update_ghosts(); // pads turn before they are sent
+  }
   // The rest of the far field moves in one go, just before it acts again: it is needed nowhere in
   // between.
   if ((step.step + 1) % parameters_.step_ratio == 0 && !far_rests_) {
@@ -173,24 +181,28 @@ template <int dim>
 double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) const
 {
   const auto &zone = *bodies.zone;
-  return fine_.kinetic_energy(zone.state, dt) + zone.kinetic_energy(dt) -
-         member_kinetic(zone.state, dt);
+  const auto sums = zone.ranks().sum({fine_.kinetic_sum(zone.state, dt), zone.kinetic_sum(dt),
+                                      member_kinetic(zone.state, dt)});
+  return sums[0].value() + sums[1].value() - sums[2].value();
 }
 
 template <int dim>
-double FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone, double dt) const
+core::ExactSum FineScaleSplit<dim>::member_kinetic(const particles::Particles<dim> &zone,
+                                                   double dt) const
 {
   core::ExactSum sum;
-  for (const auto &member : overlap_.members) {
+  for (const auto &member : here().members) {
     const int i = member.particle;
+    if (!zone.part.owns(i))
+      continue;
     double twice = 0;
     for (int c = 0; c < dim; ++c)
       twice += zone.velocity[c][i] * (zone.mass[i] * zone.velocity[c][i] + dt * zone.force[c][i]);
     for (int c = 0; c < n_spins<dim> && member.pad && zone.turns; ++c)
       twice += zone.spin[c][i] * (zone.inertia(i) * zone.spin[c][i] + dt * zone.torque[c][i]);
-    sum.add(twice);
+    sum.add(twice / 2);
   }
-  return sum.value() / 2;
+  return sum;
 }
 
 template <int dim>
@@ -257,11 +269,13 @@ double FineScaleSplit<dim>::damp_velocities(Bodies<dim> &bodies, const StepTime 
 {
   const auto timing = this->timers_.scope(this->coupling_);
   auto &zone = *bodies.zone;
-  double loss =
-      scaling_loss(fine_.kinetic_energy(zone.state, 0), fine_.kinetic_energy(zone.state, step.dt),
-                   factor) -
-      scaling_loss(member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt), factor);
-  loss += zone.damp_velocities(factor, step.dt).value();
+  std::vector<core::ExactSum> sums = {
+      fine_.kinetic_sum(zone.state, 0), fine_.kinetic_sum(zone.state, step.dt),
+      member_kinetic(zone.state, 0), member_kinetic(zone.state, step.dt)};
+  sums.push_back(zone.damp_velocities(factor, step.dt)); // changes what the others read
+  sums = zone.ranks().sum(sums);
+  double loss = scaling_loss(sums[0].value(), sums[1].value(), factor) -
+                scaling_loss(sums[2].value(), sums[3].value(), factor) + sums[4].value();
   fine_.scale(factor);
   if (is_far_step(step)) {
     const double whole = std::pow(factor, parameters_.step_ratio);
@@ -303,11 +317,11 @@ void FineScaleSplit<dim>::save(core::State &state, const Bodies<dim> &bodies) co
   fine_.save(state, bodies.zone->state);
   core::save_value(state, "split", "regime", std::int64_t(regime_));
   core::save_value(state, "split", "gap_filter_energy", gap_filter_energy_);
-  core::save_value(state, "split", "rests", std::int64_t(rests_));
-  core::save_value(state, "split", "far_rests", std::int64_t(far_rests_));
-  core::save_value(state, "split", "kicks", std::int64_t(kicks_));
-  core::save_value(state, "split", "rested", std::int64_t(rested_));
-  core::save_value(state, "split", "far_rested", std::int64_t(far_rested_));
+  core::save_value(state, "split_rest", "rests", std::int64_t(rests_));
+  core::save_value(state, "split_rest", "far_rests", std::int64_t(far_rests_));
+  core::save_value(state, "split_rest", "kicks", std::int64_t(kicks_));
+  core::save_value(state, "split_rest", "rested", std::int64_t(rested_));
+  core::save_value(state, "split_rest", "far_rested", std::int64_t(far_rested_));
   if (zone_bath_)
     save_bath(state);
 }
@@ -325,7 +339,7 @@ void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
   if (regime_ != Regime::linear)
     fine_.turn_pads(near_.displacement(), zone);
   gap_filter_energy_ = core::load_real(state, "split", "gap_filter_energy");
-  const auto load = [&](const char *column) { return core::load_integer(state, "split", column); };
+  const auto load = [&](const char *column) { return core::load_integer(state, "split_rest", column); };
   rests_ = load("rests");
   far_rests_ = load("far_rests");
   kicks_ = load("kicks");

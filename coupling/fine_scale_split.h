@@ -51,10 +51,13 @@ class FineScaleSplit : public Coupler<dim>
 public:
   /// Takes the overlap's and the transition's cells over from the far field. dt in s. `still`: the
   /// body without thermal motion, by whose constants the discrete energy is subtracted; null: the
-  /// far field's own.
+  /// far field's own. `whole`: of several ranks, which all have the whole far field, the particles
+  /// of the overlap and those that their forces see, none of them parted; it must outlive the
+  /// coupler. Null: the zone has them.
   FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters<dim> &overlap,
                  const FineScaleSplitParameters &parameters, double dt, core::Timers &timers,
-                 const fem::Body<dim> *still = nullptr);
+                 const fem::Body<dim> *still = nullptr,
+                 const particles::ParticleSolver<dim> *whole = nullptr);
 
   void drift(Bodies<dim> &bodies, const StepTime &step) override;
   void compute_forces(Bodies<dim> &bodies, const StepTime &step) override;
@@ -118,7 +121,8 @@ public:
   const Nodal<dim> &dead_load() const { return dead_load_; }
 
   const SplitReport &report() const { return report_; }
-  const Overlap<dim> *overlap() const override { return &overlap_; }
+  /// Its members are the particles at hand.
+  const Overlap<dim> *overlap() const override { return &here(); }
   /// Coarse stiffness K_near including the patch fit, N/m.
   Eigen::SparseMatrix<double> near_stiffness() const override { return stiffness_; }
   /// M_c
@@ -173,12 +177,17 @@ private:
   double impulse_energy(const Bodies<dim> &bodies, const Halfway &near, double dt) const;
   /// 1/2 v M v + 1/2 dt v f of w with all spins and with the velocities outside the overlap.
   double fine_kinetic(const Bodies<dim> &bodies, double dt) const;
-  /// The same of the overlap's particles as they move, and of the spins of pads.
-  double member_kinetic(const particles::Particles<dim> &zone, double dt) const;
+  /// The same of the overlap's particles as they move, and of the spins of pads: of one's own,
+  /// before it is rounded.
+  core::ExactSum member_kinetic(const particles::Particles<dim> &zone, double dt) const;
+  /// Of the members at hand.
+  const Overlap<dim> &here() const { return at_hand_ ? *at_hand_ : overlap_; }
 
   FineScaleSplitParameters parameters_;
-  Overlap<dim> overlap_;
-  NearNodes<dim> near_; // U, V
+  const particles::ParticleSolver<dim> *whole_; // what the operators are made of
+  Overlap<dim> overlap_;                        // of it
+  std::unique_ptr<Overlap<dim>> at_hand_;       // null: the same
+  NearNodes<dim> near_;                         // U, V
   FineMotion<dim> fine_;
   SplitReport report_;
 

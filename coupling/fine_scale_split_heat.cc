@@ -77,7 +77,7 @@ template <int dim>
 double FineScaleSplit<dim>::thermal_energy_of_fine(const Bodies<dim> &bodies) const
 {
   const long n = fine_.n_free();
-  return n > 0 ? 2 * fine_.kinetic_energy(bodies.zone->state, 0) / double(n) : 0;
+  return n > 0 ? 2 * fine_.kinetic_sum(bodies.zone->state, 0).value() / double(n) : 0;
 }
 
 template <int dim>

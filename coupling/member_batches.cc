@@ -48,16 +48,6 @@ HWY_INLINE void scatter(const LaneArray &values, const int *particle, int n, dou
     field[particle[l]] = values.value[l];
 }
 
-/// nodal += what the lanes have summed for the nodes of their cells, component c.
-template <int dim>
-HWY_INLINE void add_to_nodes(const typename MemberBatches<dim>::Batch &batch, const LaneArray *sum,
-                             int c, double *nodal)
-{
-  for (int a = 0; a < MemberBatches<dim>::nc; ++a)
-    for (int l = 0; l < batch.n_cells; ++l)
-      nodal[batch.node[a][l] * dim + c] += sum[a].value[l];
-}
-
 template <int dim>
 HWY_INLINE void take_from_nodes(const typename MemberBatches<dim>::Batch &batch,
                                 const double *nodal, int c, LaneArray *at_node)
@@ -83,11 +73,14 @@ HWY_INLINE void kick_all(const MemberBatches<dim> &members, const FineKick<dim> 
   constexpr int nc = MemberBatches<dim>::nc;
   const Lanes d;
   const Vector dt = hn::Set(d, kick.dt);
-  LaneArray force[nc], momentum[nc], lost[nc];
   for (std::size_t b = 0; b < members.batches.size(); ++b) {
     const auto &batch = members.batches[b];
     kick.cell_loss[b] = {};
+    LaneArray *const sums = kick.sums + b * n_member_sums * dim * nc;
     for (int c = 0; c < dim; ++c) {
+      LaneArray *const force = sums + (force_sum * dim + c) * nc,
+                       *const momentum = sums + (momentum_sum * dim + c) * nc,
+                       *const lost = sums + (loss_sum * dim + c) * nc;
       for (int part = 0; part < lane_array_size; part += int(hn::Lanes(d))) {
         Vector loss = load(kick.cell_loss[b], part);
         Vector f_sum[nc], p_sum[nc], l_sum[nc];
@@ -120,9 +113,6 @@ HWY_INLINE void kick_all(const MemberBatches<dim> &members, const FineKick<dim> 
         }
         store(loss, kick.cell_loss[b], part);
       }
-      add_to_nodes<dim>(batch, force, c, kick.nodal_force);
-      add_to_nodes<dim>(batch, momentum, c, kick.nodal_momentum);
-      add_to_nodes<dim>(batch, lost, c, kick.nodal_loss);
     }
   }
 }

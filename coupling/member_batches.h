@@ -36,18 +36,25 @@ struct MemberBatches
   std::vector<Batch> batches;
 };
 
+/// What the first pass sums over the members of a cell for its nodes.
+enum MemberSum
+{
+  force_sum,    // Phi^T f
+  momentum_sum, // Phi^T M w'
+  loss_sum,     // Phi^T M damping (w + w')
+  n_member_sums
+};
+
 /// First pass, theory.md eq. (C19): w' = (1 - damping) w + (1 - damping/2) dt f/m of the free
-/// members; forces, momenta and what the damper takes of the momentum to the nodes.
+/// members; forces, momenta and what the damper takes of the momentum, summed cell by cell.
 template <int dim>
 struct FineKick
 {
   std::array<const double *, dim> force; // of the particles, N
   double dt;                             // s
   LaneArray *motion;                     // w in, w' out, m/s: dim per slot
-  double *nodal_force;                   // += Phi^T f, dim per near node
-  double *nodal_momentum;                // += Phi^T M w'
-  double *nodal_loss;                    // += Phi^T M damping (w + w')
-  LaneArray *cell_loss;                  // per batch: sum damping/(2 - damping) m (w + w')^2, J
+  LaneArray *sums;                       // out, per batch: n_member_sums x dim x nodes of a cell
+  LaneArray *cell_loss; // out, per batch: sum damping/(2 - damping) m (w + w')^2, J
 };
 
 /// Second pass: w = w' - (1 - damping/2) Phi x of the free members; v = Phi V + w of all.

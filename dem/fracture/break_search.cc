@@ -1,6 +1,7 @@
 #include "dem/fracture/break_search.h"
 
 #include "dem/fracture/places_apart.h"
+#include "particles/worse_face.h"
 
 #include <algorithm>
 
@@ -340,10 +341,12 @@ Utilisation<dim> BreakSearch<dim>::utilisation(const StressedBody<dim> &state,
                              }),
               found.end());
   find_tensions(found, state, noted_share_);
-  for (const auto &t : found)
-    if (t.utilisation >= noted_share_ && t.utilisation > most.share)
-      most = {t.utilisation,
-              Vector<dim>(get(state.particles.reference, t.bond.i) + t.bond.lever_i)};
+  for (const auto &t : found) {
+    const Utilisation<dim> face = {
+        t.utilisation, Vector<dim>(get(state.particles.reference, t.bond.i) + t.bond.lever_i)};
+    if (t.utilisation >= noted_share_ && particles::is_worse(face, most))
+      most = face;
+  }
   return most;
 }
 

@@ -60,14 +60,33 @@ void look_at_loads(const Scene &scene, Refusals &refusals)
   refusals.add_where(scene.body_force.is_any(), "/body_force", "an acceleration of the body",
                      "its work is booked in one process");
 }
+void look_at_gauges(const Scene &scene, Refusals &refusals)
+{
+  for (std::size_t k = 0; k < scene.gauges.size(); ++k)
+    switch (scene.gauges[k].kind) {
+    case GaugeKind::distance:
+    case GaugeKind::opening:
+    case GaugeKind::strain:
+    case GaugeKind::stress:
+    case GaugeKind::force:
+    case GaugeKind::crack_tip:
+      break;
+    default:
+      refusals.add_where(true, fmt::format("/gauges/{}/kind", k), "such a gauge",
+                         "what it measures is read in one process");
+    }
+}
 } // namespace
 
 std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
 {
   const Scene &scene = *input.scene;
   Refusals refusals(input.json);
-  refusals.add_where(scene.far_field.has_value() || scene.zone.extent != DiscreteZone::Extent::all,
-                     "/far_field", "finite elements", "mesh and overlap are whole in one process");
+  refusals.add_where(scene.zone.extent == DiscreteZone::Extent::none, "/discrete_zone",
+                     "finite elements alone", "particles are what ranks share");
+  refusals.add_where(scene.far_field && coupling::is_energy_weighted(scene.coupling.scheme),
+                     "/coupling/scheme", "an energy-weighted scheme",
+                     "its multipliers are solved for in one process");
   refusals.add_where(scene.atoms.has_value(), "/atoms", "atoms",
                      "their forces know no parts of a body");
   look_at_material(scene, scene.material, "/material", refusals);
@@ -78,8 +97,7 @@ std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
   look_at_loads(scene, refusals);
   refusals.add_where(!scene.tools.empty(), "/tools", "tools",
                      "the surface that they touch is known in one process");
-  refusals.add_where(!scene.gauges.empty(), "/gauges", "gauges",
-                     "what they measure is read in one process");
+  look_at_gauges(scene, refusals);
   refusals.add_where(scene.time.has_phases(), "/time/loading", "loading by equilibria",
                      "they are solved for in one process");
   refusals.add_where(scene.time.rest_threshold > 0, "/time/rest_threshold",

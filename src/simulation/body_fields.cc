@@ -196,6 +196,11 @@ void StateFields<dim>::look_at_what_stays(const CoupledBody<dim> &body)
   material_.resize(state.size());
   for (int i = 0; i < state.size(); ++i)
     material_[i] = body.force()->material(i);
+  zone_.assign(state.size(), double(ZoneNumber::discrete));
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      zone_[m.particle] = double(m.pad ? ZoneNumber::pad : ZoneNumber::overlap);
+  zone_ = at_first(*body.zone, std::move(zone_));
   n_faces_ = at_first(*body.zone, std::move(n_faces_));
   material_ = at_first(*body.zone, std::move(material_));
   names_ = names_at_first(*body.zone);
@@ -205,20 +210,17 @@ template <int dim>
 void StateFields<dim>::add_particle_fields(const CoupledBody<dim> &body, BodyState &state)
 {
   const std::size_t n = names_.size();
-  std::vector<double> zone(n, double(ZoneNumber::discrete)), share(n);
+  std::vector<double> share(n);
   const auto open = open_faces(state.bonds, body.cut_faces);
   for (std::size_t i = 0; i < n; ++i) {
     if (const auto found = open.find(names_[i]); found != open.end())
       share[i] = double(found->second) / std::max<int>(n_faces_[i], 1);
   }
-  if (const auto *overlap = body.coupler->overlap())
-    for (const auto &m : overlap->members)
-      zone[m.particle] = double(m.pad ? ZoneNumber::pad : ZoneNumber::overlap);
   auto &fields = state.particles.fields;
   fields.push_back(make_field("radius", radii(body, names_)));
   fields.push_back(make_field("global_id", {names_.begin(), names_.end()}));
   fields.push_back(make_field("material", material_));
-  fields.push_back(make_field("zone", std::move(zone)));
+  fields.push_back(make_field("zone", zone_));
   fields.push_back(make_field("broken_bond_share", std::move(share)));
 }
 

@@ -37,7 +37,7 @@ private:
   bool has_looked_ = false;
   // Of the body's particles; found when first needed.
   std::vector<std::uint8_t> n_faces_; // shared with others
-  std::vector<double> material_;
+  std::vector<double> material_, zone_;
   std::vector<std::int64_t> names_;
 };
 

@@ -235,7 +235,8 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
   }
   auto bodies = body.bodies();
   auto split = std::make_unique<coupling::FineScaleSplit<dim>>(
-      bodies, overlap_of<dim>(scene), p, body.dt, timers, scene.is_warm() ? &still : nullptr);
+      bodies, overlap_of<dim>(scene), p, body.dt, timers, scene.is_warm() ? &still : nullptr,
+      body.whole_overlap.get());
   const auto &report = split->report();
   log.info(
       "overlap: {} particles ({} pad), {} nodes; patch residual {:.1e} before and {:.1e} after "
@@ -334,12 +335,12 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   ContactSurface<dim> surface; // that tools may touch
-  if (scene.zone.extent != DiscreteZone::Extent::none)
-    core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
-                 [&] { make_zone(scene, make_force, reference, body, surface, log); });
   if (scene.zone.extent != DiscreteZone::Extent::all)
     core::at_key("/far_field", "change cell_size, levels or the zone",
                  [&] { make_far(scene, reference, body, log); });
+  if (scene.zone.extent != DiscreteZone::Extent::none)
+    core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
+                 [&] { make_zone(scene, make_force, reference, body, surface, log); });
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
   if (!coupled) {

@@ -19,7 +19,10 @@ struct CoupledBody
   core::Ranks ranks; // of whose parts of it this is one
 
   std::unique_ptr<particles::ParticleSolver<dim>> zone;
-  std::unique_ptr<fem::FemSolver<dim>> far;
+  std::unique_ptr<fem::FemSolver<dim>> far; // whole on all ranks
+  /// Of several ranks: all particles of the overlap and those that their forces see, as they are in
+  /// the reference.
+  std::unique_ptr<particles::ParticleSolver<dim>> whole_overlap;
   std::unique_ptr<coupling::Coupler<dim>> coupler;
   std::unique_ptr<ToolSet<dim>> tools; // null: nothing rigid touches it
   std::vector<core::BoundaryLoad<dim>> loads;

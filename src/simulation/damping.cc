@@ -65,13 +65,13 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
 {
   if (body.zone) {
     auto &state = body.zone->state;
-    const auto &own = state.part.owned;
+    const auto &stepped = state.part.stepped;
     oppose(
-        parameters_.local, dt, own, [&](int i) { return state.inverse_mass(i); }, state.velocity,
+        parameters_.local, dt, stepped, [&](int i) { return state.inverse_mass(i); }, state.velocity,
         state.force, zone_force_);
     if (state.turns)
       oppose(
-          parameters_.local, dt, own, [&](int i) { return state.inverse_inertia(i); }, state.spin,
+          parameters_.local, dt, stepped, [&](int i) { return state.inverse_inertia(i); }, state.spin,
           state.torque, zone_torque_);
     if (const auto *overlap = body.coupler->overlap())
       for (const auto &member : overlap->members)

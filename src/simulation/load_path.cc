@@ -29,7 +29,7 @@ struct Link
 /// Faces that carry, and particles at the two sides, of all particles in their order.
 struct Faces
 {
-  int n_particles = 0;
+  std::vector<int> node;                // that carries the particle, -1: none
   std::vector<Link> links;              // ascending
   std::vector<std::array<int, 2>> held; // a particle, and whether it lies at the low side
 };
@@ -39,15 +39,15 @@ template <int dim>
 class Items
 {
 public:
-  Items(const CoupledBody<dim> &body, int n_particles, int axis)
-      : n_particles_(n_particles), n_nodes_(body.far ? body.far->mesh().n_nodes() : 0),
+  Items(const CoupledBody<dim> &body, const std::vector<int> &node_of_particle, int axis)
+      : n_particles_(int(node_of_particle.size())), n_nodes_(body.far ? body.far->mesh().n_nodes() : 0),
         low_(n_particles_ + n_nodes_), sets_(low_ + 2)
   {
     if (body.far)
       join_mesh(body, axis);
-    if (const auto *overlap = body.coupler->overlap())
-      for (const auto &m : overlap->members)
-        sets_.join(m.particle, n_particles_ + overlap->near_nodes[m.nodes[0]]);
+    for (int i = 0; i < n_particles_; ++i)
+      if (node_of_particle[i] >= 0)
+        sets_.join(i, n_particles_ + node_of_particle[i]);
   }
 
   int size() const { return low_ + 2; }
@@ -144,7 +144,7 @@ Faces faces_at_first(const CoupledBody<dim> &body, const Faces &part)
   held = body.ranks.gather_at_first(held);
   const core::Names names(names_at_first(*body.zone));
   Faces all;
-  all.n_particles = names.size();
+  all.node = at_first(*body.zone, part.node);
   for (const NamedLink &l : links)
     all.links.push_back({names.index(l.from), names.index(l.to), l.area});
   for (const auto &[name, at_low] : held)
@@ -174,7 +174,10 @@ Faces carrying_faces(const CoupledBody<dim> &body, int axis, Carrying carrying)
                std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
       faces.held.push_back({face.i, face.centroid[axis] < 0});
   });
-  faces.n_particles = state.size();
+  faces.node.assign(state.size(), -1);
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      faces.node[m.particle] = overlap->near_nodes[m.nodes[0]];
   if (!body.ranks.is_one())
     faces = faces_at_first(body, faces);
   std::sort(faces.links.begin(), faces.links.end(), [](const Link &a, const Link &b) {
@@ -187,7 +190,7 @@ Faces carrying_faces(const CoupledBody<dim> &body, int axis, Carrying carrying)
 template <int dim>
 double smallest_section(const CoupledBody<dim> &body, int axis, Faces faces)
 {
-  Items<dim> items(body, faces.n_particles, axis);
+  Items<dim> items(body, faces.node, axis);
   for (const auto &[particle, at_low] : faces.held)
     items.hold(particle, at_low);
   const int low = items.low(), high = items.high();

@@ -3,6 +3,7 @@
 #include "core/check.h"
 #include "packings/absorbing_sides.h"
 #include "packings/outer_face.h"
+#include "src/scene/geometry.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/tools/make_tools.h"
 
@@ -33,13 +34,32 @@ BrokenBond cut_face(const packings::Packing<dim> &packing, const packings::Face<
   return cut;
 }
 
+/// What the coupler sums cell by cell is stepped cell by cell.
+template <int dim>
+packings::Groups<dim> cells_of_overlap(const Scene &scene, const CoupledBody<dim> &body)
+{
+  packings::Groups<dim> cells;
+  if (!body.far || scene.coupling.scheme == coupling::Scheme::none)
+    return cells;
+  const fem::Mesh<dim> &mesh = body.far->mesh();
+  cells.of = [locator = std::make_shared<fem::CellLocator<dim>>(mesh)](const Vector<dim> &x) {
+    return locator->find(x);
+  };
+  const auto zone = zone_shape<dim>(scene);
+  for (int c = 0; c < mesh.n_cells(); ++c)
+    if (const Vector<dim> &lower = mesh.cell_lower[c], upper = lower + mesh.cell_size[c];
+        zone.meets(lower, upper, 0))
+      cells.reach = std::max(cells.reach, mesh.cell_size[c].maxCoeff());
+  return cells;
+}
+
 /// Of one process the whole.
 template <int dim>
 PartOfZone<dim> pack_part(const Scene &scene, Reference &reference, const core::Ranks &ranks,
-                          core::Log &log)
+                          const packings::Groups<dim> &cells, core::Log &log)
 {
   if (!ranks.is_one())
-    return make_packing_part<dim>(scene, reference, ranks, ghost_rings<dim>(scene), log);
+    return make_packing_part<dim>(scene, reference, ranks, ghost_rings<dim>(scene), log, cells);
   auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
   PartOfZone<dim> zone;
   zone.seeds = std::move(seeds);
@@ -92,11 +112,31 @@ void require_same_solid(const particles::ElasticConstants<dim> &force,
 }
 } // namespace
 
+namespace
+{
+/// Whole on every rank: the operators of the overlap are the same on all.
+template <int dim>
+void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
+                        const packings::Groups<dim> &cells, CoupledBody<dim> &body)
+{
+  core::Log nothing_new;
+  auto packing = make_overlap_packing<dim>(scene, reference, body.ranks, cells,
+                                           ghost_rings<dim>(scene), nothing_new);
+  particles::Particles<dim> state;
+  packings::fill_particles(packing, scene.densities(), state);
+  auto figures = body.figures; // known already
+  auto force = make_force(scene, std::move(packing), body.loads, figures, nothing_new);
+  body.whole_overlap =
+      std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
+}
+} // namespace
+
 template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
                CoupledBody<dim> &body, ContactSurface<dim> &surface, core::Log &log)
 {
-  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, log);
+  const auto cells = cells_of_overlap(scene, body);
+  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, cells, log);
   packings::Packing<dim> &packing = held.packing;
   body.seeds = std::move(seeds);
   if (n_healed)
@@ -125,6 +165,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.zone->dashpots = std::move(dashpots);
   if (!body.ranks.is_one())
     body.zone->join({body.ranks, held.owner});
+  if (!body.ranks.is_one() && cells.of)
+    make_whole_overlap(scene, make_force, reference, cells, body);
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   if (faces)

@@ -6,7 +6,8 @@
 
 namespace ligament::program
 {
-/// Fills in zone, seeds, cut faces, stable step and figures; `loads` must be there. Throws
+/// Fills in zone, seeds, cut faces, stable step and figures; `loads` must be there, and the far
+/// field if there is one. Throws
 /// core::InputError where the scene can't be built. Adds what tools feel of it to `surface`.
 template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,

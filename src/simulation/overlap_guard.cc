@@ -1,6 +1,7 @@
 #include "src/simulation/overlap_guard.h"
 
 #include "fem/cell_map.h"
+#include "particles/worse_face.h"
 #include "src/output/format.h"
 
 #include <fmt/format.h>
@@ -30,9 +31,14 @@ OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
   const auto *overlap = body.coupler->overlap();
   if (!overlap || !(body.force()->can_break() || body.force()->can_flow()))
     return;
+  watches_ = true;
   watch_.assign(body.zone->state.size(), Watch::none);
   for (const auto &m : overlap->members)
     watch_[m.particle] = m.pad ? Watch::exempt : Watch::watched;
+  asked_ = watch_; // of what others own faces are missing
+  for (std::size_t i = 0; i < asked_.size(); ++i)
+    if (asked_[i] == Watch::watched && !body.zone->state.part.owns(int(i)))
+      asked_[i] = Watch::none;
   is_blended_.assign(body.far->mesh().n_cells(), 0);
   for (const auto &cell : overlap->cells)
     is_blended_[cell.cell] = cell.layer == 0;
@@ -45,36 +51,100 @@ bool OverlapGuard<dim>::is_watched(const particles::BrokenBond<dim> &bond) const
   return std::max(watch_[bond.i], watch_[bond.j]) == Watch::watched;
 }
 
+// All ranks know how many bonds of the body have broken.
 template <int dim>
-std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body)
+void OverlapGuard<dim>::count_broken(const CoupledBody<dim> &body, double time)
 {
-  if (watch_.empty())
-    return {};
+  const auto n = std::size_t(body.force()->n_broken());
   const auto &broken = body.force()->broken_bonds();
-  for (; seen_ < broken.size(); ++seen_)
-    if (is_watched(broken[seen_])) {
-      ++n_broken_;
-      energy_.add(broken[seen_].energy);
-    }
+  if (!seen_here_)
+    seen_here_ = body.ranks.is_one()
+                     ? seen_
+                     : std::upper_bound(broken.begin(), broken.end(), seen_until_,
+                                        [](double t, const auto &b) { return t < b.time; }) -
+                           broken.begin();
+  seen_until_ = time;
+  if (n == seen_)
+    return;
+  seen_ = n;
+  std::int64_t count = 0;
+  core::ExactSum energy;
+  for (; *seen_here_ < broken.size(); ++*seen_here_) {
+    const auto &bond = broken[*seen_here_];
+    if (!is_watched(bond) || !body.zone->state.part.owns(bond.i))
+      continue;
+    ++count;
+    energy.add(bond.energy);
+  }
+  n_broken_ += long(body.ranks.sum(count));
+  energy_.merge(body.ranks.sum(energy));
+}
+
+template <int dim>
+Vector<dim> OverlapGuard<dim>::first_broken(const CoupledBody<dim> &body) const
+{
+  const auto &state = body.zone->state;
+  std::array<std::vector<std::int64_t>, 2> names; // of what is watched, of what is exempt
+  particles::for_each(state.part.owned, [&](int i) {
+    if (watch_[i] != Watch::none)
+      names[watch_[i] == Watch::exempt].push_back(state.global_id[i]);
+  });
+  for (auto &of : names) {
+    of = body.ranks.gather_all(of);
+    std::sort(of.begin(), of.end());
+  }
+  const auto has = [&](int which, const auto &bond) {
+    return std::binary_search(names[which].begin(), names[which].end(), bond.global_i) ||
+           std::binary_search(names[which].begin(), names[which].end(), bond.global_j);
+  };
+  for (const auto &bond : body.force()->broken_bonds_of_body(state))
+    if (has(0, bond) && !has(1, bond))
+      return bond.position;
+  return Vector<dim>::Zero();
+}
+
+template <int dim>
+std::optional<particles::Utilisation<dim>>
+OverlapGuard<dim>::worst_face(const CoupledBody<dim> &body) const
+{
+  using Face = particles::Utilisation<dim>;
+  const Face here = body.force()->utilisation(body.zone->state, asked_);
+  if (!body.ranks.any(here.share >= limit))
+    return {};
+  std::vector<double> told = {here.share};
+  told.insert(told.end(), here.place.begin(), here.place.end());
+  Face most;
+  for (const auto &of : body.ranks.gather(told)) {
+    const Face face = {of[0], Eigen::Map<const Vector<dim>>(of.data() + 1)};
+    if (particles::is_worse(face, most))
+      most = face;
+  }
+  return most;
+}
+
+template <int dim>
+std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body, double time)
+{
+  if (!watches_)
+    return {};
+  count_broken(body, time);
   if (found_)
     return {};
   constexpr const char *remedy = "make /discrete_zone/region larger";
   if (n_broken_ > 0) {
     found_ = true;
-    const auto first =
-        std::find_if(broken.begin(), broken.end(), [this](const auto &b) { return is_watched(b); });
     return fmt::format("{} in the overlap broke, the first at {}: the mesh there still carries as "
                        "if {} had not; {}",
                        n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
-                       place<dim>(first->position), n_broken_ == 1 ? "it" : "they", remedy);
+                       place<dim>(first_broken(body)), n_broken_ == 1 ? "it" : "they", remedy);
   }
-  const auto most = body.force()->utilisation(body.zone->state, watch_);
-  if (most.share < limit)
+  const auto most = worst_face(body);
+  if (!most)
     return {};
   found_ = true;
   return fmt::format("a face in the overlap bears {:.0f} % of what breaks it, at {}: fracture "
                      "comes near it; {}",
-                     100 * most.share, place<dim>(most.place), remedy);
+                     100 * most->share, place<dim>(most->place), remedy);
 }
 
 // Green's strain of the motion at the middle of each cell: a cell that turns is not strained.
@@ -133,7 +203,7 @@ auto OverlapGuard<dim>::find_flow(const CoupledBody<dim> &body) const -> Flow
 template <int dim>
 auto OverlapGuard<dim>::look_at_flow(const CoupledBody<dim> &body) -> std::optional<FlowFinding>
 {
-  if (watch_.empty() || found_ || !body.force()->can_flow())
+  if (!watches_ || found_ || !body.force()->can_flow())
     return {};
   const Flow found = find_flow(body);
   if (found.most.share < (found_near_flow_ ? flow_limit : near_flow_limit))
@@ -158,6 +228,7 @@ template <int dim>
 void OverlapGuard<dim>::save(core::State &state) const
 {
   core::save_value(state, "recorder", "guard_seen", std::int64_t(seen_));
+  core::save_value(state, "recorder", "guard_seen_until", seen_until_);
   core::save_value(state, "recorder", "guard_broken", std::int64_t(n_broken_));
   core::save_sum(state, "guard_energy", energy_);
   core::save_value(state, "recorder", "guard_found", std::int64_t(found_));
@@ -168,6 +239,8 @@ template <int dim>
 void OverlapGuard<dim>::load(const core::State &state)
 {
   seen_ = std::size_t(core::load_integer(state, "recorder", "guard_seen"));
+  seen_here_.reset();
+  seen_until_ = core::load_real(state, "recorder", "guard_seen_until");
   n_broken_ = long(core::load_integer(state, "recorder", "guard_broken"));
   energy_ = core::load_sum(state, "guard_energy");
   found_ = core::load_integer(state, "recorder", "guard_found") != 0;

@@ -30,9 +30,10 @@ public:
   /// Sets the noted share of the body's force when there is an overlap and something can break.
   explicit OverlapGuard(const CoupledBody<dim> &body);
 
-  /// After the forces of a step; what it found, with its place, when that happens first: a face
-  /// beyond the limit, or broken ones.
-  std::optional<std::string> look(const CoupledBody<dim> &body);
+  /// After the forces of a step at this time (s); what it found, with its place, when that happens
+  /// first: a face beyond the limit, or broken ones. On several ranks, which all call it, they find
+  /// the same.
+  std::optional<std::string> look(const CoupledBody<dim> &body, double time);
 
   /// What it says of flow in overlap and far field.
   struct FlowFinding
@@ -59,12 +60,22 @@ private:
     Vector<dim> lower, upper; // m
   };
   bool is_watched(const particles::BrokenBond<dim> &bond) const;
+  /// Counts what has broken since the last look, at this time (s).
+  void count_broken(const CoupledBody<dim> &body, double time);
+  /// Of the first broken face that counts, m.
+  Vector<dim> first_broken(const CoupledBody<dim> &body) const;
+  /// The face of the body that is nearest to its limit, where one is beyond it.
+  std::optional<particles::Utilisation<dim>> worst_face(const CoupledBody<dim> &body) const;
   Flow find_flow(const CoupledBody<dim> &body) const;
   void look_at_cells(const CoupledBody<dim> &body, Flow &flow) const;
 
-  std::vector<particles::Watch> watch_; // of the particles; empty: nothing to watch
+  bool watches_ = false;
+  std::vector<particles::Watch> watch_; // of the particles at hand
+  std::vector<particles::Watch> asked_; // those of one's own
   std::vector<char> is_blended_;        // of the cells: particles carry it, too
   std::size_t seen_ = 0;                // of the body's broken bonds
+  std::optional<std::size_t> seen_here_ = 0; // of those at hand; unknown after load()
+  double seen_until_ = -1;                   // s
   long n_broken_ = 0;
   core::ExactSum energy_;
   bool found_ = false, found_near_flow_ = false;

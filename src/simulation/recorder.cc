@@ -125,7 +125,7 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
     snapshots_.look_at_equilibrium(body, step, copies);
   else
     snapshots_.look(body, step, ratio * step.dt, copies);
-  if (const auto finding = guard_.look(body))
+  if (const auto finding = guard_.look(body, step.time))
     if (const auto stop = report_excess(*finding, step))
       return stop;
   if (step.step / ratio % OverlapGuard<dim>::flow_interval == 0)
@@ -222,7 +222,8 @@ BodyState Recorder<dim>::present_state(const CoupledBody<dim> &body, double time
   BodyState state;
   state.time = time;
   state.particles = particle_fields(body);
-  state.cells = cell_fields(body);
+  if (writes_) // all ranks have the mesh
+    state.cells = cell_fields(body);
   state.tools = tool_outlines(body);
   return state;
 }
@@ -381,7 +382,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
                            double damping, RunRecord &record)
 {
   const auto timing = timers_.scope(section_);
-  if (const auto finding = guard_.look(body))
+  if (const auto finding = guard_.look(body, step.time))
     report(*finding, step);
   if (const auto finding = guard_.look_at_flow(body); finding && finding->is_excess)
     report(finding->text, step);

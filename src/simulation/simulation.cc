@@ -9,6 +9,7 @@
 #include "src/simulation/body_state.h"
 #include "src/simulation/heat.h"
 #include "src/simulation/initial_motion.h"
+#include "src/simulation/whole_body.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -306,8 +307,7 @@ RunRecord Simulation<dim>::make_record() const
   r.thickness = body_.thickness;
   r.particles = int(body_.n_particles);
   r.cells = body_.far ? body_.far->mesh().n_cells() : 0;
-  const auto *overlap = body_.coupler->overlap();
-  r.overlap_particles = overlap ? int(overlap->members.size()) : 0;
+  r.overlap_particles = int(n_overlap_particles(body_));
   r.equivalent_particles = body_.equivalent_particles;
   r.dt = body_.dt;
   if (body_.zone)

@@ -2,7 +2,7 @@
 // particles, the others nothing.
 #pragma once
 
-#include "particles/particle_solver.h"
+#include "src/simulation/coupled_body.h"
 
 namespace ligament::program
 {
@@ -36,5 +36,16 @@ template <int dim>
 std::vector<std::int64_t> names_at_first(const particles::ParticleSolver<dim> &zone)
 {
   return at_first<dim, std::int64_t>(zone, zone.state.global_id.list());
+}
+
+/// Of the body, on all ranks.
+template <int dim>
+std::int64_t n_overlap_particles(const CoupledBody<dim> &body)
+{
+  std::int64_t n = 0;
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      n += body.zone->state.part.owns(m.particle);
+  return body.ranks.sum(n);
 }
 } // namespace ligament::program

@@ -1,140 +1,19 @@
 // Runs on several ranks: byte for byte what one process writes, also where they go on on other
 // numbers of ranks. Through the programs.
-#include "core/state_file.h"
-#include "tests/support/run_results.h"
+#include "tests/support/rank_runs.h"
 
 #include <csignal>
 #include <thread>
 
 using namespace ligament;
 using namespace ligament::tests;
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace
 {
 const std::string program = LIGAMENT_PROGRAM;
 
-/// A body of particles alone, in units of d = 1, E = 1, rho = 1.
-Json scene_of(int dim, const std::string &packing, std::vector<double> size)
+class RanksProgram : public OnRanks
 {
-  Json scene = {{"title", packing},
-                {"dimension", dim},
-                {"specimen", {{"size", size}}},
-                {"material",
-                 {{"youngs_modulus", 1},
-                  {"poissons_ratio", 0.25},
-                  {"density", 1},
-                  {"friction", 0.4},
-                  {"fracture", {{"criterion", "maximum_tension"}, {"strength", 2e-3}}}}},
-                {"discrete_zone", {{"extent", "all"}, {"packing", packing}, {"spacing", 1}}},
-                {"time", {{"duration", 160}}},
-                {"output",
-                 {{"history_interval", 1.7},
-                  {"field_interval", 60},
-                  {"progress_interval", 1000},
-                  {"checkpoint_interval", 0.01}}}};
-  return scene;
-}
-
-/// The two sides across an axis move apart, or along each other.
-void pull(Json &scene, int axis, int component, double velocity, double ramp = 40)
-{
-  const char *const sides[][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
-  for (const int side : {0, 1}) {
-    Json v = Json::array();
-    for (int c = 0; c < scene["dimension"]; ++c)
-      v.push_back(c == component ? Json(side ? velocity : -velocity) : Json());
-    scene["loads"].push_back({{"boundary", sides[axis][side]}, {"velocity", v}, {"ramp", ramp}});
-  }
-}
-
-std::string written(const Json &scene, const std::string &name)
-{
-  std::ofstream(name) << scene.dump(2);
-  return name;
-}
-
-/// The newest state without what it says of blocks at rest, which each rank cuts otherwise.
-core::State last_state(const std::string &run)
-{
-  core::State state = core::read_state_file(newest_checkpoint(run) + "/body.bin");
-  for (const char *table : {"blocks", "rest"})
-    state.erase(table);
-  return state;
-}
-
-/// All that they computed; how much of it rested is not part of that.
-void expect_same_body(const std::string &run, const std::string &reference)
-{
-  auto found = results(run), expected = results(reference);
-  EXPECT_GT(expected.size(), 4u);
-  found.erase("body.bin");
-  expected.erase("body.bin");
-  EXPECT_EQ(found.size(), expected.size()) << run;
-  for (const auto &[name, content] : expected) {
-    EXPECT_FALSE(content.empty()) << name;
-    EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
-  }
-  EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
-  const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
-  for (const char *key : {"status", "reason", "steps", "particles", "dt", "broken_bonds",
-                          "crack_length", "peak_load", "external_work", "energy_residual", "states",
-                          "warnings", "magnification", "stiffness", "broken_time"})
-    EXPECT_EQ(record.value(key, nlohmann::json()), wanted.value(key, nlohmann::json())) << key;
-}
-
-class RanksProgram : public testing::Test
-{
-protected:
-  void SetUp() override
-  {
-    const auto *test = testing::UnitTest::GetInstance()->current_test_info();
-    const std::string folder = std::string("ranks_") + test->name();
-    fs::remove_all(folder);
-    fs::create_directory(folder);
-    fs::current_path(folder);
-  }
-  void TearDown() override { fs::current_path(".."); }
-
-  /// On one process and on so many ranks; a test in which nothing breaks would prove little.
-  static void expect_the_same_on(const std::vector<int> &ranks, const Json &scene, int least_broken)
-  {
-    written(scene, "scene.json");
-    ASSERT_EQ(run_ligament("run scene.json -o on_1").code, 0);
-    EXPECT_GE(file_json("on_1/run.json")["broken_bonds"], least_broken);
-    for (const int n : ranks) {
-      const std::string run = "on_" + std::to_string(n);
-      fs::remove_all(run);
-      const Outcome outcome = run_ligament("run scene.json -n " + std::to_string(n) + " -o " + run);
-      ASSERT_EQ(outcome.code, 0) << outcome.errors;
-      expect_same_body(run, "on_1");
-    }
-  }
-
-  /// Half of the time on every number of ranks, the rest on every other one.
-  static void expect_to_go_on(const Json &scene, int most)
-  {
-    written(scene, "scene.json");
-    ASSERT_EQ(run_ligament("run scene.json -o whole").code, 0);
-    const double duration = scene["time"]["duration"];
-    const auto number = [](int n) { return std::to_string(n); };
-    for (int a = 1; a <= most; ++a) {
-      const std::string half = "half_" + number(a);
-      ASSERT_EQ(run_ligament("run scene.json --set /time/duration=" + std::to_string(duration / 2) +
-                             " -n " + number(a) + " -o " + half)
-                    .code,
-                0);
-      for (int b = 1; b <= most; ++b) {
-        const std::string run = "from_" + number(a) + "_to_" + number(b);
-        fs::copy(half, run, fs::copy_options::recursive);
-        const Outcome outcome = run_ligament("resume " + run + " -n " + number(b) +
-                                             " --set /time/duration=" + std::to_string(duration));
-        ASSERT_EQ(outcome.code, 0) << outcome.errors;
-        expect_same_body(run, "whole");
-      }
-    }
-  }
 };
 
 /// Rows lie along the crack, and so do the seams.

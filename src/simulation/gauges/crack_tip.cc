@@ -66,9 +66,11 @@ double CrackTipGauge<dim>::position_at(double time) const
 template <int dim>
 void CrackTipGauge<dim>::read(GaugeLook<dim> &look, double *values)
 {
-  const auto &broken = look.body.force()->broken_bonds();
-  for (; n_broken_ < broken.size(); ++n_broken_)
-    add(broken[n_broken_].position, broken[n_broken_].time);
+  if (const auto &force = *look.body.force(); std::size_t(force.n_broken()) > n_broken_) {
+    const auto broken = force.broken_bonds_of_body(look.body.zone->state);
+    for (; n_broken_ < broken.size(); ++n_broken_)
+      add(broken[n_broken_].position, broken[n_broken_].time);
+  }
   values[0] = steps_.back().second;
   values[1] = (values[0] - position_at(look.time - smoothing_)) / smoothing_;
 }

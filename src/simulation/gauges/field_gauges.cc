@@ -44,7 +44,8 @@ StrainGauge<dim>::StrainGauge(const GaugeParameters &gauge, const GaugePlaces<di
   box_ = fit_box(places, to_vector<dim>(gauge.lower), to_vector<dim>(gauge.upper));
   description_ = fmt::format("over a box, from {} particles and {} nodes; what breaks in it counts "
                              "as strain",
-                             box_.particles.size(), box_.nodes.size());
+                             places.body.ranks.sum(std::int64_t(box_.particles.size())),
+                             box_.nodes.size());
 }
 
 template <int dim>
@@ -72,7 +73,9 @@ StressGauge<dim>::StressGauge(const GaugeParameters &gauge, const GaugePlaces<di
       mesh_ = point.reading(body);
       description_ = "of the mesh at a point";
     } else {
-      particles_.push_back({point.particle(), 1});
+      n_particles_ = 1;
+      if (point.particle() >= 0)
+        particles_.push_back({point.particle(), 1});
       description_ = "of the particle nearest to a point";
     }
     return;
@@ -94,14 +97,19 @@ StressGauge<dim>::StressGauge(const GaugeParameters &gauge, const GaugePlaces<di
   if (body.zone) {
     const auto &state = body.zone->state;
     const auto *overlap = body.coupler->overlap();
-    for (int i = 0; i < state.size(); ++i) {
+    std::vector<double> volumes;
+    particles::for_each(state.part.owned, [&](int i) {
       const Vector<dim> x = get(state.reference, i);
       const bool inside = (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
       if (!inside || (overlap && overlap->member_of_particle[i] >= 0))
-        continue;
+        return;
       particles_.push_back({i, state.volume[i]});
-      volume += state.volume[i];
-    }
+      volumes.push_back(state.volume[i]);
+    });
+    volumes = body.ranks.gather_all(volumes);
+    n_particles_ = volumes.size();
+    for (const double part : volumes)
+      volume += part;
   }
   core::require(volume > 0, "its box holds no material; move it");
   for (Share &s : particles_)
@@ -112,7 +120,7 @@ StressGauge<dim>::StressGauge(const GaugeParameters &gauge, const GaugePlaces<di
   description_ =
       fmt::format("over a box, from {} particles and {} nodes; costs a look at all bonds "
                   "for each row",
-                  particles_.size(), mesh_.nodes.size());
+                  n_particles_, mesh_.nodes.size());
 }
 
 template <int dim>
@@ -125,14 +133,17 @@ template <int dim>
 void StressGauge<dim>::read(GaugeLook<dim> &look, double *values)
 {
   Strain<dim> stress = Strain<dim>::Zero();
-  if (!particles_.empty()) {
-    const auto &of = look.stresses();
-    for (int c = 0; c < n_strains<dim>; ++c) {
-      core::ExactSum sum;
-      for (const Share &s : particles_)
-        sum.add(s.share * of[c][s.item]);
-      stress[c] = sum.value();
+  if (n_particles_ > 0) {
+    std::vector<core::ExactSum> sums(n_strains<dim>);
+    if (!particles_.empty()) {
+      const auto &of = look.stresses();
+      for (int c = 0; c < n_strains<dim>; ++c)
+        for (const Share &s : particles_)
+          sums[c].add(s.share * of[c][s.item]);
     }
+    sums = look.body.ranks.sum(sums);
+    for (int c = 0; c < n_strains<dim>; ++c)
+      stress[c] = sums[c].value();
   }
   if (mesh_share_ > 0)
     stress += mesh_share_ *

@@ -49,6 +49,7 @@ private:
   std::string name_, description_;
   double angle_; // rad
   std::vector<Share> particles_;
+  std::size_t n_particles_ = 0; // on all ranks
   double mesh_share_ = 0;
   MotionReading<dim> mesh_; // whose gradient is the mean over the part of the mesh
 };

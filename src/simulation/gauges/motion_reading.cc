@@ -29,6 +29,14 @@ Point to_point(const Vector<dim> &v)
   return p;
 }
 
+/// Of all ranks.
+template <std::size_t n>
+void merge(std::array<core::ExactSum, n> &sums, const core::Ranks &ranks)
+{
+  const auto all = ranks.sum(std::vector<core::ExactSum>(sums.begin(), sums.end()));
+  std::copy(all.begin(), all.end(), sums.begin());
+}
+
 template <int dim>
 void add_interpolated(const fem::Mesh<dim> &mesh, int cell, const Vector<dim> &place, double value,
                       const Vector<dim> &gradient, std::vector<double> &values,
@@ -53,8 +61,9 @@ Vector<dim> MotionReading<dim>::displacement(const CoupledBody<dim> &body) const
   };
   if (body.zone)
     add(particles, body.zone->state.displacement);
-  if (body.far)
+  if (body.far && body.ranks.is_first())
     add(nodes, body.far->displacement);
+  merge(sums, body.ranks);
   Vector<dim> u;
   for (int c = 0; c < dim; ++c)
     u[c] = sums[c].value();
@@ -73,8 +82,9 @@ Eigen::Matrix<double, dim, dim> MotionReading<dim>::gradient(const CoupledBody<d
   };
   if (body.zone)
     add(particles, body.zone->state.displacement);
-  if (body.far)
+  if (body.far && body.ranks.is_first())
     add(nodes, body.far->displacement);
+  merge(sums, body.ranks);
   Eigen::Matrix<double, dim, dim> h;
   for (int c = 0; c < dim; ++c)
     for (int k = 0; k < dim; ++k)
@@ -90,27 +100,34 @@ GaugePlaces<dim>::GaugePlaces(const Scene &the_scene, const CoupledBody<dim> &th
     cells.emplace(body.far->mesh());
 }
 
+// Of two as near as each other the one that comes first in the order of the body.
 template <int dim>
-int GaugePlaces<dim>::nearest_particle(const Vector<dim> &place) const
+auto GaugePlaces<dim>::nearest_particle(const Vector<dim> &place) const -> Nearest
 {
+  Nearest nearest;
   if (!body.zone)
-    return -1;
+    return nearest;
   const auto &state = body.zone->state;
-  int nearest = -1;
-  double least = std::pow(reach * body.spacing, 2);
-  for (int i = 0; i < state.size(); ++i) {
+  const double farthest = std::pow(reach * body.spacing, 2);
+  double least = farthest;
+  particles::for_each(state.part.owned, [&](int i) {
     const Vector<dim> centre = get(state.reference, i);
     const double distance = (centre - place).squaredNorm();
     if (distance >= least)
-      continue;
+      return;
     const auto &cracks = scene.specimen.cracks;
     if (std::any_of(cracks.begin(), cracks.end(), [&](const Crack &crack) {
           return crosses(crack, to_point<dim>(place), to_point<dim>(centre), dim);
         }))
-      continue;
-    nearest = i;
+      return;
+    nearest.particle = i;
     least = distance;
-  }
+  });
+  const std::vector<double> all = body.ranks.gather_all(std::vector<double>{least});
+  const auto first = std::min_element(all.begin(), all.end());
+  nearest.is_there = *first < farthest;
+  if (first - all.begin() != body.ranks.rank())
+    nearest.particle = -1;
   return nearest;
 }
 
@@ -182,10 +199,12 @@ PointMotion<dim>::PointMotion(const GaugePlaces<dim> &places, const Vector<dim> 
     reading_ = interpolate(places.body.far->mesh(), cell_, place);
     return;
   }
-  particle_ = places.nearest_particle(place);
-  core::require(particle_ >= 0, "no particle lies within three spacings of a point: it is outside "
+  const auto nearest = places.nearest_particle(place);
+  core::require(nearest.is_there, "no particle lies within three spacings of a point: it is outside "
                                 "the material; move it");
-  find_particles(places.body);
+  particle_ = nearest.particle;
+  if (particle_ >= 0)
+    find_particles(places.body);
 }
 
 template <int dim>
@@ -221,7 +240,13 @@ std::string PointMotion<dim>::source(const CoupledBody<dim> &body) const
   double radius = 0;
   for (const int i : around_)
     radius = std::max(radius, (get(body.zone->state.reference, i) - place_).norm());
-  return fmt::format("{} particles within {}", around_.size(), quantity(radius, "m"));
+  const auto all = body.ranks.gather_all(std::vector<double>{double(around_.size()), radius});
+  double n = 0;
+  for (std::size_t k = 0; k < all.size(); k += 2) { // one rank has them
+    n = std::max(n, all[k]);
+    radius = std::max(radius, all[k + 1]);
+  }
+  return fmt::format("{} particles within {}", n, quantity(radius, "m"));
 }
 
 template <int dim>
@@ -230,7 +255,7 @@ MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lo
 {
   struct Sample
   {
-    int particle, cell; // one of them is -1
+    int particle, cell; // at least one of them is -1; both: a particle of another rank
     Vector<dim> place;
     double volume;
   };
@@ -261,12 +286,26 @@ MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lo
   if (body.zone) {
     const auto &state = body.zone->state;
     const auto *overlap = body.coupler->overlap();
+    struct Inside
+    {
+      int particle;
+      double volume;
+      std::array<double, dim> place;
+    };
+    std::vector<Inside> own;
     particles::for_each(state.part.owned, [&](int i) {
       const Vector<dim> x = get(state.reference, i);
       const bool inside = (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
-      if (inside && !(overlap && overlap->member_of_particle[i] >= 0))
-        samples.push_back({i, -1, x, state.volume[i]});
+      if (!inside || (overlap && overlap->member_of_particle[i] >= 0))
+        return;
+      own.push_back({i, state.volume[i], {}});
+      std::copy(x.begin(), x.end(), own.back().place.begin());
     });
+    const auto of_ranks = body.ranks.gather(own);
+    for (std::size_t r = 0; r < of_ranks.size(); ++r)
+      for (const Inside &p : of_ranks[r])
+        samples.push_back({int(r) == body.ranks.rank() ? p.particle : -1, -1,
+                           Eigen::Map<const Vector<dim>>(p.place.data()), p.volume});
   }
   double volume = 0;
   Vector<dim> centroid = Vector<dim>::Zero();
@@ -293,7 +332,7 @@ MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lo
     if (s.cell >= 0)
       add_interpolated<dim>(body.far->mesh(), s.cell, s.place, s.volume / volume, gradient, values,
                             gradients);
-    else
+    else if (s.particle >= 0)
       reading.particles.push_back({s.particle, s.volume / volume, gradient});
   }
   for (int i = 0; i < n_nodes; ++i)

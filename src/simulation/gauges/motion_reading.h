@@ -12,7 +12,8 @@
 
 namespace ligament::program
 {
-/// u = sum value u_k and du_i/dx_j = sum u_k,i gradient_j over particles and nodes.
+/// u = sum value u_k and du_i/dx_j = sum u_k,i gradient_j over particles and nodes. Of several ranks,
+/// which all read, each has the terms of some particles, and all have those of the nodes.
 template <int dim>
 struct MotionReading
 {
@@ -34,9 +35,14 @@ struct GaugePlaces
 {
   GaugePlaces(const Scene &the_scene, const CoupledBody<dim> &the_body);
 
-  /// The particle nearest to a point without a crack in between; -1 without any within three
-  /// spacings.
-  int nearest_particle(const Vector<dim> &place) const;
+  /// The particle nearest to a point without a crack in between; none within three spacings. Of
+  /// several ranks, which all ask, one has it.
+  struct Nearest
+  {
+    bool is_there = false;
+    int particle = -1; // here; -1: another rank has it
+  };
+  Nearest nearest_particle(const Vector<dim> &place) const;
 
   const Scene &scene;
   const CoupledBody<dim> &body;
@@ -71,9 +77,10 @@ public:
   const MotionReading<dim> &reading(const CoupledBody<dim> &body);
 
   int cell() const { return cell_; }
+  /// -1: a cell carries it, or another rank has the particle.
   int particle() const { return particle_; }
   const Vector<dim> &place() const { return place_; }
-  /// "4 nodes of a cell of 2 mm" or "19 particles within 1 mm".
+  /// "4 nodes of a cell of 2 mm" or "19 particles within 1 mm"; all ranks ask.
   std::string source(const CoupledBody<dim> &body) const;
 
 private:
@@ -139,7 +146,7 @@ void for_each_gauss_point(const fem::Mesh<dim> &mesh, int cell, int parts, Visit
   }
 }
 
-/// The present bonds broken since number `known`, which is brought up to date.
+/// The bonds at hand broken since number `known`, which is brought up to date.
 template <int dim, typename Visit>
 void for_each_new_break(const CoupledBody<dim> &body, std::size_t &known, Visit &&visit)
 {

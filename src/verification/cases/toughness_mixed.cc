@@ -86,7 +86,7 @@ Peak break_plate(const InclinedPlate &plate)
   double peak = 0;
   while (run.time() < 5e-3) {
     run.step();
-    if (guard.look(body))
+    if (guard.look(body, run.time()))
       return {};
     double load = 0;
     for (const int end : {0, 1})

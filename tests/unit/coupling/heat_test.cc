@@ -110,7 +110,7 @@ TEST(Heat, TheStepIsThatOfTheFormula)
   const auto kept = [](double s) { return kept_by(0.7, 1, s); };
   const DenseBath bath(overlap, atoms, kept);
   coupling::FineMotion<2> fine(
-      overlap, atoms, [](double) { return 0.; }, coupling::Solver::eigen);
+      {overlap, atoms}, {overlap, atoms}, [](double) { return 0.; }, coupling::Solver::eigen);
   fine.join_bath(overlap, kept);
   const core::ThermalNoise noise(3, 11);
   const coupling::Nodal<2> still = coupling::Nodal<2>::Zero(overlap.n_nodes(), 2);

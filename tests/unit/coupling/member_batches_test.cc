@@ -76,14 +76,15 @@ Members<dim> in_order(std::vector<int> cells)
 template <int dim>
 std::vector<double> losses(Members<dim> m)
 {
-  std::vector<double> force(n_cells * most_members), nodal(dim);
+  std::vector<double> force(n_cells * most_members);
   for (std::size_t i = 0; i < force.size(); ++i)
     force[i] = std::sin(double(i));
   std::array<const double *, dim> forces;
   forces.fill(force.data());
   std::vector<LaneArray> loss(m.batches.batches.size());
-  kick_members<dim>(m.batches, {forces, 0.5, m.motion.data(), nodal.data(), nodal.data(),
-                                nodal.data(), loss.data()});
+  std::vector<LaneArray> sums(m.batches.batches.size() * n_member_sums * dim *
+                              MemberBatches<dim>::nc);
+  kick_members<dim>(m.batches, {forces, 0.5, m.motion.data(), sums.data(), loss.data()});
   std::vector<double> of_cell(n_cells);
   for (int k = 0; k < n_cells; ++k)
     of_cell[m.cells[k]] = loss[k / lane_array_size].value[k % lane_array_size];

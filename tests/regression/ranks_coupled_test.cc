@@ -1,0 +1,148 @@
+// Particles inside finite elements on several ranks: byte for byte what one process writes, also where
+// they go on on other numbers of ranks. Through the programs.
+#include "tests/support/rank_runs.h"
+
+using namespace ligament::tests;
+
+namespace
+{
+class RanksCoupled : public OnRanks
+{
+};
+
+/// A zone in the middle of a plate or block, in units of d = 1, E = 1, rho = 1.
+Json coupled(int dim, const std::string &packing, std::vector<double> size,
+             std::vector<double> zone, double cell)
+{
+  Json scene = scene_of(dim, packing, size), lower = Json::array(), upper = lower;
+  for (const double width : zone) { // 0: through the body
+    lower.push_back(width > 0 ? Json(-width / 2) : Json());
+    upper.push_back(width > 0 ? Json(width / 2) : Json());
+  }
+  scene["discrete_zone"].erase("extent");
+  scene["discrete_zone"]["region"] = {{"lower", lower}, {"upper", upper}};
+  scene["far_field"]["cell_size"] = cell;
+  scene["coupling"] = {{"overlap_cells", 2}, {"transition_cells", 2}};
+  return scene;
+}
+
+/// The zone closed by mesh all around, its cells cut by the seams.
+Json closed_zone()
+{
+  Json scene = coupled(2, "hexagonal", {90, 90}, {48, 42}, 3.7);
+  scene["specimen"]["cracks"] = {{{"points", {{-6, 0}, {6, 0}}}}};
+  scene["material"]["fracture"]["strength"] = 1e-3;
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 260;
+  return scene;
+}
+
+/// Through the body; several steps of particles to one of the mesh, all dampers.
+Json turned_with_steps()
+{
+  Json scene = coupled(2, "hexagonal", {30, 120}, {0, 44}, 4.3);
+  scene["discrete_zone"]["orientation"] = 17;
+  scene["specimen"]["cracks"] = {{{"points", {{-5, 1}, {6, -2}}}}};
+  scene["coupling"]["step_ratio"] = 3;
+  scene["coupling"]["fine_damper"] = 0.3;
+  scene["coupling"]["gap_filter"] = 0.2;
+  scene["damping"] = {{"mass", 1e-3}, {"local", 0.05}};
+  scene["material"]["fracture"]["strength"] = 1e-3;
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 260;
+  return scene;
+}
+
+/// Sheared so far that the overlap turns and bends, its energy then that of the particles
+/// themselves.
+Json bent_strip()
+{
+  Json scene = coupled(2, "square", {24, 110}, {0, 40}, 4.1);
+  scene["material"]["fracture"]["strength"] = 0.03;
+  scene["coupling"]["regime"] = "nonlinear";
+  scene["coupling"]["step_ratio"] = 2;
+  pull(scene, 1, 0, 6e-3, 60);
+  scene["time"]["duration"] = 220;
+  return scene;
+}
+
+Json turning_strip()
+{
+  Json scene = bent_strip();
+  scene["coupling"]["regime"] = "automatic";
+  return scene;
+}
+
+/// The guard ends it: the crack runs into the overlap.
+Json crack_into_the_overlap()
+{
+  Json scene = closed_zone();
+  scene["coupling"]["guard"] = "stop";
+  scene["loads"] = Json::array();
+  pull(scene, 1, 1, 2e-3);
+  return scene;
+}
+
+/// Two zones, random.
+Json two_zones()
+{
+  Json scene = coupled(2, "random", {100, 60}, {40, 30}, 3.9);
+  scene["discrete_zone"].erase("region");
+  scene["discrete_zone"]["boxes"] = {{{"lower", {-44, -20}}, {"upper", {-8, 18}}},
+                                     {{"lower", {10, -21}}, {"upper", {44, 20}}}};
+  scene["specimen"]["cracks"] = {{{"points", {{-30, 0}, {-22, 2}}}}, {{"points", {{22, -2}, {30, 0}}}}};
+  scene["material"]["fracture"]["strength"] = 1e-3;
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 220;
+  return scene;
+}
+
+Json block_with_a_crack()
+{
+  Json scene = coupled(3, "fcc", {14, 34, 12}, {0, 18, 0}, 3.3);
+  scene["specimen"]["cracks"] = {
+      {{"points", {{-7.5, 0.3, -7}, {0, 0.3, -7}, {0, 0.3, 7}, {-7.5, 0.3, 7}}}}};
+  scene["material"]["fracture"]["strength"] = 1.5e-3;
+  pull(scene, 1, 1, 2e-3, 10);
+  scene["time"]["duration"] = 70;
+  return scene;
+}
+
+/// Overlap and far field wait for a wave from one end.
+Json bar_that_rests()
+{
+  Json scene = coupled(2, "hexagonal", {16, 260}, {0, 60}, 4.1);
+  scene["loads"] = {{{"boundary", "top"}, {"velocity", {nullptr, 4e-3}}, {"ramp", 10}}};
+  scene["time"]["duration"] = 330;
+  return scene;
+}
+
+TEST_F(RanksCoupled, AZoneClosedByMesh)
+{
+  expect_the_same_on({2, 3}, closed_zone(), 10);
+}
+TEST_F(RanksCoupled, TurnedWithStepsOfTheMeshAndDampers)
+{
+  expect_the_same_on({2, 4}, turned_with_steps(), 10);
+}
+TEST_F(RanksCoupled, AStripThatBends)
+{
+  expect_the_same_on({3}, bent_strip(), 0);
+}
+TEST_F(RanksCoupled, AStripThatTurns)
+{
+  expect_the_same_on({2}, turning_strip(), 0);
+}
+TEST_F(RanksCoupled, TwoZonesOfRandomParticles)
+{
+  expect_the_same_on({2}, two_zones(), 10);
+}
+TEST_F(RanksCoupled, ABlockWithACrack)
+{
+  expect_the_same_on({2}, block_with_a_crack(), 10);
+}
+TEST_F(RanksCoupled, ABarThatRests)
+{
+  expect_the_same_on({2}, bar_that_rests(), 1);
+}
+} // namespace
