@@ -36,17 +36,28 @@ public:
   Packing<dim> pack() { return pack(0, n_rows()); }
   /// The particles of rows [first, last), with the faces between them.
   Packing<dim> pack(int first, int last);
+  /// Of those packed last, how many lie in rows before this one.
+  int n_before(int row) const { return n_before_[row - first_packed_]; }
 
   int n_rows() const { return int(layout_->rows().size()); }
-  /// Of a zone without coupled sides.
   std::int64_t n_particles(int row) const;
   /// Rows between two particles that may have a common face.
   int reach() const;
+  /// At most so many rows lie between two particles that are no farther apart along any axis.
+  int rows_within(double distance) const;
 
 private:
   using Index = LatticeIndex<dim>;
+  struct Cell
+  {
+    bool is_in_zone;
+    std::optional<ClippedCell<dim>> clipped; // none: a whole one of the lattice
+  };
 
   void place_particles(int first, int last);
+  /// Of a point with a particle of the specimen, so far from its surface.
+  Cell cell_at(const Index &k, double distance) const;
+  bool has_particle(const Index &k) const;
   void join_faces();
 
   bool has_all_neighbours(const Index &k) const;
@@ -66,6 +77,8 @@ private:
 
   std::optional<RowLayout<dim>> layout_;
   std::vector<std::vector<int>> particle_in_; // row, at its points; -1: no particle
+  int first_packed_ = 0;
+  std::vector<int> n_before_; // from that row on
   std::vector<int> irregular_of_;
   std::vector<ClippedCell<dim>> irregular_;
   Packing<dim> packing_;
@@ -85,10 +98,6 @@ Packer<dim>::Packer(const LatticeParameters<dim> &p)
                   "the discrete zone holds no particles: move it into the specimen or widen it");
   }
   layout_.emplace(lattice_, zone_lower_, zone_upper_, p.small_layer);
-  packing_.spacing = p.spacing;
-  packing_.thickness = thickness_;
-  for (const LatticeNeighbour<dim> &n : layout_->forward())
-    packing_.directions.push_back({n.direction, n.distance, lattice_.face_area * thickness_});
 }
 
 template <int dim>
@@ -119,7 +128,7 @@ std::int64_t Packer<dim>::n_particles(int row) const
   const auto &r = layout_->rows()[row];
   std::int64_t n = 0;
   for (int k = 0; k < r.n_points; ++k)
-    n += is_kept(shape_, lattice_.position(r.start + k * layout_->step()), lattice_.spacing);
+    n += has_particle(r.start + k * layout_->step());
   return n;
 }
 
@@ -132,13 +141,63 @@ int Packer<dim>::reach() const
   return most;
 }
 
+// How far apart rows lie is linear in the distance.
 template <int dim>
-void Packer<dim>::place_particles(int first, int last)
+int Packer<dim>::rows_within(double distance) const
+{
+  double rows = 0;
+  for (int a = 0; a < dim; ++a) {
+    const Vector<dim> k = lattice_.coordinates(distance * Vector<dim>::Unit(a)) -
+                          lattice_.coordinates(Vector<dim>::Zero());
+    double along = 0;
+    for (int b = 0; b < dim; ++b)
+      along += k[b] * layout_->row_step(Index::Unit(b));
+    rows += std::abs(along);
+  }
+  return 1 + int(std::min(rows, double(n_rows()))); // one for round-off
+}
+
+template <int dim>
+bool Packer<dim>::has_particle(const Index &k) const
+{
+  const double d = lattice_.spacing;
+  const Vector<dim> x = lattice_.position(k), farthest = Vector<dim>::Constant(3 * d);
+  if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
+    return false;
+  const double distance = shape_.distance(x);
+  // Where the largest clipped cell is in the zone, all are.
+  return distance >= clearance * d &&
+         (is_in_zone(x, -farthest, farthest) || cell_at(k, distance).is_in_zone);
+}
+
+template <int dim>
+auto Packer<dim>::cell_at(const Index &k, double distance) const -> Cell
 {
   const double d = lattice_.spacing;
   const Vector<dim> &extent = lattice_.extent;
+  const Vector<dim> x = lattice_.position(k);
+  bool whole = distance > (clearance + 1) * d;
+  if (!whole && has_all_neighbours(k)) {
+    whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
+            ((shape_.upper - x - extent).array() > -1e-12 * d).all();
+    if (shape_.solid)
+      whole = whole && shape_.solid->distance(x, 4 * d) > lattice_.cell_radius;
+    for (const Void<dim> &v : shape_.voids)
+      whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
+  }
+  if (whole)
+    return {is_in_zone(x, -extent, extent), {}};
+  ClippedCell<dim> cell(lattice_, shape_, k);
+  return {is_in_zone(x, cell.lower, cell.upper), std::move(cell)};
+}
+
+template <int dim>
+void Packer<dim>::place_particles(int first, int last)
+{
   particle_in_.resize(n_rows());
-  for (int r = first; r < last; ++r) {
+  first_packed_ = first;
+  n_before_ = {0};
+  for (int r = first; r < last; ++r, n_before_.push_back(packing_.size())) {
     const auto &row = layout_->rows()[r];
     auto &particle = particle_in_[r];
     particle.assign(row.n_points, -1);
@@ -150,29 +209,18 @@ void Packer<dim>::place_particles(int first, int last)
       if (!is_in_zone(x, Vector<dim>::Zero(), Vector<dim>::Zero()))
         continue;
       const double distance = shape_.distance(x);
-      if (distance < clearance * d)
+      if (distance < clearance * lattice_.spacing)
         continue;
-      bool whole = distance > (clearance + 1) * d;
-      if (!whole && has_all_neighbours(k)) {
-        whole = ((x - extent - shape_.lower).array() > -1e-12 * d).all() &&
-                ((shape_.upper - x - extent).array() > -1e-12 * d).all();
-        if (shape_.solid)
-          whole = whole && shape_.solid->distance(x, 4 * d) > lattice_.cell_radius;
-        for (const Void<dim> &v : shape_.voids)
-          whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
-      }
-      if (whole) {
-        if (!is_in_zone(x, -extent, extent))
-          continue;
+      Cell cell = cell_at(k, distance);
+      if (!cell.is_in_zone)
+        continue;
+      if (!cell.clipped) {
         irregular_of_.push_back(-1);
         packing_.volume.push_back(lattice_.cell_volume * thickness_);
       } else {
-        ClippedCell<dim> cell(lattice_, shape_, k);
-        if (!is_in_zone(x, cell.lower, cell.upper))
-          continue;
         irregular_of_.push_back(int(irregular_.size()));
-        packing_.volume.push_back(cell.volume * thickness_);
-        irregular_.push_back(std::move(cell));
+        packing_.volume.push_back(cell.clipped->volume * thickness_);
+        irregular_.push_back(std::move(*cell.clipped));
       }
       particle[n] = packing_.size() - 1;
       if (!in_run)
@@ -250,12 +298,56 @@ void Packer<dim>::join_faces()
 template <int dim>
 Packing<dim> Packer<dim>::pack(int first, int last)
 {
+  packing_ = {};
+  packing_.spacing = lattice_.spacing;
+  packing_.thickness = thickness_;
+  for (const LatticeNeighbour<dim> &n : layout_->forward())
+    packing_.directions.push_back({n.direction, n.distance, lattice_.face_area * thickness_});
   place_particles(first, last);
   core::require(packing_.size() > 0 || last - first < n_rows(),
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
   cut_faces(packing_, shape_.cracks);
+  particle_in_.clear();
+  irregular_of_ = {};
+  irregular_ = {};
   return std::move(packing_);
+}
+
+/// Adds particles [begin, end) of a piece of the same lattice, with the faces whose first particle
+/// they are; what follows them in the piece is going to be added next.
+template <int dim>
+void append(Packing<dim> &packing, const Packing<dim> &piece, int begin, int end)
+{
+  const int shift = packing.size() - begin;
+  const auto add = [&](auto &to, const auto &from) {
+    if (!from.empty())
+      to.insert(to.end(), from.begin() + begin, from.begin() + end);
+  };
+  for (int a = 0; a < dim; ++a)
+    add(packing.centre[a], piece.centre[a]);
+  add(packing.volume, piece.volume);
+  add(packing.global_id, piece.global_id);
+  for (const int run : piece.row_begin)
+    if (begin <= run && run < end)
+      packing.row_begin.push_back(run + shift);
+  for (Face<dim> face : piece.faces)
+    if (begin <= face.i && face.i < end) {
+      face.i += shift;
+      face.j += shift;
+      packing.faces.push_back(face);
+    }
+  for (BoundaryFace<dim> face : piece.boundary_faces)
+    if (begin <= face.i && face.i < end) {
+      face.i += shift;
+      packing.boundary_faces.push_back(std::move(face));
+    }
+}
+
+template <int dim>
+void require_no_joined_sides(const LatticeParameters<dim> &parameters)
+{
+  core::require(!PeriodicBox<dim>(parameters).is_any(), "joined sides are packed in one process");
 }
 } // namespace
 
@@ -289,9 +381,10 @@ Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters)
 
 template <int dim>
 PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
-                                   const core::Ranks &ranks, int rings)
+                                   const core::Ranks &ranks, int rings, const Groups<dim> &groups,
+                                   const std::vector<std::int64_t> &weights)
 {
-  core::require(!PeriodicBox<dim>(parameters).is_any(), "joined sides are packed in one process");
+  require_no_joined_sides(parameters);
   Packer<dim> packer(parameters);
   // Each rank counts some of the rows.
   const int n_rows = packer.n_rows();
@@ -304,21 +397,61 @@ PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
   std::partial_sum(counts.begin(), counts.end(), begin.begin() + 1);
   core::require(begin.back() > 0, "the discrete zone holds no whole particle: widen it or make the "
                                   "spacing smaller");
-  const auto partition = particles::make_partition(begin.back(), ranks.size());
+  const auto partition = particles::make_partition(begin.back(), ranks.size(), weights);
   const auto row_of = [&](std::int64_t place) {
     return int(std::upper_bound(begin.begin(), begin.end(), place) - begin.begin()) - 1;
   };
   const std::int64_t own = partition.begin(ranks.rank()), end = partition.end(ranks.rank());
-  const int margin = rings * packer.reach(), first = std::clamp(row_of(own) - margin, 0, n_rows),
+  // Groups of its own particles, and rings around these.
+  const int margin = (groups.of ? packer.rows_within(groups.reach) : 0) + rings * packer.reach();
+  const int first = std::clamp(row_of(own) - margin, 0, n_rows),
             last = own < end ? std::clamp(row_of(end - 1) + margin + 1, 0, n_rows) : first;
-  const Packing<dim> window = packer.pack(first, last);
+  Packing<dim> window = packer.pack(first, last);
   core::require(window.size() == begin[last] - begin[first],
                 "rows hold another number of particles than was counted");
-  return part_of(window, partition, ranks.rank(), rings, begin[first]);
+  return part_of(std::move(window), partition, ranks.rank(), rings, begin[first], groups);
+}
+
+template <int dim>
+Packing<dim> make_grouped_lattice(const LatticeParameters<dim> &parameters, int n_windows,
+                                  const Groups<dim> &groups, int rings)
+{
+  require_no_joined_sides(parameters);
+  core::require(n_windows > 0, "a lattice is made from at least one window of rows");
+  Packer<dim> packer(parameters);
+  const int n_rows = packer.n_rows(), margin = rings * packer.reach();
+  Packing<dim> all;
+  for (int w = 0; w < n_windows; ++w) {
+    const auto row = [&](int window) { return int(std::int64_t(n_rows) * window / n_windows); };
+    // Beyond a window lie the second particles of its faces, beyond these their rings.
+    const int first = std::max(row(w) - margin, 0),
+              last = std::min(row(w + 1) + packer.reach() + margin, n_rows);
+    Packing<dim> piece = packer.pack(first, last);
+    const std::vector<int> places = grouped_places(piece, groups, rings);
+    const auto n_kept_before = [&](int r) {
+      return int(std::lower_bound(places.begin(), places.end(), packer.n_before(r)) -
+                 places.begin());
+    };
+    piece = those_at(places, std::move(piece));
+    if (w == 0) {
+      all.spacing = piece.spacing;
+      all.thickness = piece.thickness;
+      all.directions = piece.directions;
+      all.cuts = piece.cuts;
+      all.whole = piece.whole;
+    }
+    append(all, piece, n_kept_before(row(w)), n_kept_before(row(w + 1)));
+  }
+  all.row_begin.push_back(all.size());
+  return all;
 }
 
 template Packing<2> make_lattice_packing(const LatticeParameters<2> &);
 template Packing<3> make_lattice_packing(const LatticeParameters<3> &);
-template PackingPart<2> make_lattice_part(const LatticeParameters<2> &, const core::Ranks &, int);
-template PackingPart<3> make_lattice_part(const LatticeParameters<3> &, const core::Ranks &, int);
+template PackingPart<2> make_lattice_part(const LatticeParameters<2> &, const core::Ranks &, int,
+                                          const Groups<2> &, const std::vector<std::int64_t> &);
+template PackingPart<3> make_lattice_part(const LatticeParameters<3> &, const core::Ranks &, int,
+                                          const Groups<3> &, const std::vector<std::int64_t> &);
+template Packing<2> make_grouped_lattice(const LatticeParameters<2> &, int, const Groups<2> &, int);
+template Packing<3> make_grouped_lattice(const LatticeParameters<3> &, int, const Groups<3> &, int);
 } // namespace ligament::packings

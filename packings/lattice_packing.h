@@ -69,9 +69,17 @@ struct LatticeParameters : SpecimenParameters<dim>
 template <int dim>
 Packing<dim> make_lattice_packing(const LatticeParameters<dim> &parameters);
 
-/// What part_of() keeps of it for one of several ranks, which all call it, in equal shares: each
-/// packs only the rows that it needs. Of a zone without joined or coupled sides.
+/// What part_of() keeps of it for one of several ranks, which all call it: each packs only the rows
+/// that it needs. Shares go by the weights of blocks (particles::make_partition). Of a zone without
+/// joined sides.
 template <int dim>
-PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
-                                   const core::Ranks &ranks, int rings);
+PackingPart<dim>
+make_lattice_part(const LatticeParameters<dim> &parameters, const core::Ranks &ranks, int rings,
+                  const Groups<dim> &groups = {}, const std::vector<std::int64_t> &weights = {});
+
+/// What grouped_part() keeps of it, made from so many windows of rows one after the other, lest the
+/// whole be in memory. Of a zone without joined sides.
+template <int dim>
+Packing<dim> make_grouped_lattice(const LatticeParameters<dim> &parameters, int n_windows,
+                                  const Groups<dim> &groups, int rings);
 } // namespace ligament::packings

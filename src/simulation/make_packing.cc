@@ -293,14 +293,28 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
 
 template <int dim>
 PartOfZone<dim> make_packing_part(const Scene &scene, Reference &reference,
-                                  const core::Ranks &ranks, int rings, core::Log &log)
+                                  const core::Ranks &ranks, int rings, core::Log &log,
+                                  const packings::Groups<dim> &groups,
+                                  const std::vector<std::int64_t> &weights)
 {
   if (!scene.zone.is_irregular())
-    return {packings::make_lattice_part<dim>(lattice_of<dim>(scene), ranks, rings), {}, {}};
+    return {packings::make_lattice_part<dim>(lattice_of<dim>(scene), ranks, rings, groups, weights),
+            {},
+            {}};
   auto [whole, seeds, n_healed] = make_packing<dim>(scene, reference, log);
-  return {packings::part_of(whole, particles::make_partition(whole.size(), ranks.size()),
-                            ranks.rank(), rings),
+  const auto partition = particles::make_partition(whole.size(), ranks.size(), weights);
+  return {packings::part_of(std::move(whole), partition, ranks.rank(), rings, 0, groups),
           std::move(seeds), n_healed};
+}
+
+template <int dim>
+packings::Packing<dim>
+make_overlap_packing(const Scene &scene, Reference &reference, const core::Ranks &ranks,
+                     const packings::Groups<dim> &groups, int rings, core::Log &log)
+{
+  if (!scene.zone.is_irregular())
+    return packings::make_grouped_lattice<dim>(lattice_of<dim>(scene), ranks.size(), groups, rings);
+  return packings::grouped_part(make_packing<dim>(scene, reference, log).packing, groups, rings);
 }
 
 template packings::SpecimenParameters<2> packed_specimen_of(const Scene &);
@@ -312,7 +326,13 @@ template packings::RandomParameters<3> random_packing_of(const Scene &);
 template PackedZone<2> make_packing(const Scene &, Reference &, core::Log &);
 template PackedZone<3> make_packing(const Scene &, Reference &, core::Log &);
 template PartOfZone<2> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
-                                         core::Log &);
+                                         core::Log &, const packings::Groups<2> &,
+                                         const std::vector<std::int64_t> &);
+template packings::Packing<2> make_overlap_packing(const Scene &, Reference &, const core::Ranks &,
+                                                   const packings::Groups<2> &, int, core::Log &);
 template PartOfZone<3> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
-                                         core::Log &);
+                                         core::Log &, const packings::Groups<3> &,
+                                         const std::vector<std::int64_t> &);
+template packings::Packing<3> make_overlap_packing(const Scene &, Reference &, const core::Ranks &,
+                                                   const packings::Groups<3> &, int, core::Log &);
 } // namespace ligament::program

@@ -5,6 +5,7 @@
 #include "particles/block_sum.h"
 #include "particles/halo.h"
 #include "tests/support/ranks.h"
+#include "tests/unit/ranks/packing_oracle.h"
 
 #include "core/check.h"
 
@@ -75,25 +76,24 @@ Packing<dim> turned_box(double n)
 
 /// Every rank makes every part, so that nothing is left to one.
 template <int dim>
-void expect_rings(const Packing<dim> &whole, int n_ranks, int rings)
+void expect_rings(const Packing<dim> &whole, int n_ranks, int rings,
+                  const packings::Groups<dim> &groups = {})
 {
   const Partition partition = make_partition(whole.size(), n_ranks);
-  std::vector<std::set<int>> neighbours(whole.size());
-  for (const auto &face : whole.faces) {
-    neighbours[face.i].insert(face.j);
-    neighbours[face.j].insert(face.i);
-  }
   int n_owned = 0;
   for (int r = 0; r < n_ranks; ++r) {
-    const PackingPart<dim> held = packings::part_of(whole, partition, r, rings);
-    std::vector<std::set<int>> within(rings + 1); // by breadth first
+    std::set<int> owned, stepped;
     for (std::int64_t i = partition.begin(r); i < partition.end(r); ++i)
-      within[0].insert(int(i));
-    for (int ring = 1; ring <= rings; ++ring) {
-      within[ring] = within[ring - 1];
-      for (const int i : within[ring - 1])
-        within[ring].insert(neighbours[i].begin(), neighbours[i].end());
-    }
+      owned.insert(int(i));
+    stepped = owned;
+    for (const auto &[group, particles] : packings::testing::members(whole, groups))
+      if (group >= 0 && std::any_of(particles.begin(), particles.end(),
+                                    [&](int i) { return owned.count(i) > 0; }))
+        stepped.insert(particles.begin(), particles.end());
+    const auto within = packings::testing::rings_around(whole, stepped, rings);
+
+    const PackingPart<dim> held = packings::part_of(whole, partition, r, rings, 0, groups);
+    EXPECT_EQ(held.n_whole, whole.size());
     EXPECT_EQ(std::set<int>(held.place.begin(), held.place.end()), within[rings]);
     EXPECT_TRUE(std::is_sorted(held.place.begin(), held.place.end()));
     const auto set_of = [&](const ParticleRanges &ranges) {
@@ -101,37 +101,27 @@ void expect_rings(const Packing<dim> &whole, int n_ranks, int rings)
       for_each(ranges, [&](int k) { places.insert(held.place[k]); });
       return places;
     };
-    EXPECT_EQ(set_of(held.part.owned), within[0]);
-    EXPECT_EQ(set_of(held.part.stepped), within[0]);
+    EXPECT_EQ(set_of(held.part.owned), owned);
+    EXPECT_EQ(set_of(held.part.stepped), stepped);
     EXPECT_EQ(set_of(held.part.pressed), within[rings - 1]);
     EXPECT_EQ(set_of(held.part.turned), within[rings]);
     n_owned += count(held.part.owned);
-
-    const Packing<dim> &p = held.packing;
-    std::vector<int> n_faces(p.size(), 0);
-    for (const auto &face : p.faces) {
-      ++n_faces[face.i], ++n_faces[face.j];
-      EXPECT_TRUE(neighbours[held.place[face.i]].count(held.place[face.j]));
-    }
-    for (int k = 0; k < p.size(); ++k) {
-      const int i = held.place[k];
-      EXPECT_EQ(p.volume[k], whole.volume[i]);
-      EXPECT_EQ(p.global_id[k], whole.global_id[i]);
-      EXPECT_EQ(get(p.centre, k), get(whole.centre, i));
-      EXPECT_EQ(held.owner[k], partition.owner(i));
-      if (contains(held.part.pressed, k))
-        EXPECT_EQ(n_faces[k], int(neighbours[i].size()));
-    }
-    if (!whole.row_begin.empty()) {
-      EXPECT_EQ(p.row_begin.back(), p.size());
-      for (std::size_t row = 0; row + 1 < p.row_begin.size(); ++row)
-        for (int k = p.row_begin[row]; k + 1 < p.row_begin[row + 1]; ++k)
-          EXPECT_EQ(held.place[k + 1], held.place[k] + 1);
-    }
-    EXPECT_EQ(packings::mean_face_area(p), packings::mean_face_area(whole));
-    EXPECT_EQ(packings::largest_diameter(p), packings::largest_diameter(whole));
+    for (std::size_t k = 0; k < held.place.size(); ++k)
+      EXPECT_EQ(held.owner[k], partition.owner(held.place[k]));
+    packings::testing::expect_same_packing(held.packing,
+                                           packings::testing::piece_of(whole, within[rings]));
   }
   EXPECT_EQ(n_owned, whole.size());
+}
+
+template <int dim>
+Packing<dim> random_box(double n)
+{
+  packings::RandomParameters<dim> random;
+  random.spacing = 1;
+  random.size_ratio = 2;
+  random.upper.setConstant(n);
+  return packings::make_random_packing(random).packing;
 }
 
 TEST(PackingPart, RingsAreTheNeighboursOfNeighbours)
@@ -139,14 +129,28 @@ TEST(PackingPart, RingsAreTheNeighboursOfNeighbours)
   for (const int rings : {2, 3}) {
     expect_rings(turned_box<2>(20), 3, rings);
     expect_rings(turned_box<3>(7), 3, rings);
-    packings::RandomParameters<2> random;
-    random.spacing = 1;
-    random.size_ratio = 2;
-    random.upper = {18, 18};
-    expect_rings(packings::make_random_packing(random).packing, 4, rings);
+    expect_rings(random_box<2>(18), 4, rings);
   }
   expect_rings(turned_box<2>(20), 1, 2); // one rank: everything, nobody around
   expect_rings(turned_box<2>(3), 4, 2);  // more ranks than blocks: some own nothing
+}
+
+TEST(PackingPart, WholeGroupsAreSteppedWithRingsAroundThem)
+{
+  std::mt19937 random(11);
+  const Packing<2> plane = turned_box<2>(30), irregular_plane = random_box<2>(26);
+  const Packing<3> space = turned_box<3>(9), irregular_space = random_box<3>(8);
+  for (int trial = 0; trial < 8; ++trial) {
+    const auto cells = [&](auto upper) {
+      return packings::testing::random_cells<decltype(upper)::RowsAtCompileTime>(random, upper, 1.5,
+                                                                                 12);
+    };
+    const int rings = 2 + trial % 2, n_ranks = 1 + trial % 4;
+    expect_rings<2>(plane, n_ranks, rings, cells(Vector<2>(30, 30)));
+    expect_rings<2>(irregular_plane, n_ranks, rings, cells(Vector<2>(26, 26)));
+    expect_rings<3>(space, n_ranks, rings, cells(Vector<3>(9, 9, 9)));
+    expect_rings<3>(irregular_space, n_ranks, rings, cells(Vector<3>(8, 8, 8)));
+  }
 }
 
 TEST(PackingPart, RefusesAnotherPartition)
