@@ -34,7 +34,7 @@ struct GuardedPlate
     for (int i = 0; i < state().size(); ++i)
       state().displacement[1][i] = is_below(i) ? -share * strength : 0;
     small.body.force()->compute(state(), ++time);
-    return guard.look(small.body);
+    return guard.look(small.body, time);
   }
   /// An overlap particle inside, pad or not.
   int member(bool pad)
