@@ -209,7 +209,7 @@ private:
                                  std::vector<std::int64_t> &places) const;
   std::optional<BondId> bond_between(const std::array<std::int64_t, 2> &name) const;
   /// Whose contacts are needed here, all of them: 1.
-  std::vector<char> kept_particles() const;
+  std::vector<char> kept_particles(const Particles &p) const;
   StressedBody<dim> stressed(const Particles &particles, const Evaluation<dim> &evaluation) const
   {
     return {particles, evaluation, strains_, parts_};

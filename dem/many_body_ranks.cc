@@ -25,23 +25,21 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners, const Particles &
   core::require(broken_.all().empty(), "parts are joined before anything breaks");
   owners_ = std::make_shared<particles::Owners>(owners);
   names_ = p.names();
-  contacts_.join(owners_, p, kept_particles());
+  contacts_.join(owners_, p, kept_particles(p));
 }
 
-// Contacts act on what is one's own; where bonds break by stresses, these are asked for at the
-// other ends of its bonds, too.
+// Contacts act on what is stepped; where bonds break by stresses, these are asked for at the other
+// ends of the bonds of one's own, too.
 template <int dim>
-std::vector<char> ManyBodyForce<dim>::kept_particles() const
+std::vector<char> ManyBodyForce<dim>::kept_particles(const Particles &p) const
 {
   std::vector<char> kept(body_.n_particles(), 0);
-  for (int i = 0; i < body_.n_particles(); ++i) {
-    if (!owners_->is_own(i))
-      continue;
-    kept[i] = 1;
-    if (search_.reads_stresses())
+  particles::for_each(p.part.stepped, [&](int i) { kept[i] = 1; });
+  if (search_.reads_stresses())
+    particles::for_each(p.part.owned, [&](int i) {
       body_.bonds().for_each_bond_of(
           i, [&](BondId, const Bond<dim> &b) { kept[b.i] = kept[b.j] = 1; });
-  }
+    });
   return kept;
 }
 

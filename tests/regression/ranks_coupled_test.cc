@@ -33,7 +33,7 @@ Json closed_zone()
   scene["specimen"]["cracks"] = {{{"points", {{-6, 0}, {6, 0}}}}};
   scene["material"]["fracture"]["strength"] = 1e-3;
   pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 260;
+  scene["time"]["duration"] = 75;
   return scene;
 }
 
@@ -77,20 +77,27 @@ Json turning_strip()
 Json crack_into_the_overlap()
 {
   Json scene = closed_zone();
-  scene["coupling"]["guard"] = "stop";
-  scene["loads"] = Json::array();
-  pull(scene, 1, 1, 2e-3);
+  scene["time"]["duration"] = 260;
+  return scene;
+}
+
+/// And goes on through it where the guard only warns.
+Json crack_through_the_overlap()
+{
+  Json scene = crack_into_the_overlap();
+  scene["coupling"]["guard"] = "warn";
+  scene["time"]["duration"] = 120;
   return scene;
 }
 
 /// Two zones, random.
 Json two_zones()
 {
-  Json scene = coupled(2, "random", {100, 60}, {40, 30}, 3.9);
+  Json scene = coupled(2, "random", {136, 78}, {40, 30}, 3.9);
   scene["discrete_zone"].erase("region");
-  scene["discrete_zone"]["boxes"] = {{{"lower", {-44, -20}}, {"upper", {-8, 18}}},
-                                     {{"lower", {10, -21}}, {"upper", {44, 20}}}};
-  scene["specimen"]["cracks"] = {{{"points", {{-30, 0}, {-22, 2}}}}, {{"points", {{22, -2}, {30, 0}}}}};
+  scene["discrete_zone"]["boxes"] = {{{"lower", {-60, -23}}, {"upper", {-8, 23}}},
+                                     {{"lower", {10, -23}}, {"upper", {60, 23}}}};
+  scene["specimen"]["cracks"] = {{{"points", {{-38, 0}, {-30, 2}}}}, {{"points", {{29, -2}, {36, 0}}}}};
   scene["material"]["fracture"]["strength"] = 1e-3;
   pull(scene, 1, 1, 4e-4);
   scene["time"]["duration"] = 220;
@@ -99,9 +106,9 @@ Json two_zones()
 
 Json block_with_a_crack()
 {
-  Json scene = coupled(3, "fcc", {14, 34, 12}, {0, 18, 0}, 3.3);
+  Json scene = coupled(3, "fcc", {12, 40, 10}, {0, 26, 0}, 3.1);
   scene["specimen"]["cracks"] = {
-      {{"points", {{-7.5, 0.3, -7}, {0, 0.3, -7}, {0, 0.3, 7}, {-7.5, 0.3, 7}}}}};
+      {{"points", {{-6.5, 0.3, -6}, {0, 0.3, -6}, {0, 0.3, 6}, {-6.5, 0.3, 6}}}}};
   scene["material"]["fracture"]["strength"] = 1.5e-3;
   pull(scene, 1, 1, 2e-3, 10);
   scene["time"]["duration"] = 70;
@@ -112,6 +119,7 @@ Json block_with_a_crack()
 Json bar_that_rests()
 {
   Json scene = coupled(2, "hexagonal", {16, 260}, {0, 60}, 4.1);
+  scene["material"]["fracture"]["strength"] = 0.1;
   scene["loads"] = {{{"boundary", "top"}, {"velocity", {nullptr, 4e-3}}, {"ramp", 10}}};
   scene["time"]["duration"] = 330;
   return scene;
@@ -120,6 +128,14 @@ Json bar_that_rests()
 TEST_F(RanksCoupled, AZoneClosedByMesh)
 {
   expect_the_same_on({2, 3}, closed_zone(), 10);
+}
+TEST_F(RanksCoupled, TheGuardOfTheOverlapEndsAll)
+{
+  expect_the_same_on({3}, crack_into_the_overlap(), 10, 3);
+}
+TEST_F(RanksCoupled, ACrackThroughTheOverlap)
+{
+  expect_the_same_on({2}, crack_through_the_overlap(), 50);
 }
 TEST_F(RanksCoupled, TurnedWithStepsOfTheMeshAndDampers)
 {
@@ -143,6 +159,38 @@ TEST_F(RanksCoupled, ABlockWithACrack)
 }
 TEST_F(RanksCoupled, ABarThatRests)
 {
-  expect_the_same_on({2}, bar_that_rests(), 1);
+  expect_the_same_on({2}, bar_that_rests(), 0);
+  for (const char *share : {"share_at_rest", "overlap_at_rest"})
+    EXPECT_GT(file_json("on_2/run.json")["figures"][share]["value"], 0.02) << share;
+}
+TEST_F(RanksCoupled, GoOnOnAnotherNumber)
+{
+  expect_to_go_on(turned_with_steps(), 2);
+}
+
+TEST_F(RanksCoupled, SlowAllOnAnyNumber)
+{
+  for (const Json &scene : {closed_zone(), crack_through_the_overlap(), turned_with_steps(),
+                            bent_strip(), turning_strip(), two_zones(), block_with_a_crack(),
+                            bar_that_rests()})
+  {
+    fs::remove_all("on_1");
+    expect_the_same_on({2, 3, 4}, scene, 0);
+  }
+}
+
+TEST_F(RanksCoupled, SlowGoOnWhereTheStripBends)
+{
+  expect_to_go_on(bent_strip(), 4);
+}
+
+TEST_F(RanksCoupled, SlowGoOnInABlock)
+{
+  expect_to_go_on(block_with_a_crack(), 4);
+}
+
+TEST_F(RanksCoupled, SlowGoOnThroughTheOverlap)
+{
+  expect_to_go_on(crack_through_the_overlap(), 3);
 }
 } // namespace
