@@ -58,7 +58,7 @@ void BrokenBonds<dim>::take_mean(Particles &p, const std::vector<int> &near,
   jumps_.clear();
   for (std::size_t k = 0; k < near.size(); ++k) {
     const int i = near[k];
-    if (!p.part.owns(i))
+    if (!particles::contains(p.part.stepped, i))
       continue;
     const Jump jump = {i, get(p.force, i) - before[k].force, get(p.torque, i) - before[k].torque};
     if (jump.force.isZero(0) && jump.torque.isZero(0))

@@ -59,8 +59,10 @@ inline core::State last_state(const std::string &run)
   return state;
 }
 
-/// All that they computed; how much of it rested is not part of that.
-inline void expect_same_body(const std::string &run, const std::string &reference)
+/// All that they computed; how much of it rested is not part of that. Runs that guards end have no
+/// state of their end.
+inline void expect_same_body(const std::string &run, const std::string &reference,
+                             bool has_state = true)
 {
   auto found = results(run), expected = results(reference);
   EXPECT_GT(expected.size(), 4u);
@@ -71,7 +73,8 @@ inline void expect_same_body(const std::string &run, const std::string &referenc
     EXPECT_FALSE(content.empty()) << name;
     EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
   }
-  EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
+  if (has_state)
+    EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
   const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
   for (const char *key : {"status", "reason", "steps", "particles", "dt", "broken_bonds",
                           "crack_length", "peak_load", "external_work", "energy_residual", "states",
@@ -107,7 +110,7 @@ protected:
       fs::remove_all(run);
       const Outcome outcome = run_ligament("run scene.json -n " + std::to_string(n) + " -o " + run);
       ASSERT_EQ(outcome.code, code) << outcome.errors;
-      expect_same_body(run, "on_1");
+      expect_same_body(run, "on_1", code == 0);
     }
   }
 
