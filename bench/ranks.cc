@@ -50,7 +50,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
     p.velocity[0][i] = 1e-4 * std::sin(0.1 * p.reference[dim - 1][i]);
   });
   auto force = std::make_unique<dem::ManyBodyForce<dim>>(
-      std::move(held.packing), material, std::vector<core::BoundaryLoad<dim>>{}, law);
+      held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
+  held.packing = {};
   particles::ParticleSolver<dim> solver(std::move(p), std::move(force));
   solver.join({ranks, held.owner});
   const double dt = 0.3, set_up = now() - began;

@@ -1,0 +1,61 @@
+// Parts of a coupled scene's discrete zone, and the particles of its overlap, as ranks make them.
+#include "src/simulation/make_packing.h"
+#include "tests/support/ranks.h"
+#include "tests/support/small_plate.h"
+#include "tests/unit/ranks/packing_oracle.h"
+
+#include "particles/block_sum.h"
+
+namespace ligament::program
+{
+namespace
+{
+using test::ranks;
+
+/// Cells of a mesh all over the zone, whose sides are at y = -20 and 20, but for a strip of it;
+/// cuts between ranks run through them.
+packings::Groups<2> overlap_cells()
+{
+  packings::Groups<2> groups;
+  groups.reach = 4.1;
+  groups.of = [](const Vector<2> &x) {
+    if (x[1] > 5 && x[1] < 11)
+      return -1;
+    return int(std::floor(x[0] / 4.1)) + 100 * int(std::floor(x[1] / 4.1)) + 10000;
+  };
+  return groups;
+}
+
+void expect_the_parts(const std::vector<std::string> &overrides)
+{
+  const Scene scene = tests::small_scene(overrides);
+  core::Log log;
+  Reference reference;
+  const auto whole = make_packing<2>(scene, reference, log).packing;
+  const auto groups = overlap_cells();
+  std::vector<std::int64_t> weights;
+  for (int b = 0; b * particles::sum_block < whole.size(); ++b)
+    weights.push_back(1 + b % 5);
+  const auto partition = particles::make_partition(whole.size(), ranks().size(), weights);
+  const auto held = packings::part_of(whole, partition, ranks().rank(), 3, 0, groups);
+  const auto part = make_packing_part<2>(scene, reference, ranks(), 3, log, groups, weights).held;
+  EXPECT_EQ(part.place, held.place);
+  EXPECT_EQ(particles::count(part.part.stepped), particles::count(held.part.stepped));
+  EXPECT_EQ(ranks().any(particles::count(part.part.stepped) > particles::count(part.part.owned)),
+            !ranks().is_one());
+  packings::testing::expect_same_packing(part.packing, held.packing);
+
+  const auto overlap = make_overlap_packing<2>(scene, reference, ranks(), groups, 2, log);
+  EXPECT_GT(overlap.size(), 300);
+  EXPECT_LT(overlap.size(), whole.size());
+  packings::testing::expect_same_packing(overlap, packings::grouped_part(whole, groups, 2));
+}
+
+TEST(ZoneParts, AreThoseOfTheWholeZone)
+{
+  for (const char *packing : {"hexagonal", "square", "random"})
+    expect_the_parts({"/discrete_zone/packing=" + std::string(packing)});
+  expect_the_parts({"/discrete_zone/orientation=20"});
+}
+} // namespace
+} // namespace ligament::program
