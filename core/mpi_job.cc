@@ -49,6 +49,7 @@ public:
 
   void exchange(const std::vector<Outgoing> &out, const std::vector<Incoming> &in) override
   {
+    const Timed timed(seconds_);
     constexpr int tag = 1;
     requests_.clear();
     for (const Incoming &m : in)
@@ -60,15 +61,18 @@ public:
 
   void sum(std::int64_t *values, int n) override
   {
+    const Timed timed(seconds_);
     MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_INT64_T, MPI_SUM, comm_);
   }
   void max(std::int64_t *values, int n) override
   {
+    const Timed timed(seconds_);
     MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_INT64_T, MPI_MAX, comm_);
   }
 
   std::vector<std::vector<std::byte>> gather(const void *data, std::size_t bytes) override
   {
+    const Timed timed(seconds_);
     const int own = count(bytes);
     std::vector<int> counts(size_), places(size_);
     MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
@@ -86,6 +90,8 @@ public:
     return parts;
   }
 
+  double seconds() const override { return seconds_; }
+
   [[noreturn]] void abort(const std::string &reason, int exit_code) override
   {
     if (!reason.empty())
@@ -96,8 +102,21 @@ public:
   }
 
 private:
+  /// Adds the time until it ends.
+  class Timed
+  {
+  public:
+    explicit Timed(double &sum) : sum_(sum), begun_(MPI_Wtime()) {}
+    ~Timed() { sum_ += MPI_Wtime() - begun_; }
+
+  private:
+    double &sum_;
+    const double begun_;
+  };
+
   MPI_Comm comm_;
   int rank_ = 0, size_ = 1;
+  double seconds_ = 0;
   std::vector<MPI_Request> requests_;
 };
 } // namespace

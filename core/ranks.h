@@ -41,6 +41,8 @@ public:
   virtual void max(std::int64_t *values, int n) = 0;
   /// What every rank gives, in the order of the ranks.
   virtual std::vector<std::vector<std::byte>> gather(const void *data, std::size_t bytes) = 0;
+  /// That these calls have taken here so far, in s: most of it is waiting for others.
+  virtual double seconds() const { return 0; }
   /// Ends all ranks.
   [[noreturn]] virtual void abort(const std::string &reason, int exit_code) = 0;
 };
@@ -61,6 +63,8 @@ public:
   int rank() const { return all_ ? all_->rank() : 0; }
   int size() const { return all_ ? all_->size() : 1; }
   bool is_one() const { return !all_; }
+  /// In messages so far, in s.
+  double waited() const { return all_ ? all_->seconds() : 0; }
   /// Of all of them it alone writes files and talks.
   bool is_first() const { return rank() == 0; }
 

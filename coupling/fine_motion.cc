@@ -230,8 +230,8 @@ void FineMotion<dim>::add_forces(const particles::Particles<dim> &particles,
                                  Nodal<dim> &force) const
 {
   std::vector<LaneArray> motion(motion_.size()), loss(cell_loss_.size()), sums(sums_.size());
-  kick_members<dim>(lanes_, {pointers(particles.force), 0, motion.data(), sums.data(),
-                             loss.data()});
+  kick_members<dim>(lanes_,
+                    {pointers(particles.force), 0, motion.data(), sums.data(), loss.data()});
   add_pad_torques(particles, sums);
   nodal_.add(sums, force_sum, {&force});
 }
@@ -243,8 +243,8 @@ void FineMotion<dim>::begin_kick(const particles::Particles<dim> &particles, dou
 {
   carried_.setZero();
   lost_.setZero();
-  kick_members<dim>(lanes_, {pointers(particles.force), dt, motion_.data(), sums_.data(),
-                             cell_loss_.data()});
+  kick_members<dim>(
+      lanes_, {pointers(particles.force), dt, motion_.data(), sums_.data(), cell_loss_.data()});
   add_pad_torques(particles, sums_);
   if (loss_.is_empty())
     nodal_.add(sums_, force_sum, {&force, &carried_});

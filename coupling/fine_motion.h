@@ -5,9 +5,9 @@
 #include "core/thermal_noise.h"
 #include "coupling/algebra/scalar_matrix.h"
 #include "coupling/member_batches.h"
-#include "coupling/overlap_part.h"
 #include "coupling/nodal_sums.h"
 #include "coupling/operators/coarse_projection.h"
+#include "coupling/overlap_part.h"
 
 #include <functional>
 
@@ -124,7 +124,7 @@ private:
 
   core::Ranks ranks_;
   MemberBatches<dim> lanes_;
-  std::vector<std::uint8_t> own_; // per slot: bit l, lane l is a particle of one's own
+  std::vector<std::uint8_t> own_;             // per slot: bit l, lane l is a particle of one's own
   std::vector<std::array<int, 2>> own_cells_; // batch and lane of those that one hands on
   NodalSums<dim> nodal_;
   std::vector<LaneArray> sums_; // of the members, see MemberSum
@@ -135,7 +135,7 @@ private:
   ScalarMatrix<dim> loss_;           // Phi^T M damping (1 - damping/2) Phi
   std::vector<LaneArray> cell_loss_; // of the members' part of (C20), per batch
   core::ExactSum damper_energy_;     // twice what it has taken; of the nodes' part the first rank's
-  std::vector<LaneArray> kept_; // exp(-c_f dt) per slot; empty: no heat bath
+  std::vector<LaneArray> kept_;      // exp(-c_f dt) per slot; empty: no heat bath
   double bath_energy_ = 0;
   long n_free_members_ = 0;
   std::vector<Pad> pads_;

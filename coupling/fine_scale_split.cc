@@ -181,8 +181,8 @@ template <int dim>
 double FineScaleSplit<dim>::fine_kinetic(const Bodies<dim> &bodies, double dt) const
 {
   const auto &zone = *bodies.zone;
-  const auto sums = zone.ranks().sum({fine_.kinetic_sum(zone.state, dt), zone.kinetic_sum(dt),
-                                      member_kinetic(zone.state, dt)});
+  const auto sums = zone.ranks().sum(
+      {fine_.kinetic_sum(zone.state, dt), zone.kinetic_sum(dt), member_kinetic(zone.state, dt)});
   return sums[0].value() + sums[1].value() - sums[2].value();
 }
 
@@ -339,7 +339,9 @@ void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
   if (regime_ != Regime::linear)
     fine_.turn_pads(near_.displacement(), zone);
   gap_filter_energy_ = core::load_real(state, "split", "gap_filter_energy");
-  const auto load = [&](const char *column) { return core::load_integer(state, "split_rest", column); };
+  const auto load = [&](const char *column) {
+    return core::load_integer(state, "split_rest", column);
+  };
   rests_ = load("rests");
   far_rests_ = load("far_rests");
   kicks_ = load("kicks");

@@ -39,9 +39,9 @@ void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
   if (is_far_step(step))
     far_rests(bodies, step); // in the first step no force has asked
   const auto *const rest = bodies.zone->rest();
-  bool wakes =
-      bodies.zone->ranks().any(std::any_of(here().members.begin(), here().members.end(),
-                                           [&](const auto &m) { return rest->is_awake(m.particle); }));
+  bool wakes = bodies.zone->ranks().any(
+      std::any_of(here().members.begin(), here().members.end(),
+                  [&](const auto &m) { return rest->is_awake(m.particle); }));
   if (is_far_step(step) && !far_rests_)
     for (const auto &force : bodies.far->force)
       for (const int node : overlap_.near_nodes)

@@ -31,7 +31,8 @@ public:
   NodalSums() = default;
   /// Cells in their order, the same on all ranks but for batch and lane; `n_quantities` vectors are
   /// summed for each node.
-  NodalSums(const std::vector<Cell> &cells, int n_nodes, int n_quantities, const core::Ranks &ranks);
+  NodalSums(const std::vector<Cell> &cells, int n_nodes, int n_quantities,
+            const core::Ranks &ranks);
 
   std::size_t index(int batch, int quantity, int component, int corner) const
   {
@@ -41,7 +42,8 @@ public:
   std::size_t n_sums(std::size_t n_batches) const { return n_batches * n_quantities_ * dim * nc; }
 
   /// *to[k] += the sums of quantity first + k of all cells.
-  void add(const std::vector<LaneArray> &sums, int first, const std::vector<Nodal<dim> *> &to) const;
+  void add(const std::vector<LaneArray> &sums, int first,
+           const std::vector<Nodal<dim> *> &to) const;
 
   /// Bytes that one call for so many quantities sends from here to each other rank.
   std::size_t bytes(int n_quantities) const

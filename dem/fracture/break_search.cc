@@ -237,8 +237,8 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
 }
 
 template <int dim>
-std::vector<ExceedingBond<dim>>
-BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state, int rank) const
+std::vector<ExceedingBond<dim>> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state,
+                                                                  int rank) const
 {
   if (!can_break())
     return {};
@@ -267,8 +267,8 @@ BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state, int rank) cons
 }
 
 template <int dim>
-std::vector<ExceedingBond<dim>>
-BreakSearch<dim>::breaking(std::vector<ExceedingBond<dim>> found, const BondedBody<dim> &body) const
+std::vector<ExceedingBond<dim>> BreakSearch<dim>::breaking(std::vector<ExceedingBond<dim>> found,
+                                                           const BondedBody<dim> &body) const
 {
   sort_by_names(found); // few are left
   const bool all_at_once = criteria_.apart() == 0;

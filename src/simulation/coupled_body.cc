@@ -320,7 +320,7 @@ std::vector<SkippedPart> skipped_parts(const Scene &scene, const CoupledBody<dim
 template <int dim>
 CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &timers,
                            Reference &reference, const ForceMaker<dim> &make_force,
-                           const core::Ranks &ranks)
+                           const core::Ranks &ranks, const std::vector<std::int64_t> &weights)
 {
   CoupledBody<dim> body;
   body.ranks = ranks;
@@ -340,7 +340,7 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
                  [&] { make_far(scene, reference, body, log); });
   if (scene.zone.extent != DiscreteZone::Extent::none)
     core::at_key("/discrete_zone", "change spacing, packing or the shape of specimen and zone",
-                 [&] { make_zone(scene, make_force, reference, body, surface, log); });
+                 [&] { make_zone(scene, make_force, reference, weights, body, surface, log); });
   using coupling::Scheme;
   const bool coupled = body.zone && body.far && scene.coupling.scheme != Scheme::none;
   if (!coupled) {
@@ -373,7 +373,9 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
 }
 
 template CoupledBody<2> make_body<2>(const Scene &, core::Log &, core::Timers &, Reference &,
-                                     const ForceMaker<2> &, const core::Ranks &);
+                                     const ForceMaker<2> &, const core::Ranks &,
+                                     const std::vector<std::int64_t> &);
 template CoupledBody<3> make_body<3>(const Scene &, core::Log &, core::Timers &, Reference &,
-                                     const ForceMaker<3> &, const core::Ranks &);
+                                     const ForceMaker<3> &, const core::Ranks &,
+                                     const std::vector<std::int64_t> &);
 } // namespace ligament::program

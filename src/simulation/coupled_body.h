@@ -55,11 +55,13 @@ struct CoupledBody
 
 /// Throws core::InputError where the scene can't be built: reason and remedy in the message. What
 /// `reference` knows is not sought again; what it doesn't is added. Of several ranks, which all
-/// call it, each has its part of the particles.
+/// call it, each has its part of the particles: pieces of about equal weight, by weights of the
+/// blocks of particles (particles::make_partition), or by their number.
 template <int dim>
 CoupledBody<dim>
 make_body(const Scene &scene, core::Log &log, core::Timers &timers, Reference &reference,
-          const ForceMaker<dim> &make_force = make_zone_force<dim>, const core::Ranks &ranks = {});
+          const ForceMaker<dim> &make_force = make_zone_force<dim>, const core::Ranks &ranks = {},
+          const std::vector<std::int64_t> &weights = {});
 
 /// Where nothing is known.
 template <int dim>

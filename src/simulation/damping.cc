@@ -67,12 +67,12 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
     auto &state = body.zone->state;
     const auto &stepped = state.part.stepped;
     oppose(
-        parameters_.local, dt, stepped, [&](int i) { return state.inverse_mass(i); }, state.velocity,
-        state.force, zone_force_);
+        parameters_.local, dt, stepped, [&](int i) { return state.inverse_mass(i); },
+        state.velocity, state.force, zone_force_);
     if (state.turns)
       oppose(
-          parameters_.local, dt, stepped, [&](int i) { return state.inverse_inertia(i); }, state.spin,
-          state.torque, zone_torque_);
+          parameters_.local, dt, stepped, [&](int i) { return state.inverse_inertia(i); },
+          state.spin, state.torque, zone_torque_);
     if (const auto *overlap = body.coupler->overlap())
       for (const auto &member : overlap->members)
         if (member.pad) {

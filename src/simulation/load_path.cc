@@ -40,8 +40,9 @@ class Items
 {
 public:
   Items(const CoupledBody<dim> &body, const std::vector<int> &node_of_particle, int axis)
-      : n_particles_(int(node_of_particle.size())), n_nodes_(body.far ? body.far->mesh().n_nodes() : 0),
-        low_(n_particles_ + n_nodes_), sets_(low_ + 2)
+      : n_particles_(int(node_of_particle.size())),
+        n_nodes_(body.far ? body.far->mesh().n_nodes() : 0), low_(n_particles_ + n_nodes_),
+        sets_(low_ + 2)
   {
     if (body.far)
       join_mesh(body, axis);

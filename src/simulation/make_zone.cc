@@ -56,10 +56,12 @@ packings::Groups<dim> cells_of_overlap(const Scene &scene, const CoupledBody<dim
 /// Of one process the whole.
 template <int dim>
 PartOfZone<dim> pack_part(const Scene &scene, Reference &reference, const core::Ranks &ranks,
-                          const packings::Groups<dim> &cells, core::Log &log)
+                          const packings::Groups<dim> &cells,
+                          const std::vector<std::int64_t> &weights, core::Log &log)
 {
   if (!ranks.is_one())
-    return make_packing_part<dim>(scene, reference, ranks, ghost_rings<dim>(scene), log, cells);
+    return make_packing_part<dim>(scene, reference, ranks, ghost_rings<dim>(scene), log, cells,
+                                  weights);
   auto [packing, seeds, n_healed] = make_packing<dim>(scene, reference, log);
   PartOfZone<dim> zone;
   zone.seeds = std::move(seeds);
@@ -133,10 +135,11 @@ void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force, R
 
 template <int dim>
 void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
-               CoupledBody<dim> &body, ContactSurface<dim> &surface, core::Log &log)
+               const std::vector<std::int64_t> &weights, CoupledBody<dim> &body,
+               ContactSurface<dim> &surface, core::Log &log)
 {
   const auto cells = cells_of_overlap(scene, body);
-  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, cells, log);
+  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, cells, weights, log);
   packings::Packing<dim> &packing = held.packing;
   body.seeds = std::move(seeds);
   if (n_healed)
@@ -180,8 +183,10 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
            where, body.n_cracked_faces, body.dt_zone);
 }
 
-template void make_zone(const Scene &, const ForceMaker<2> &, Reference &, CoupledBody<2> &,
-                        ContactSurface<2> &, core::Log &);
-template void make_zone(const Scene &, const ForceMaker<3> &, Reference &, CoupledBody<3> &,
-                        ContactSurface<3> &, core::Log &);
+template void make_zone(const Scene &, const ForceMaker<2> &, Reference &,
+                        const std::vector<std::int64_t> &, CoupledBody<2> &, ContactSurface<2> &,
+                        core::Log &);
+template void make_zone(const Scene &, const ForceMaker<3> &, Reference &,
+                        const std::vector<std::int64_t> &, CoupledBody<3> &, ContactSurface<3> &,
+                        core::Log &);
 } // namespace ligament::program

@@ -70,10 +70,10 @@ private:
   void look_at_cells(const CoupledBody<dim> &body, Flow &flow) const;
 
   bool watches_ = false;
-  std::vector<particles::Watch> watch_; // of the particles at hand
-  std::vector<particles::Watch> asked_; // those of one's own
-  std::vector<char> is_blended_;        // of the cells: particles carry it, too
-  std::size_t seen_ = 0;                // of the body's broken bonds
+  std::vector<particles::Watch> watch_;      // of the particles at hand
+  std::vector<particles::Watch> asked_;      // those of one's own
+  std::vector<char> is_blended_;             // of the cells: particles carry it, too
+  std::size_t seen_ = 0;                     // of the body's broken bonds
   std::optional<std::size_t> seen_here_ = 0; // of those at hand; unknown after load()
   double seen_until_ = -1;                   // s
   long n_broken_ = 0;

@@ -42,9 +42,10 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       recorder_(scene_, folder_, body_, log_, timers_, ranks.is_first() ? progress : nullptr,
                 clock_.n_steps, draws_pictures, from != nullptr),
       servos_(scene_, body_, log_),
-      started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))))
+      started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)))),
+      balance_(ranks)
 {
-  setup_seconds_ = timers_.total();
+  setup_seconds_ = build_seconds_ = timers_.total();
   if (!from)
     start_motion(scene_, body_);
   if (!from && scene_.is_warm())
@@ -103,18 +104,49 @@ core::State Simulation<dim>::run_state() const
 }
 
 template <int dim>
-void Simulation<dim>::build_anew()
+std::int64_t Simulation<dim>::n_own() const
 {
+  return body_.zone ? particles::count(body_.zone->state.part.owned) : 0;
+}
+
+template <int dim>
+std::optional<std::vector<std::int64_t>> Simulation<dim>::new_weights()
+{
+  const long ratio = body_.coupler->step_ratio(), step = clock_.now.step;
+  if (rebuild_interval_ > 0)
+    return step % (ratio * rebuild_interval_) == 0
+               ? std::optional(body_.ranks.is_one() ? std::vector<std::int64_t>()
+                                                    : balance_.shifted(n_own()))
+               : std::nullopt;
+  if (body_.ranks.is_one() || step % (ratio * agreed_interval) != 0)
+    return {};
+  return balance_.look(n_own(), step, clock_.n_steps - step, build_seconds_);
+}
+
+template <int dim>
+void Simulation<dim>::build_anew(const std::vector<std::int64_t> &weights)
+{
+  const double begun = timers_.total();
+  const auto own_before = body_.ranks.gather_all(std::vector<std::int64_t>{n_own()});
   const core::State body = core::merged(take_state(body_), body_.ranks);
   core::State run;
   regime_.save(run);
   core::Log nothing_new;
-  body_ = make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, body_.ranks);
+  body_ =
+      make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, body_.ranks, weights);
   regime_ = RegimeControl<dim>(scene_.coupling.regime, body_, scene_.is_warm());
   give(body, run);
   recorder_.watch(body_);
   servos_.watch(body_);
   ++n_rebuilt_;
+  build_seconds_ = timers_.total() - begun;
+  if (!body_.ranks.is_one()) {
+    const auto own = body_.ranks.gather_all(std::vector<std::int64_t>{n_own()});
+    log_.info(
+        "cut anew at {:.4g} s: {} of {} particles have another rank; the slowest one took {:.0f} % "
+        "longer than the mean",
+        clock_.now.time, n_moved(own_before, own), body_.n_particles, 100 * balance_.imbalance());
+  }
   n_broken_at_rebuild_ = body_.force() ? long(body_.force()->n_broken()) : 0;
 }
 
@@ -273,18 +305,22 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
       if (!asked_by_.empty())
         return {};
     }
+    balance_.begin();
     damping_.before_kick(body_, clock_.now);
     body_.coupler->kick(bodies, clock_.now); // velocities, one body in the overlap
     damping_.after_kick(body_, clock_.now);
     body_.coupler->drift(bodies, clock_.now); // positions
+    balance_.end();
     clock_.advance();
     if (clock_.now.step % ratio == 0)
       look_at_the_clock(request);
-    if (rebuild_interval_ > 0 && clock_.now.step % (long(ratio) * rebuild_interval_) == 0) {
-      build_anew();
+    if (const auto weights = new_weights()) {
+      build_anew(*weights);
       bodies = body_.bodies();
     }
+    balance_.begin();
     compute_forces();
+    balance_.end();
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include "src/simulation/damping.h"
 #include "src/simulation/end_request.h"
 #include "src/simulation/energy_ledger.h"
+#include "src/simulation/rank_balance.h"
 #include "src/simulation/recorder.h"
 #include "src/simulation/regime_control.h"
 #include "src/simulation/servos.h"
@@ -33,7 +34,8 @@ public:
   void keep_checkpoints(const nlohmann::ordered_json &resolved);
 
   /// Every so many steps of the far field the body is built anew and takes the state of the one
-  /// before, which must change nothing; the log says how often. 0: never.
+  /// before, which must change nothing; the log says how often. 0: never. On several ranks it is
+  /// cut elsewhere each time.
   void rebuild_every(int interval) { rebuild_interval_ = interval; }
 
   /// A warning about the input, which log and record repeat.
@@ -56,7 +58,11 @@ private:
   /// To a body that no step has moved.
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;
-  void build_anew();
+  /// Cut for ranks by these weights of blocks of particles.
+  void build_anew(const std::vector<std::int64_t> &weights);
+  /// Behind the drift of a step: whether the body is to be built anew, and by which weights.
+  std::optional<std::vector<std::int64_t>> new_weights();
+  std::int64_t n_own() const;
   /// Of both halves and of the tools, at the present time.
   void compute_forces();
   /// Between forces and kick of a step in which the far field acts: what ends the run, or nothing.
@@ -93,6 +99,8 @@ private:
   nlohmann::ordered_json resolved_;                 // the scene, for checkpoints
   std::string started_;                             // date and time
   double setup_seconds_ = 0;
+  double build_seconds_ = 0; // of the body
+  RankBalance balance_;
   std::string asked_by_; // who asked for the end; empty: nobody
   int rebuild_interval_ = 0;
   long n_rebuilt_ = 0, n_broken_at_rebuild_ = 0;

@@ -1,5 +1,5 @@
-// Particles inside finite elements on several ranks: byte for byte what one process writes, also where
-// they go on on other numbers of ranks. Through the programs.
+// Particles inside finite elements on several ranks: byte for byte what one process writes, also
+// where they go on on other numbers of ranks. Through the programs.
 #include "tests/support/rank_runs.h"
 
 using namespace ligament::tests;
@@ -97,7 +97,8 @@ Json two_zones()
   scene["discrete_zone"].erase("region");
   scene["discrete_zone"]["boxes"] = {{{"lower", {-60, -23}}, {"upper", {-8, 23}}},
                                      {{"lower", {10, -23}}, {"upper", {60, 23}}}};
-  scene["specimen"]["cracks"] = {{{"points", {{-38, 0}, {-30, 2}}}}, {{"points", {{29, -2}, {36, 0}}}}};
+  scene["specimen"]["cracks"] = {{{"points", {{-38, 0}, {-30, 2}}}},
+                                 {{"points", {{29, -2}, {36, 0}}}}};
   scene["material"]["fracture"]["strength"] = 1e-3;
   pull(scene, 1, 1, 4e-4);
   scene["time"]["duration"] = 60;
@@ -172,9 +173,9 @@ TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 
 TEST_F(RanksCoupled, SlowAllOnAnyNumber)
 {
-  for (const Json &scene : {closed_zone(), crack_through_the_overlap(), turned_with_steps(),
-                            bent_strip(), turning_strip(), two_zones(), block_with_a_crack(),
-                            bar_that_rests()})
+  for (const Json &scene :
+       {closed_zone(), crack_through_the_overlap(), turned_with_steps(), bent_strip(),
+        turning_strip(), two_zones(), block_with_a_crack(), bar_that_rests()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 0);

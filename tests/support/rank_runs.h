@@ -76,10 +76,10 @@ inline void expect_same_body(const std::string &run, const std::string &referenc
   if (has_state)
     EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
   const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
-  for (const char *key : {"status", "reason", "steps", "particles", "dt", "broken_bonds",
-                          "crack_length", "peak_load", "external_work", "energy_residual", "states",
-                          "warnings", "magnification", "stiffness", "broken_time", "regime",
-                          "overlap_particles", "broken_in_overlap", "trusted_until"})
+  for (const char *key :
+       {"status", "reason", "steps", "particles", "dt", "broken_bonds", "crack_length", "peak_load",
+        "external_work", "energy_residual", "states", "warnings", "magnification", "stiffness",
+        "broken_time", "regime", "overlap_particles", "broken_in_overlap", "trusted_until"})
     EXPECT_EQ(record.value(key, nlohmann::json()), wanted.value(key, nlohmann::json())) << key;
 }
 

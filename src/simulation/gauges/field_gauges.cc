@@ -42,10 +42,10 @@ StrainGauge<dim>::StrainGauge(const GaugeParameters &gauge, const GaugePlaces<di
     return;
   }
   box_ = fit_box(places, to_vector<dim>(gauge.lower), to_vector<dim>(gauge.upper));
-  description_ = fmt::format("over a box, from {} particles and {} nodes; what breaks in it counts "
-                             "as strain",
-                             places.body.ranks.sum(std::int64_t(box_.particles.size())),
-                             box_.nodes.size());
+  description_ =
+      fmt::format("over a box, from {} particles and {} nodes; what breaks in it counts "
+                  "as strain",
+                  places.body.ranks.sum(std::int64_t(box_.particles.size())), box_.nodes.size());
 }
 
 template <int dim>

@@ -200,8 +200,9 @@ PointMotion<dim>::PointMotion(const GaugePlaces<dim> &places, const Vector<dim> 
     return;
   }
   const auto nearest = places.nearest_particle(place);
-  core::require(nearest.is_there, "no particle lies within three spacings of a point: it is outside "
-                                "the material; move it");
+  core::require(nearest.is_there,
+                "no particle lies within three spacings of a point: it is outside "
+                "the material; move it");
   particle_ = nearest.particle;
   if (particle_ >= 0)
     find_particles(places.body);

@@ -12,8 +12,8 @@
 
 namespace ligament::program
 {
-/// u = sum value u_k and du_i/dx_j = sum u_k,i gradient_j over particles and nodes. Of several ranks,
-/// which all read, each has the terms of some particles, and all have those of the nodes.
+/// u = sum value u_k and du_i/dx_j = sum u_k,i gradient_j over particles and nodes. Of several
+/// ranks, which all read, each has the terms of some particles, and all have those of the nodes.
 template <int dim>
 struct MotionReading
 {

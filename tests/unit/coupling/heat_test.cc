@@ -394,7 +394,8 @@ TEST(Heat, TheLoadOfAHeldMeshIsTheMeanForce)
     std::printf("%s: largest change %.1e, error %.1e, over C11 h\n",
                 is_harmonic ? "harmonic" : "anharmonic", change / force_scale(body),
                 load.error / force_scale(body));
-    EXPECT_LT(body.split->dead_load().colwise().sum().cwiseAbs().maxCoeff(), 1e-12 * largest(load.force));
+    EXPECT_LT(body.split->dead_load().colwise().sum().cwiseAbs().maxCoeff(),
+              1e-12 * largest(load.force));
     // Of some hundred nodes the largest is within 4 of its own errors, which differ by a factor.
     if (is_harmonic)
       EXPECT_LT(change, 10 * load.error);
