@@ -315,6 +315,7 @@ RunRecord Simulation<dim>::make_record() const
   if (body_.far)
     r.dt_far = body_.dt_far;
   r.step_ratio = body_.coupler->step_ratio();
+  r.ranks = body_.ranks.size();
   r.figures = body_.figures;
   r.skipped = body_.skipped;
   return r;
