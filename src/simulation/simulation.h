@@ -67,7 +67,8 @@ private:
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop(const EndRequest &request);
   /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
-  /// for, and writes a checkpoint if it is, if one is due, or behind others at the end.
+  /// for and, every so often, whether the motion is still that of a body; writes a checkpoint if
+  /// the end is asked for, if one is due, or behind others at the end.
   void look_at_the_clock(const EndRequest &request);
   void write_checkpoint(const Checkpoints &checkpoints);
   void write(const RunRecord &record) const;
@@ -93,7 +94,8 @@ private:
   nlohmann::ordered_json resolved_;                 // the scene, for checkpoints
   std::string started_;                             // date and time
   double setup_seconds_ = 0;
-  std::string asked_by_; // who asked for the end; empty: nobody
+  std::string asked_by_;     // who asked for the end; empty: nobody
+  std::optional<Stop> stop_; // by a guard that looks at the motion
   int rebuild_interval_ = 0;
   long n_rebuilt_ = 0, n_broken_at_rebuild_ = 0;
 };
