@@ -199,6 +199,7 @@ std::string model(const RunRecord &r)
   if (!r.phases.empty())
     add("steps that static phases skipped", grouped(totals(r).skipped));
   add("simulated time", quantity(r.simulated_time, "s"));
+  add("ranks", grouped(r.ranks));
   add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));
   const std::string most = r.peak_load ? "peak" : "largest";
   maybe(most + " load", r.largest_load, "N");

@@ -134,7 +134,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (!ranks.is_first())
     return follow(input, folder, interruption, options);
 
-  RunRecord first = first_record(*input.scene);
+  RunRecord first = first_record(*input.scene, ranks);
   first.started = manifest.started;
   run->go_on(first);
   cut_back(folder, manifest);

@@ -37,7 +37,7 @@ int run_command(const CommandLine &line, const ReadResult &input, const core::Ra
   const RunFolder folder{output_folder(line)};
   if (!ranks.is_first())
     return follow(input, folder, interruption, options);
-  OpenRun run(folder, first_record(*input.scene), stderr);
+  OpenRun run(folder, first_record(*input.scene, ranks), stderr);
   std::vector<std::string> warnings;
   for (const core::Diagnostic &d : input.warnings)
     warnings.push_back(fmt::format("{}: {}", to_string(d.place), d.message));

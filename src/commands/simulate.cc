@@ -12,7 +12,7 @@
 
 namespace ligament::program
 {
-RunRecord first_record(const Scene &scene)
+RunRecord first_record(const Scene &scene, const core::Ranks &ranks)
 {
   RunRecord record;
   record.title = scene.title;
@@ -20,6 +20,7 @@ RunRecord first_record(const Scene &scene)
   record.commit = core::commit();
   record.started = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
   record.dimension = scene.dimension;
+  record.ranks = ranks.size();
   record.reason = "it is being set up, or was killed then";
   return record;
 }

@@ -11,7 +11,7 @@
 namespace ligament::program
 {
 /// What the record says before the body is built.
-RunRecord first_record(const Scene &scene);
+RunRecord first_record(const Scene &scene, const core::Ranks &ranks);
 
 struct RunOptions
 {

@@ -233,6 +233,7 @@ void write_run_record(const std::string &path, const RunRecord &record)
   Json json;
   RunRecord copy = record;
   for_each_field(copy, Writer{json});
+  Writer{json}("ranks", copy.ranks);
   if (!copy.phases.empty())
     Writer{json}("phases", copy.phases);
   if (!copy.gauges.empty())
@@ -263,6 +264,8 @@ RunRecord read_run_record(const std::string &path)
   try {
     const Json json = Json::parse(core::read_file(path));
     for_each_field(record, Reader{json});
+    if (json.contains("ranks")) // records of before have none
+      Reader{json}("ranks", record.ranks);
     if (json.contains("phases"))
       Reader{json}("phases", record.phases);
     if (json.contains("gauges"))

@@ -95,6 +95,7 @@ struct RunRecord
   std::optional<double> dt_critical; // s, discrete side
   std::optional<double> dt_far;      // s, stable step of the far field
   int step_ratio = 1;
+  int ranks = 1;      // that compute it together; where a run goes on, those of now
   std::string regime; // which acted, and since when; empty without mesh
   std::int64_t steps = 0;
   double simulated_time = 0; // s

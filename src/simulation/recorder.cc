@@ -5,6 +5,7 @@
 #include "src/drawing/run_pictures.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
+#include "src/simulation/guards.h"
 #include "src/simulation/kept_tables.h"
 
 #include <fmt/format.h>
@@ -143,11 +144,9 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
     return {};
   const auto timing = timers_.scope(section_);
   if (history) {
-    record_history(body, step, damping);
-    if (!std::isfinite(residual_.back()))
-      return Stop{true, report("the energies are no longer finite: the run is unstable; lower "
-                               "/time/step_fraction or the load's rate",
-                               step)};
+    const EnergyLedger ledger = record_history(body, step, damping);
+    if (const auto finding = find_broken_balance(ledger, most_work_, body))
+      return stop_by_guard(*finding, step);
   }
   if (fields)
     record_fields(body, step);
@@ -170,8 +169,8 @@ std::optional<Stop> Recorder<dim>::look_at_flow(const CoupledBody<dim> &body,
 }
 
 template <int dim>
-void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
-                                   double damping)
+EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
+                                           const coupling::StepTime &step, double damping)
 {
   next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
@@ -181,10 +180,12 @@ void Recorder<dim>::record_history(const CoupledBody<dim> &body, const coupling:
   curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
+  most_work_ = std::max(most_work_, ledger.external_work);
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
     keep_copies(body, step.time, r.load);
   history_.add(body, step, row); // last: a disk may refuse it, when ranks have told each other all
+  return ledger;
 }
 
 // A crack that runs moves within microseconds, while the grips still feel a rising load: the states
@@ -236,6 +237,12 @@ std::optional<Stop> Recorder<dim>::report_excess(const std::string &finding,
   if (scene_.coupling.guard == Guard::stop)
     return Stop{true, reason};
   return {};
+}
+
+template <int dim>
+Stop Recorder<dim>::stop_by_guard(const std::string &finding, const coupling::StepTime &step)
+{
+  return {true, report(finding, step)};
 }
 
 template <int dim>
@@ -508,6 +515,8 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   snapshots_.load(state, kept, names);
   residual_ = core::table(state, "history").reals("residual");
   work_ = core::table(state, "history").reals("work");
+  for (const double work : work_)
+    most_work_ = std::max(most_work_, work);
   if (writes_)
     fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
                   body.far != nullptr);

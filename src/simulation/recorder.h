@@ -52,6 +52,9 @@ public:
   /// guard says so.
   std::optional<Stop> report_excess(const std::string &finding, const coupling::StepTime &step);
 
+  /// Logs what is no state of the body any more, from when on nothing counts.
+  Stop stop_by_guard(const std::string &finding, const coupling::StepTime &step);
+
   /// Last row, last fields, pictures, tables; completes the record. A file that cannot be written
   /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
@@ -82,7 +85,9 @@ private:
   template <typename Write>
   void attempt(Write &&write);
   std::optional<Stop> look_at_flow(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  void record_history(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping);
+  /// A row; returns its energies.
+  EnergyLedger record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
+                              double damping);
   bool keeps_copies(const CoupledBody<dim> &body) const;
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
@@ -120,6 +125,7 @@ private:
 
   LoadCurve curve_;
   std::vector<double> residual_, work_; // J, of the rows of the history
+  double most_work_ = 0;                // J, of these
   SnapshotKeeper<dim> snapshots_;
   bool quasi_static_ = true;             // at the last row
   double fields_copied_at_ = 0;          // N, load of the copies below

@@ -71,7 +71,8 @@ void RegimeControl<dim>::follow(const CoupledBody<dim> &body, double dt)
       mean_[c][i] += share * (body.far->displacement[c][i] - mean_[c][i]);
 }
 
-// The coupler reads the far field's displacements.
+// The coupler reads the far field's displacements. Ranks see no more than their parts, and change
+// the regime together.
 template <int dim>
 void RegimeControl<dim>::measure(CoupledBody<dim> &body)
 {
@@ -82,6 +83,18 @@ void RegimeControl<dim>::measure(CoupledBody<dim> &body)
   near_ = body.coupler->largest_motion();
   if (by_mean)
     std::swap(body.far->displacement, mean_);
+  struct Seen
+  {
+    coupling::NearMotion near;
+    typename fem::FemSolver<dim>::Motion far;
+  };
+  for (const auto &[near, far] : body.ranks.gather_all(std::vector<Seen>{{near_, far_}})) {
+    near_.rotation = std::max(near_.rotation, near.rotation);
+    near_.bending = std::max(near_.bending, near.bending);
+    near_.strain = std::max(near_.strain, near.strain);
+    far_.rotation = std::max(far_.rotation, far.rotation);
+    far_.strain = std::max(far_.strain, far.strain);
+  }
 }
 
 template <int dim>

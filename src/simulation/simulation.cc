@@ -7,6 +7,7 @@
 #include "particles/instruction_set.h"
 #include "src/analysis/verdict.h"
 #include "src/simulation/body_state.h"
+#include "src/simulation/guards.h"
 #include "src/simulation/heat.h"
 #include "src/simulation/initial_motion.h"
 #include "src/simulation/whole_body.h"
@@ -23,10 +24,6 @@ namespace
 {
 // Files of a checkpoint.
 const std::string body_file = "body", run_file = "run";
-
-// Several ranks ask each other so often whether the run is to end or a checkpoint is due, in steps
-// of the far field.
-constexpr long agreed_interval = 50;
 } // namespace
 
 template <int dim>
@@ -186,12 +183,16 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
   checkpoints.write(std::move(manifest), {{body_file, body}, {run_file, run_state()}}, kept);
 }
 
+// Guards look, checkpoints become due and several ranks ask each other in the same steps whatever
+// the number of ranks; one process may be asked to end in any. No checkpoint is written of what no
+// guard lets pass.
 template <int dim>
 void Simulation<dim>::look_at_the_clock(const EndRequest &request)
 {
   const bool is_at_end = clock_.is_at_end();
-  if (!body_.ranks.is_one() && !is_at_end &&
-      clock_.now.step / body_.coupler->step_ratio() % agreed_interval != 0)
+  const bool is_guarded =
+      is_at_end || clock_.now.step / body_.coupler->step_ratio() % guard_interval == 0;
+  if (!body_.ranks.is_one() && !is_guarded)
     return;
   // Ranks hear of signals and look at clocks at different times.
   const std::vector<std::int64_t> seen =
@@ -200,7 +201,15 @@ void Simulation<dim>::look_at_the_clock(const EndRequest &request)
   asked_by_ = EndRequest::reason(int(seen[0]), seen[1] != 0);
   // A run that is at its end may be prolonged from there.
   const bool ends = !asked_by_.empty() || (is_at_end && seen[2] != 0);
-  if (!keeper_ || (!ends && seen[3] == 0))
+  const bool writes = keeper_ && (ends || (is_guarded && seen[3] != 0));
+  if (!is_guarded && !writes)
+    return;
+  if (const auto finding = find_broken_motion(body_)) {
+    if (is_guarded)
+      stop_ = recorder_.stop_by_guard(*finding, clock_.now);
+    return;
+  }
+  if (!writes)
     return;
   const auto timing = timers_.scope(timers_.section("checkpoints"));
   recorder_.wait(); // a disk that refuses results ends the run, other than one for checkpoints
@@ -295,6 +304,8 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     let_rest();
   while (!clock_.is_at_end()) {
     if (clock_.now.step % ratio == 0) {
+      if (stop_)
+        return stop_;
       if (const auto stop = skip_steps())
         return stop;
       if (clock_.is_at_end())
@@ -322,7 +333,7 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     compute_forces();
     balance_.end();
   }
-  return {};
+  return stop_;
 }
 
 template <int dim>
@@ -351,6 +362,7 @@ RunRecord Simulation<dim>::make_record() const
   if (body_.far)
     r.dt_far = body_.dt_far;
   r.step_ratio = body_.coupler->step_ratio();
+  r.ranks = body_.ranks.size();
   r.figures = body_.figures;
   r.skipped = body_.skipped;
   return r;

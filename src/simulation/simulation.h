@@ -73,7 +73,8 @@ private:
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop(const EndRequest &request);
   /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
-  /// for, and writes a checkpoint if it is, if one is due, or behind others at the end.
+  /// for and, every so often, whether the motion is still that of a body; writes a checkpoint if
+  /// the end is asked for, if one is due, or behind others at the end.
   void look_at_the_clock(const EndRequest &request);
   void write_checkpoint(const Checkpoints &checkpoints);
   void write(const RunRecord &record) const;
@@ -101,7 +102,8 @@ private:
   double setup_seconds_ = 0;
   double build_seconds_ = 0; // of the body
   RankBalance balance_;
-  std::string asked_by_; // who asked for the end; empty: nobody
+  std::string asked_by_;     // who asked for the end; empty: nobody
+  std::optional<Stop> stop_; // by a guard that looks at the motion
   int rebuild_interval_ = 0;
   long n_rebuilt_ = 0, n_broken_at_rebuild_ = 0;
 };

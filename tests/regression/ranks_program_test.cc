@@ -272,8 +272,10 @@ TEST_F(RanksProgram, AKilledRankEndsAll)
   wait_for_rows("out");
   const auto solvers = solvers_of(name);
   ASSERT_EQ(solvers.size(), 3u);
+  const auto killed_at = std::chrono::steady_clock::now();
   kill(solvers.back(), SIGKILL);
   EXPECT_NE(process.wait().code, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - killed_at, std::chrono::seconds(10)); // documented
   EXPECT_EQ(solvers_of(name).size(), 0u);
 }
 
@@ -287,5 +289,58 @@ TEST_F(RanksProgram, AFolderThatCannotBeOneEndsAll)
   const Outcome outcome = run_ligament("run scene.json -n 3 -o out");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.errors.find("out is a file"), std::string::npos) << outcome.errors;
+}
+
+/// From one corner on it is strained beyond all that its law and its steps bear.
+Json torn_at_a_corner()
+{
+  Json scene = scene_of(2, "hexagonal", {30, 40});
+  scene["material"]["fracture"] = {{"criterion", "none"}};
+  scene["loads"] = {
+      {{"boundary", "right"}, {"velocity", {1, nullptr}}, {"ramp", 100}, {"from", 17}},
+      {{"boundary", "left"}, {"displacement", {0, nullptr}}}};
+  return scene;
+}
+
+/// What a guard finds ends all ranks, in the step in which it would end one process. The
+/// checkpoints are of sound motion; who goes on from one comes to the same end.
+void expect_one_end(const Json &scene, const std::string &words)
+{
+  const std::string name = written(scene, "guarded.json"), within = "exec timeout 60 " + program;
+  std::vector<nlohmann::json> records;
+  for (const int n : {1, 3}) {
+    const std::string run = "on_" + std::to_string(n);
+    fs::remove_all(run);
+    const Outcome outcome =
+        run_shell(within + " run " + name + " -n " + std::to_string(n) + " -o " + run);
+    EXPECT_EQ(outcome.code, 3) << outcome.errors;
+    EXPECT_EQ(solvers_of(name).size(), 0u);
+    const auto record = records.emplace_back(file_json(run + "/run.json"));
+    EXPECT_EQ(record["status"], "stopped");
+    EXPECT_EQ(record["ranks"], n);
+    EXPECT_NE(std::string(record["reason"]).find(words), std::string::npos) << record["reason"];
+    ASSERT_FALSE(newest_checkpoint(run).empty());
+    const auto manifest = file_json(newest_checkpoint(run) + "/manifest.json");
+    EXPECT_LT(manifest["step"], record["steps"]);
+  }
+  for (const char *key : {"reason", "steps", "trusted_until", "external_work", "energy_residual"})
+    EXPECT_EQ(records[0][key], records[1][key]) << key;
+  const Outcome more = run_shell(within + " resume on_3 -n 2");
+  EXPECT_EQ(more.code, 3) << more.errors;
+  const auto record = file_json("on_3/run.json");
+  EXPECT_EQ(record["reason"], records[0]["reason"]);
+  EXPECT_EQ(record["ranks"], 2);
+}
+
+TEST_F(RanksProgram, AGuardOfTheEnergyEndsAllInTheSameStep)
+{
+  expect_one_end(torn_at_a_corner(), "came from nowhere");
+}
+
+TEST_F(RanksProgram, AGuardOfTheMotionEndsAllInTheSameStep)
+{
+  Json scene = torn_at_a_corner();
+  scene["output"]["history_interval"] = 1000; // no look at the energy comes first
+  expect_one_end(scene, "spacings in one step");
 }
 } // namespace

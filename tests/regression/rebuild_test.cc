@@ -36,7 +36,7 @@ void expect_the_same_run(const Example &e)
   SCOPED_TRACE(e.name);
   const std::string command =
       "run " + e.scene + e.overrides +
-      " --set /output/checkpoint_interval=0.02 --set /time/stop_when=end --set "
+      " --set /output/checkpoint_interval=1e-9 --set /time/stop_when=end --set "
       "/time/loading=dynamic"
       " --set /output/field_interval=never --set /output/history_interval=" +
       std::to_string(1e9 * e.late / 200) + "e-9 -o " + e.name;
@@ -136,7 +136,7 @@ TEST_F(Rebuild, LoadsInTimeOnAMovingPlate)
   const std::string command =
       std::string("run " LIGAMENT_SOURCE_DIR "/tests/support/scenes/moving_plate.json") +
       set("/output/field_interval", "never") + set("/output/history_interval", "1e-7") +
-      set("/output/checkpoint_interval", "0.001") + " -o moving";
+      set("/output/checkpoint_interval", "1e-9") + " -o moving";
   const auto done = [](const Outcome &outcome) {
     ASSERT_EQ(outcome.code, 0) << outcome.output << outcome.errors;
   };

@@ -37,7 +37,7 @@ const std::string opened = R"({
     {"boundary": "left", "pressure": 2e-5, "ramp": 2000, "within": {"lower": [null, -13], "upper": [null, 13]}}
   ],
   "time": {"duration": 5000},
-  "output": {"history_interval": 50, "progress_interval": 1e9, "checkpoint_interval": 0.2}
+  "output": {"history_interval": 50, "progress_interval": 1e9, "checkpoint_interval": 1e-9}
 })";
 
 class Servo : public testing::Test

@@ -28,6 +28,7 @@ TEST(RunRecord, ComesBackWhole)
   r.particles = 123456789012;
   r.dt_critical = 5e-9;
   r.step_ratio = 4;
+  r.ranks = 3;
   r.steps = 40000;
   r.timing = {{"forces", 1.5, 40000}, {"rest", 0.1, 0}};
   r.skipped = {{"contact search", "nothing is broken"}};
@@ -49,6 +50,7 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.size, r.size);
   EXPECT_EQ(back.particles, r.particles);
   EXPECT_EQ(back.dt_critical, r.dt_critical);
+  EXPECT_EQ(back.ranks, 3);
   EXPECT_EQ(back.dt_far, std::nullopt);
   EXPECT_EQ(back.peak_load, r.peak_load);
   ASSERT_EQ(back.timing.size(), 2u);
