@@ -197,7 +197,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     if (load.servo)
       check_servo(scene, k, f);
     check_part(scene, load, key, f);
-    if (!f.sound({key}))
+    if (!f.sound({key, "/specimen"}))
       continue;
     check_twice(scene, k, key, f);
     if (layout && f.sound({key}))
