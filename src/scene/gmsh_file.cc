@@ -137,9 +137,9 @@ private:
       number();
       if (number() != 0)
         fail("has parametric nodes", "places are read alone", "save it without parameters");
-      std::vector<int> tags(number());
-      for (int &tag : tags)
-        tag = number();
+      std::vector<int> tags; // as many as there are, whatever number is announced
+      for (int n = number(); n > 0; --n)
+        tags.push_back(number());
       for (const int tag : tags)
         add_node(tag);
     }
