@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -60,9 +61,22 @@ public:
 
 private:
   [[noreturn]] void fail(const std::string &what, const std::string &reason,
-                         const std::string &remedy) const
+                         const std::string &remedy)
   {
-    throw core::KeyedError(key_, fmt::format("\"{}\" {}", file_, what), reason, remedy);
+    throw core::KeyedError(key_, fmt::format("\"{}\" {}", place(), what), reason, remedy);
+  }
+  /// The file, and the line that was read last if any was.
+  std::string place()
+  {
+    in_.clear();
+    auto left = std::streamoff(in_.tellg());
+    if (left <= 0)
+      return file_;
+    int line = 1;
+    in_.seekg(0);
+    for (std::istreambuf_iterator<char> c(in_), end; c != end && left > 0; ++c, --left)
+      line += *c == '\n';
+    return fmt::format("{}:{}", file_, line);
   }
   template <typename T>
   T next()

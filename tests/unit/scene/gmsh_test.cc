@@ -217,6 +217,8 @@ TEST(Gmsh, WrongFilesAreRefused)
   says(head_2 + nodes_2 + "$Elements\n1\n1 3 2 9 3 1 4 5 77\n$EndElements\n", 2,
        "node that is not");
   says(head_2 + nodes_2 + "$Elements\n1\n1 7 2 9 3 1 4 5 2 3\n$EndElements\n", 2, "type 7");
+  says(head_2 + nodes_2 + "$Elements\n1\n1 7 2 9 3 1 4 5 2 3\n$EndElements\n", 2,
+       "\"wrong.msh:16\" has");
   says(head_2 + "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0.5\n$EndNodes\n$Elements\n1\n1 2 0 1 2 "
                 "3\n$EndElements\n",
        2, "not plane");
