@@ -139,9 +139,9 @@ std::string in_version_4(const Block &block, bool named)
   for (const int entity : {block.dim - 1, block.dim})
     text += fmt::format("{} 0 0 0 1 1 1 1 {} 2 1 -1\n", 1, group_of(block, entity));
   text += fmt::format("$EndEntities\n$Nodes\n1 {0} {1} {2}\n{3} 1 0 {0}\n", block.nodes.size(),
-                      block.tags.front(), block.tags.back(), block.dim);
-  for (const int tag : block.tags)
-    text += fmt::format("{}\n", tag);
+                      block.tags.front(), block.tags[block.nodes.size() - 1], block.dim);
+  for (std::size_t k = 0; k < block.nodes.size(); ++k)
+    text += fmt::format("{}\n", block.tags[k]);
   for (const auto &x : block.nodes)
     text += fmt::format("{} {} {}\n", x[0], x[1], x[2]);
   const auto types = by_type(block);
@@ -263,6 +263,20 @@ void right_case(Draw &draw)
   EXPECT_TRUE(read_any(text, block.dim));
 }
 
+/// An element with a node that is not there.
+void foreign_node_case(Draw &draw)
+{
+  Block block = draw_block(draw);
+  int foreign = draw.between(-2, block.tags.back() + 3);
+  while (std::count(block.tags.begin(), block.tags.end(), foreign) > 0)
+    ++foreign;
+  const std::size_t n = block.nodes.size();
+  block.tags.push_back(foreign);
+  auto &nodes = block.elements[draw.below(block.elements.size())].nodes;
+  nodes[draw.below(nodes.size())] = int(n);
+  EXPECT_FALSE(read_any(draw_text(draw, block), block.dim));
+}
+
 void wrong_case(Draw &draw)
 {
   const Block block = draw_block(draw);
@@ -281,6 +295,11 @@ TEST(GmshFuzz, RightMeshesAreAccepted)
 TEST(GmshFuzz, WrongMeshesAreToldWithReasonAndRemedy)
 {
   run_cases(22, 10000, wrong_case);
+}
+
+TEST(GmshFuzz, NodesThatAreNotThereAreNoticed)
+{
+  run_cases(23, 1000, foreign_node_case);
 }
 
 TEST(GmshFuzz, SlowManyMeshes)

@@ -84,6 +84,9 @@ std::string with_wrong_line(Draw &draw, const std::string &text, const std::stri
 
 std::string with_wrong_bytes(Draw &draw, const std::string &text)
 {
+  static const std::vector<std::string> marks = {"{", "}",  "[",  "]",  "\"",  ":",      ",",
+                                                 "#", "$",  "\n", " ",  "-",   "\\",     "\\u12",
+                                                 "/", "/*", "*/", "//", "\\x", "\\ud800"};
   if (text.empty())
     return text;
   std::string wrong = text;
@@ -103,7 +106,7 @@ std::string with_wrong_bytes(Draw &draw, const std::string &text)
     wrong[at] = char(draw.below(256));
     break;
   case 4:
-    wrong[at] = draw.of(std::vector<char>{'{', '}', '[', ']', '"', ':', ',', '\n', ' ', '-', '\\'});
+    wrong.replace(at, 1, draw.of(marks));
     break;
   default:
     wrong.insert(at, wrong_bytes(draw));
