@@ -25,7 +25,8 @@ struct Diagnostic
   Severity severity = Severity::error;
 };
 
-/// "scene.json:14:7: error: message", then the reason and the remedy on lines of their own.
+/// "scene.json:14:7: error: message", then the reason and the remedy on lines of their own; control
+/// characters of quoted input as \\x1b.
 std::string to_string(const Diagnostic &diagnostic);
 
 /// In the order of the file, what came from the command line after it.

@@ -33,6 +33,8 @@ double inner_radius(double radius, double angle, int n, bool is_circle)
   return radius * (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
+constexpr double most_sides = 2e5; // of an arc; none that belongs to a body needs as many
+
 void add_arc(const Vector<2> &from, const OutlineEdge &edge, double side, bool is_circle,
              Polygon &polygon)
 {
@@ -49,6 +51,10 @@ void add_arc(const Vector<2> &from, const OutlineEdge &edge, double side, bool i
     angle += 2 * M_PI;
   // A circle keeps both its axes of symmetry.
   const double sides = std::max(std::abs(angle) * radius / side, std::abs(angle) / (M_PI / 4));
+  require(sides <= most_sides,
+          fmt::format("the arc to ({:.6g}, {:.6g}) m has the radius {:.6g} m: more than {:.0f} "
+                      "sides of {:.6g} m, which fit the body",
+                      edge.to[0], edge.to[1], radius, most_sides, side));
   const int n = is_circle ? 4 * int(std::ceil(sides / 4)) : int(std::ceil(sides - 1e-9));
   const double inner = inner_radius(radius, std::abs(angle), n, is_circle);
   const double start = std::atan2(a[1], a[0]);

@@ -33,8 +33,8 @@ using Polygon = std::vector<PolygonCorner>;
 
 /// The outline with its arcs cut into straight sides no longer than `side` (m) or an eighth of a
 /// circle. Arcs keep their ends; corners between them lie as far outside that the area of the
-/// segment is the arc's. Throws core::InputError where an arc has no radius or another one at its
-/// end.
+/// segment is the arc's. Throws core::InputError where an arc has no radius, another one at its
+/// end, or so large a one that it has more than 2e5 sides.
 Polygon polygon(const Outline &outline, double side);
 
 double signed_area(const Polygon &polygon); // m^2, positive where it runs counter-clockwise

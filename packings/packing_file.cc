@@ -88,6 +88,14 @@ public:
         fmt::format("the unit \"{}\" of \"{}\" is no length, such as m or mm", unit, column));
   }
 
+  /// In m; `unit` is how many of them the unit of the column is.
+  double length(const std::string &column, double unit) const
+  {
+    const double value = unit * number(column);
+    require(std::isfinite(value), fmt::format("the value in column \"{}\" is too large", column));
+    return value;
+  }
+
   double number(const std::string &column) const
   {
     require(fields_.size() == column_.size(),
@@ -141,8 +149,8 @@ Seeds<dim> read_packing_file(const std::string &path)
   while (table.next()) {
     Vector<dim> x;
     for (int a = 0; a < dim; ++a)
-      x[a] = unit[a] * table.number(names[a]);
-    const double radius = unit[dim] * table.number("r");
+      x[a] = table.length(names[a], unit[a]);
+    const double radius = table.length("r", unit[dim]);
     table.require(radius > 0, "the radius must be positive");
     if (dim == 2 && table.has("z"))
       table.require(table.number("z") == 0, "z must be 0 in a 2D scene");

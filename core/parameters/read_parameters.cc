@@ -59,7 +59,7 @@ public:
       error(json.place, path,
             fmt::format("{} is {}, expected an object {{..}}",
                         path.empty() ? "the file" : "\"" + path + "\"", name_of(json.kind)),
-            "", "write the keys of this section between { and }");
+            "it has keys of its own", "write the keys of this section between { and }");
       return;
     }
     // A missing key is not reported beside the misspelt one that seems to stand for it.
@@ -251,7 +251,8 @@ private:
       error(json.place, path,
             fmt::format("{} has {} components, expected {}", label, n,
                         dimension_ == 0 ? "2 or 3" : std::to_string(dimension_)),
-            dimension_ == 0 ? "" : fmt::format("/dimension is {}", dimension_),
+            dimension_ == 0 ? "bodies have two or three dimensions"
+                            : fmt::format("/dimension is {}", dimension_),
             "give one number per dimension");
       return false;
     }

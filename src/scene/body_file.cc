@@ -86,6 +86,8 @@ void add_outline(const std::string &file, BodyFile &body)
     }
     body.polygons.push_back(std::move(polygon));
   }
+  if (body.polygons.empty())
+    fail(file, "has no outline", "its elements have no outer edges", "mesh the body anew");
 }
 
 void add_surface(const std::string &file, BodyFile &body)

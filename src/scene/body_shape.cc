@@ -133,7 +133,7 @@ Polygon checked_polygon(const Loop &loop, double side)
   try {
     polygon = core::polygon(loop.outline, side);
   } catch (const core::InputError &error) {
-    refuse(error.what(), "move the centre, or one end of the arc");
+    refuse(error.what(), "check its radius and its unit; move the centre, or one end of the arc");
   }
   if (const auto place = core::crossing({polygon}))
     refuse(fmt::format("it crosses or touches itself near {}", text(*place)),

@@ -82,10 +82,11 @@ void check_scheme(const Scene &scene, Findings &f)
   for (const std::string &key : weighted ? split : literature)
     if (f.given("/coupling/" + key))
       f.warning("/coupling/" + key, fmt::format("\"{}\" in /coupling is not used", key),
-                fmt::format("the scheme is \"{}\"", name), "");
+                fmt::format("the scheme is \"{}\"", name), "remove it");
   if (weighted && f.given("/time/rest_threshold"))
     f.warning("/time/rest_threshold", "\"rest_threshold\" in /time is not used",
-              fmt::format("\"{}\" joins all velocities of the overlap in every step", name), "");
+              fmt::format("\"{}\" joins all velocities of the overlap in every step", name),
+              "remove it");
 }
 
 /// The fit balances forces at the inner end of the overlap, too: the cells behind it must be its
@@ -108,7 +109,8 @@ void check_no_scheme(const Scene &scene, Findings &f)
     f.warning("/coupling/scheme",
               "\"scheme\" in /coupling is \"none\": the two models do not feel "
               "each other",
-              "they overlap but are not joined", "");
+              "they overlap but are not joined",
+              "choose \"fine_scale_split\", unless that is what you want to see");
   if (f.sound({"/coupling/regime", "/coupling/scheme"}) &&
       scene.coupling.scheme == coupling::Scheme::none &&
       scene.coupling.regime == RegimeChoice::nonlinear)

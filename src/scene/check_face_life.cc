@@ -58,7 +58,7 @@ void check_velocity(const Scene &scene, const MaterialParameters &m, const std::
   const std::string section = material + "/fracture", key = section + "/crack_velocity";
   if (m.fracture.criterion == Criterion::none) {
     f.warning(key, fmt::format("\"crack_velocity\" in {} is not used", section),
-              "the \"criterion\" is \"none\"", "");
+              "the \"criterion\" is \"none\"", "remove it, or choose a criterion");
     return;
   }
   if (m.fracture.energy || (m.fracture.strength && m.fracture.toughness))

@@ -62,12 +62,12 @@ private:
     if (strength || f_.given(key("toughness")))
       f_.warning(key(strength ? "strength" : "toughness"),
                  "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"",
-                 "");
+                 "remove them, or choose a criterion");
     for (const char *const name :
          {"energy", "compressive_strength", "cohesion", "friction_angle", "weibull"})
       if (f_.given(key(name)))
         f_.warning(key(name), fmt::format("\"{}\" in {} is not used", name, section_),
-                   "the \"criterion\" is \"none\"", "");
+                   "the \"criterion\" is \"none\"", "remove it, or choose a criterion");
   }
 
   // A crack that opens breaks its faces at one stress, which its K gives; the others have a shape.

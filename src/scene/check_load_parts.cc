@@ -201,6 +201,7 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
   if (!f.sound_and_given({"/time/duration"}))
     return;
   const double end = scene.time.duration;
+  const std::string remedy = "run longer, unless the rest of it is not wanted";
   if (h.pulse && h.pulse->start >= end)
     f.error(history + "/pulse/start",
             fmt::format("the pulse in {} begins at {} s, after the end of the run", key,
@@ -210,16 +211,16 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
     f.warning(history + "/pulse/duration",
               fmt::format("the pulse in {} ends at {} s, after the end of the run", key,
                           h.pulse->start + h.pulse->duration),
-              fmt::format("/time/duration is {} s", end), "");
+              fmt::format("/time/duration is {} s", end), remedy);
   if (!h.table.empty() && h.table.back()[0] > end)
     f.warning(history + "/table",
               fmt::format("the table in {} goes on until {} s, after the end of the run", history,
                           h.table.back()[0]),
-              fmt::format("/time/duration is {} s", end), "");
+              fmt::format("/time/duration is {} s", end), remedy);
   if (h.cycles && load.ramp + h.cycles->period > end)
     f.warning(history + "/cycles/period",
               fmt::format("the run ends within the first cycle of {}", key),
-              fmt::format("/time/duration is {} s", end), "");
+              fmt::format("/time/duration is {} s", end), remedy);
 }
 
 void check_part(const Scene &scene, const LoadParameters &load, const std::string &key, Findings &f)

@@ -197,7 +197,7 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     if (load.servo)
       check_servo(scene, k, f);
     check_part(scene, load, key, f);
-    if (!f.sound({key}))
+    if (!f.sound({key, "/specimen"}))
       continue;
     check_twice(scene, k, key, f);
     if (layout && f.sound({key}))
@@ -207,10 +207,11 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
     if (load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"}))
       f.warning(key + "/ramp",
                 fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
-                "the load will not reach its value", "");
+                "the load will not reach its value", "run longer, or give a shorter ramp");
   }
   if (scene.loads.empty() && !scene.body_force.is_any() && scene.initial_motion.empty() &&
       scene.tools.empty() && !scene.time.has_phases() && f.sound({"/loads"}))
-    f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty", "");
+    f.warning("/loads", "nothing loads the specimen", "\"loads\" is empty",
+              "give loads, tools, a body force or an initial motion");
 }
 } // namespace ligament::program

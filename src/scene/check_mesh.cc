@@ -31,7 +31,8 @@ void check_size_keys(const Scene &scene, Findings &f)
     for (const std::string key : {"growth", "fine_cells"})
       if (f.sound_and_given({"/far_field/" + key}))
         f.warning("/far_field/" + key, fmt::format("\"{}\" in /far_field is not used", key),
-                  "all cells have the size \"cell_size\" as long as \"levels\" is 0", "");
+                  "all cells have the size \"cell_size\" as long as \"levels\" is 0",
+                  "remove it, or give \"levels\"");
 }
 
 /// Steps of the mesh size reflect waves, least where the mass is consistent.

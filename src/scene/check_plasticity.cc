@@ -16,7 +16,7 @@ void check_softening_energy(const Scene &scene, const MaterialParameters &m,
   const std::string key = section + "/softening_energy";
   if (!p.softening_energy)
     return;
-  if (f.given(section + "/hardening"))
+  if (p.hardening != 0)
     f.error(section + "/hardening",
             fmt::format("both \"hardening\" and \"softening_energy\" in {}", section),
             "the cohesion grows or falls", "remove one of them");
@@ -33,7 +33,8 @@ void check_softening_energy(const Scene &scene, const MaterialParameters &m,
       fmt::format("the cohesion falls over E G/Y^2 = {:.3g} m, {:.1f} spacings", length, spacings);
   const std::string remedy = fmt::format("take a \"spacing\" of {:.2g} m or less", length / few);
   if (spacings < least)
-    f.error(key, message, "below 2 a particle loses more than its neighbourhood gives back", remedy);
+    f.error(key, message, "below 2 a particle loses more than its neighbourhood gives back",
+            remedy);
   else
     f.warning(key, message, "below 5 peak and path depend on the packing", remedy);
 }
@@ -41,15 +42,18 @@ void check_softening_energy(const Scene &scene, const MaterialParameters &m,
 void check_law(const PlasticityParameters &p, const std::string &section, Findings &f)
 {
   const bool mises = p.law == PlasticityLaw::von_mises;
-  const auto of_other = [&](const std::vector<std::string> &keys) {
-    for (const std::string &key : keys)
-      if (f.given(section + "/" + key))
-        f.error(section + "/" + key,
-                fmt::format("\"{}\" in {} is none of the law's", key, section),
+  // Defaults, which a resolved scene has, do no harm.
+  const auto of_other = [&](const std::vector<std::pair<std::string, bool>> &keys) {
+    for (const auto &[key, is_given] : keys)
+      if (is_given)
+        f.error(section + "/" + key, fmt::format("\"{}\" in {} is none of the law's", key, section),
                 fmt::format("the law is \"{}\"", word_of(p.law)), "remove it, or change the law");
   };
   if (!mises) {
-    of_other({"yield_stress", "saturation", "saturation_rate", "curve"});
+    of_other({{"yield_stress", p.yield_stress.has_value()},
+              {"saturation", p.saturation.has_value()},
+              {"saturation_rate", p.saturation_rate.has_value()},
+              {"curve", !p.curve.empty()}});
     for (const char *key : {"cohesion", "friction_angle"})
       if (!f.given(section + "/" + key))
         f.error(section + "/law", fmt::format("there is no \"{}\" in {}", key, section),
@@ -61,7 +65,10 @@ void check_law(const PlasticityParameters &p, const std::string &section, Findin
               "flow would give energy instead of taking it", "make it smaller");
     return;
   }
-  of_other({"cohesion", "friction_angle", "dilatancy_angle", "softening_energy"});
+  of_other({{"cohesion", p.cohesion.has_value()},
+            {"friction_angle", p.friction_angle.has_value()},
+            {"dilatancy_angle", p.dilatancy_angle != 0},
+            {"softening_energy", p.softening_energy.has_value()}});
   const bool has_curve = !p.curve.empty();
   if (has_curve == p.yield_stress.has_value())
     f.error(section + (has_curve ? "/yield_stress" : "/law"),
@@ -70,10 +77,12 @@ void check_law(const PlasticityParameters &p, const std::string &section, Findin
                         section),
             "one of them says when flow begins", has_curve ? "remove one" : "add one");
   if (has_curve)
-    for (const char *key : {"hardening", "saturation", "saturation_rate"})
-      if (f.given(section + "/" + key))
-        f.error(section + "/" + key,
-                fmt::format("\"{}\" beside a \"curve\" in {}", key, section),
+    for (const auto &[key, is_given] :
+         {std::pair("hardening", p.hardening != 0),
+          std::pair("saturation", p.saturation.has_value()),
+          std::pair("saturation_rate", p.saturation_rate.has_value())})
+      if (is_given)
+        f.error(section + "/" + key, fmt::format("\"{}\" beside a \"curve\" in {}", key, section),
                 "the curve says how the yield stress grows", "remove it");
   if (p.saturation.has_value() != p.saturation_rate.has_value())
     f.error(section + (p.saturation ? "/saturation" : "/saturation_rate"),
@@ -121,8 +130,7 @@ void check_plasticity(const Scene &scene, Findings &f)
   refuse(scene.time.loading != Loading::dynamic,
          fmt::format("\"loading\" \"{}\"", word_of(scene.time.loading)),
          "equilibria are sought without flow", "choose \"dynamic\"");
-  refuse(scene.far_field &&
-             coupling::is_energy_weighted(scene.coupling.scheme),
+  refuse(scene.far_field && coupling::is_energy_weighted(scene.coupling.scheme),
          "an energy-weighted scheme", "it blends energies that flow would change",
          "choose \"fine_scale_split\"");
   refuse(std::any_of(scene.loads.begin(), scene.loads.end(),

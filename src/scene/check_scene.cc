@@ -137,7 +137,7 @@ void check_time(const Scene &scene, Findings &f)
   if (f.sound({"/time/stop_when", "/material/fracture/criterion", "/inclusions"}) &&
       scene.time.stop_when == StopWhen::specimen_broken && !breaks)
     f.warning("/time/stop_when", "\"stop_when\" in /time waits for a fracture that cannot happen",
-              "the fracture criterion is \"none\"", "");
+              "the fracture criterion is \"none\"", "remove it, or choose a criterion");
 }
 
 /// Where there is a field of this word.

@@ -120,7 +120,7 @@ void check_shape(const Scene &scene, Findings &f)
     });
     if (n_pieces > 1)
       f.warning(section, fmt::format("the specimen is in {} pieces", n_pieces),
-                "cutouts and slots part it", "");
+                "cutouts and slots part it", "make them smaller, unless the pieces are wanted");
   } catch (const core::KeyedError &error) {
     f.error(error.key, error.message, error.reason, error.remedy);
   }

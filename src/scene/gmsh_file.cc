@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -60,9 +61,22 @@ public:
 
 private:
   [[noreturn]] void fail(const std::string &what, const std::string &reason,
-                         const std::string &remedy) const
+                         const std::string &remedy)
   {
-    throw core::KeyedError(key_, fmt::format("\"{}\" {}", file_, what), reason, remedy);
+    throw core::KeyedError(key_, fmt::format("\"{}\" {}", place(), what), reason, remedy);
+  }
+  /// The file, and the line that was read last if any was.
+  std::string place()
+  {
+    in_.clear();
+    auto left = std::streamoff(in_.tellg());
+    if (left <= 0)
+      return file_;
+    int line = 1;
+    in_.seekg(0);
+    for (std::istreambuf_iterator<char> c(in_), end; c != end && left > 0; ++c, --left)
+      line += *c == '\n';
+    return fmt::format("{}:{}", file_, line);
   }
   template <typename T>
   T next()
@@ -137,9 +151,9 @@ private:
       number();
       if (number() != 0)
         fail("has parametric nodes", "places are read alone", "save it without parameters");
-      std::vector<int> tags(number());
-      for (int &tag : tags)
-        tag = number();
+      std::vector<int> tags; // as many as there are, whatever number is announced
+      for (int n = number(); n > 0; --n)
+        tags.push_back(number());
       for (const int tag : tags)
         add_node(tag);
     }

@@ -21,7 +21,7 @@ struct GmshMesh
 };
 
 /// Reads a text file of version 2.2 or 4.1, lengths in m. Elements of second order keep their
-/// corners. Throws core::KeyedError about the key where it can't be read, is binary or of another
-/// version, or where a name of a physical group has no elements.
+/// corners. Throws core::KeyedError about the key, with the line, where it can't be read, is binary
+/// or of another version, or where a name of a physical group has no elements.
 GmshMesh read_gmsh(const std::string &file, const std::string &key);
 } // namespace ligament::program

@@ -35,6 +35,13 @@ int dimension_of(const core::JsonValue &json)
   return good ? int(value.number) : 0;
 }
 
+/// An echo says "none" where there are none.
+bool has_atoms(const core::JsonValue &json)
+{
+  const core::JsonMember *atoms = json.find("atoms");
+  return atoms && !(atoms->value.is(core::JsonValue::Kind::string) && atoms->value.text == "none");
+}
+
 /// What the table cannot say: "far_field": "none" makes everything discrete.
 void apply_far_field_word(const core::JsonValue &json, Scene &scene)
 {
@@ -191,7 +198,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     return result;
   Scene scene;
   core::ParameterSection table;
-  declare_scene(table, scene, json.find("atoms") != nullptr);
+  declare_scene(table, scene, has_atoms(json));
   for (const auto &o : overrides)
     core::apply_override(table, o, json, result.errors);
   const int dimension = dimension_of(json);
@@ -232,6 +239,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     leave_out_unused(scene.loads[k], result.resolved["loads"][k]);
   for (std::size_t k = 0; k < scene.tools.size(); ++k)
     leave_out_unused(scene.tools[k], result.resolved["tools"][k]);
+  if (scene.time.step)
+    result.resolved["time"].erase("step_fraction");
   if (scene.specimen.has_own_box())
     result.resolved["specimen"].erase("size");
   if (scene.dimension == 3 && scene.specimen.outline.empty())

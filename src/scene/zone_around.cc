@@ -35,7 +35,8 @@ std::vector<Box> things(const Scene &scene, const ZoneAround &around)
   };
   if (around.cracks)
     for (const Crack &crack : s.cracks)
-      add(bounding_box(crack.points));
+      if (!crack.points.empty()) // else the check of the cuts tells that
+        add(bounding_box(crack.points));
   if (around.notches)
     for (const Notch &notch : s.notches)
       add({notch.lower, notch.upper});
@@ -156,7 +157,11 @@ std::string proposed_zone(const Scene &scene, const Findings &f)
   const double d = scene.zone.spacing,
                h = scene.far_field && f.sound({"/far_field"}) ? scene.far_field->cell_size : 4 * d;
   ZoneAround around{true, true, true, true, true, true, 12 * d};
-  const auto boxes = zone_boxes(scene, around, h);
+  std::vector<ZoneBox> boxes;
+  try {
+    boxes = zone_boxes(scene, around, h);
+  } catch (const core::KeyedError &) { // no outline: the check of the shape tells that
+  }
   if (boxes.empty())
     return general;
   std::string zone;

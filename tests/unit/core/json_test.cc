@@ -111,6 +111,13 @@ TEST(Json, MistakesOfSyntaxHaveAPlace)
   EXPECT_EQ(mistake("\"\xed\xa0\x80\""), "t:1:2 a byte that is not UTF-8"); // surrogate
 }
 
+TEST(Json, QuotedInputDoesNotReachTheTerminalAsItIs)
+{
+  const Diagnostic d = {{"scene.json", 1, 2}, "/a", "unknown key \"a\n\x1b[31m\"", "r\r", "\x7F"};
+  EXPECT_EQ(to_string(d), "scene.json:1:2: error: unknown key \"a\\x0a\\x1b[31m\"\n"
+                          "  reason: r\\x0d\n  remedy: \\x7f");
+}
+
 TEST(Json, DepthIsLimited)
 {
   EXPECT_TRUE(parse(std::string(64, '[') + std::string(64, ']')).is(Kind::array));

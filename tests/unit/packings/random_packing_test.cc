@@ -262,6 +262,10 @@ TEST(PackingFile, WrongFilesAreRefusedWithTheLine)
   EXPECT_EQ(message(head + "0,one,1,0\n"), "wrong.csv:3: \"one\" in column \"y\" is no number");
   EXPECT_EQ(message(head + "0,nan,1,0\n"), "wrong.csv:3: \"nan\" in column \"y\" is no number");
   EXPECT_EQ(message(head + "0,0,-1,0\n"), "wrong.csv:3: the radius must be positive");
+  EXPECT_EQ(message("x,y,r\nkm,m,m\n1e308,0,1\n"),
+            "wrong.csv:3: the value in column \"x\" is too large");
+  EXPECT_EQ(message("x,y,r\nm,m,km\n0,0,1e308\n"),
+            "wrong.csv:3: the value in column \"r\" is too large");
   EXPECT_EQ(message(head + "0,0,1,0.5\n"),
             "wrong.csv:3: the material must be 0 or the number of an inclusion");
   EXPECT_THROW(read_packing_file<2>("no_such_file.csv"), core::EnvironmentError);

@@ -217,12 +217,18 @@ TEST(Gmsh, WrongFilesAreRefused)
   says(head_2 + nodes_2 + "$Elements\n1\n1 3 2 9 3 1 4 5 77\n$EndElements\n", 2,
        "node that is not");
   says(head_2 + nodes_2 + "$Elements\n1\n1 7 2 9 3 1 4 5 2 3\n$EndElements\n", 2, "type 7");
+  says(head_2 + nodes_2 + "$Elements\n1\n1 7 2 9 3 1 4 5 2 3\n$EndElements\n", 2,
+       "\"wrong.msh:16\" has");
   says(head_2 + "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0.5\n$EndNodes\n$Elements\n1\n1 2 0 1 2 "
                 "3\n$EndElements\n",
        2, "not plane");
   says(head_2 + "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 -1 0 0\n5 0 -1 0\n$EndNodes\n"
                 "$Elements\n2\n1 2 0 1 2 3\n2 2 0 1 4 5\n$EndElements\n",
        2, "touches itself");
+  says(head_2 + nodes_2 + "$Elements\n1\n1 3 0 2 1 2 3\n$EndElements\n", 2, "no outer edges");
+  for (const std::string count : {"-1", "2000000000"}) // no room is taken on a number's word
+    says("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 " + count + "\n1\n2\n", 2,
+         count == "-1" ? "no mesh" : "ends too early");
   says(head_2 + nodes_2 + elements_2, 3, "bounds no body");
   EXPECT_THROW(read_body("no_such_file.msh", 2), core::KeyedError);
   EXPECT_THROW(read_body("body.obj", 3), core::KeyedError);

@@ -176,6 +176,28 @@ TEST(ReadScene, ResolvedEchoReadsBackToItself)
     }
 }
 
+// Values that stand in the echo as defaults must not contradict those that were given: a run goes
+// on from its echo.
+TEST(ReadScene, EchoOfAlternativesReadsBackToItself)
+{
+  const std::vector<std::string> variants = {
+      R"(/material/plasticity={"law": "drucker_prager", "cohesion": "8 MPa",
+                                "friction_angle": "35 deg"})",
+      R"(/material/plasticity={"law": "drucker_prager", "cohesion": "80 MPa",
+                                "friction_angle": "35 deg", "softening_energy": "1 MJ/m^2"})",
+      R"(/material/plasticity={"yield_stress": "200 MPa"})",
+      R"(/material/plasticity={"curve": [{"strain": 0, "stress": "200 MPa"}]})",
+      R"(/time={"duration": "1 ms", "step": "1 ns"})",
+      "/material/poissons_ratio=0"};
+  for (const std::string &change : variants) {
+    const ReadResult first = read_scene(plate, {change});
+    ASSERT_TRUE(first.scene) << change << all(first);
+    const ReadResult second = parse_scene(first.resolved.dump(), "echo");
+    ASSERT_TRUE(second.scene) << change << all(second);
+    EXPECT_EQ(second.resolved.dump(), first.resolved.dump()) << change;
+  }
+}
+
 TEST(ReadScene, BoxesTakeThePlaceOfARegionOfNulls)
 {
   const ReadResult first =

@@ -106,6 +106,7 @@ TEST_P(DoubtfulScene, IsDoubted)
     EXPECT_NE(messages.find(part), std::string::npos) << part << "\n" << messages;
   for (const core::Diagnostic &warning : result.warnings) {
     EXPECT_FALSE(warning.key.empty());
+    EXPECT_FALSE(warning.remedy.empty()) << core::to_string(warning);
     EXPECT_NE(core::to_string(warning).find(": warning: "), std::string::npos);
   }
 }
