@@ -115,7 +115,7 @@ std::optional<std::vector<std::int64_t>> Simulation<dim>::new_weights()
                ? std::optional(body_.ranks.is_one() ? std::vector<std::int64_t>()
                                                     : balance_.shifted(n_own()))
                : std::nullopt;
-  if (body_.ranks.is_one() || step % (ratio * agreed_interval) != 0)
+  if (body_.ranks.is_one() || step % (ratio * guard_interval) != 0)
     return {};
   return balance_.look(n_own(), step, clock_.n_steps - step, build_seconds_);
 }
