@@ -86,6 +86,84 @@ Table table_of(const std::map<Key, Row> &rows, int n_keys, const std::vector<std
 }
 } // namespace
 
+namespace
+{
+constexpr char end_of_name = '\n';
+
+/// Names and numbers as text, keys and words beside it.
+struct Told
+{
+  std::string text;
+  std::vector<std::uint64_t> words;
+
+  void say(const std::string &line) { text += line + end_of_name; }
+  void say(std::size_t number) { say(std::to_string(number)); }
+};
+
+Told told(const std::map<std::string, State> &states)
+{
+  Told all;
+  all.say(states.size());
+  for (const auto &[name, state] : states) {
+    all.say(name);
+    all.say(state.size());
+    for (const auto &[table_name, table] : state) {
+      all.say(table_name);
+      all.say(std::size_t(table.n_keys()));
+      all.say(table.n_rows());
+      all.say(table.columns().size());
+      for (const std::string &column : table.columns())
+        all.say(column);
+      for (const std::int64_t key : table.keys())
+        all.words.push_back(std::uint64_t(key));
+      all.words.insert(all.words.end(), table.words().begin(), table.words().end());
+    }
+  }
+  return all;
+}
+
+std::map<std::string, State> heard(const std::string &text, const std::vector<std::uint64_t> &words)
+{
+  std::size_t at = 0;
+  auto word = words.begin();
+  const auto line = [&] {
+    const std::size_t begin = at;
+    at = text.find(end_of_name, begin) + 1;
+    return text.substr(begin, at - 1 - begin);
+  };
+  const auto number = [&] { return std::size_t(std::stoull(line())); };
+  std::map<std::string, State> states;
+  for (std::size_t n = number(); n > 0; --n) {
+    State &state = states[line()];
+    for (std::size_t n_tables = number(); n_tables > 0; --n_tables) {
+      const std::string name = line();
+      const std::size_t n_keys = number(), n_rows = number(), n_columns = number();
+      std::vector<std::int64_t> keys(n_keys * n_rows);
+      for (std::int64_t &key : keys)
+        key = std::int64_t(*word++);
+      Table table(std::move(keys), int(n_keys));
+      for (std::size_t c = 0; c < n_columns; ++c) {
+        const std::vector<std::uint64_t> column(word, word + std::ptrdiff_t(n_rows));
+        table.add_words(line(), column.data());
+        word += std::ptrdiff_t(n_rows);
+      }
+      state[name] = std::move(table);
+    }
+  }
+  return states;
+}
+} // namespace
+
+std::map<std::string, State> from_first(const std::map<std::string, State> &states,
+                                        const Ranks &ranks)
+{
+  if (ranks.is_one())
+    return states;
+  const Told mine = ranks.is_first() ? told(states) : Told();
+  const auto text = ranks.gather_all(std::vector<char>(mine.text.begin(), mine.text.end()));
+  return heard({text.begin(), text.end()}, ranks.gather_all(mine.words));
+}
+
 bool is_sum(const Table &table)
 {
   return table.n_keys() == 1 && table.n_rows() == std::size_t(ExactSum::n_words) &&

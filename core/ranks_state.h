@@ -15,6 +15,10 @@ State merged(const State &part, const Ranks &ranks);
 /// then has them once.
 State share_of(const State &whole, const Ranks &ranks);
 
+/// What the first rank has, on all of them; what others give is not read.
+std::map<std::string, State> from_first(const std::map<std::string, State> &states,
+                                        const Ranks &ranks);
+
 /// Whether save_sum() made it.
 bool is_sum(const Table &table);
 } // namespace ligament::core

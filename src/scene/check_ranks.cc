@@ -98,8 +98,8 @@ std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
   refusals.add_where(!scene.tools.empty(), "/tools", "tools",
                      "the surface that they touch is known in one process");
   look_at_gauges(scene, refusals);
-  refusals.add_where(scene.time.has_phases(), "/time/loading", "loading by equilibria",
-                     "they are solved for in one process");
+  refusals.add_where(scene.time.loading == Loading::sequential, "/time/loading",
+                     "loading bond by bond", "its equilibria are solved for in one process");
   refusals.add_where(scene.time.rest_threshold > 0, "/time/rest_threshold",
                      "a threshold below which blocks rest",
                      "which blocks there are depends on the parts");

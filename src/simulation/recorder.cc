@@ -543,6 +543,7 @@ void Recorder<dim>::watch(const CoupledBody<dim> &body)
   guard_.save(seen);
   guard_ = OverlapGuard<dim>(body);
   guard_.load(seen);
+  history_.watch(scene_, body);
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

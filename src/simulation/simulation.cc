@@ -40,7 +40,7 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
                 clock_.n_steps, draws_pictures, from != nullptr),
       servos_(scene_, body_, log_),
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)))),
-      balance_(ranks)
+      balance_(ranks), ranks_(ranks)
 {
   setup_seconds_ = build_seconds_ = timers_.total();
   if (!from)
@@ -121,6 +121,17 @@ std::optional<std::vector<std::int64_t>> Simulation<dim>::new_weights()
 }
 
 template <int dim>
+void Simulation<dim>::take_over(CoupledBody<dim> body, const core::State &of_body,
+                                const core::State &run)
+{
+  body_ = std::move(body);
+  regime_ = RegimeControl<dim>(scene_.coupling.regime, body_, scene_.is_warm());
+  give(of_body, run);
+  recorder_.watch(body_);
+  servos_.watch(body_);
+}
+
+template <int dim>
 void Simulation<dim>::build_anew(const std::vector<std::int64_t> &weights)
 {
   const double begun = timers_.total();
@@ -129,12 +140,9 @@ void Simulation<dim>::build_anew(const std::vector<std::int64_t> &weights)
   core::State run;
   regime_.save(run);
   core::Log nothing_new;
-  body_ =
-      make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, body_.ranks, weights);
-  regime_ = RegimeControl<dim>(scene_.coupling.regime, body_, scene_.is_warm());
-  give(body, run);
-  recorder_.watch(body_);
-  servos_.watch(body_);
+  weights_ = weights;
+  take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, ranks_, weights_),
+            body, run);
   ++n_rebuilt_;
   build_seconds_ = timers_.total() - begun;
   if (!body_.ranks.is_one()) {
@@ -284,8 +292,6 @@ std::optional<Stop> Simulation<dim>::look()
 template <int dim>
 std::optional<Stop> Simulation<dim>::skip_steps()
 {
-  if (!phases_.are_due(body_, clock_))
-    return {};
   if (clock_.now.step > 0)
     if (const auto stop = look())
       return stop;
@@ -295,40 +301,117 @@ std::optional<Stop> Simulation<dim>::skip_steps()
 }
 
 template <int dim>
-std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
+bool Simulation<dim>::look_around(bool is_calm)
+{
+  if (is_calm)
+    stop_ = skip_steps();
+  if (stop_ || clock_.is_at_end())
+    return false;
+  stop_ = look();
+  if (stop_)
+    return false;
+  recorder_.in_static_phase(false);
+  return asked_by_.empty();
+}
+
+template <int dim>
+void Simulation<dim>::take_step()
 {
   auto bodies = body_.bodies();
+  damping_.before_kick(body_, clock_.now);
+  body_.coupler->kick(bodies, clock_.now); // velocities, one body in the overlap
+  damping_.after_kick(body_, clock_.now);
+  body_.coupler->drift(bodies, clock_.now); // positions
+  clock_.advance();
+}
+
+template <int dim>
+void Simulation<dim>::keep_for_phases()
+{
+  before_forces_.reset();
+  if (!ranks_.is_one() && clock_.now.step % body_.coupler->step_ratio() == 0 &&
+      phases_.look_at(clock_))
+    before_forces_ = core::merged(take_state(body_), ranks_);
+}
+
+// Equilibria are solved for in one process: their systems couple all of the body. The state goes
+// both ways between drift and forces, where it is that of the whole to the last bit.
+template <int dim>
+bool Simulation<dim>::skip_steps_at_first()
+{
+  core::Log nothing_new;
+  std::map<std::string, core::State> told;
+  if (ranks_.is_first()) {
+    const core::State run = run_state();
+    take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_),
+              *before_forces_, run);
+    phases_ = StaticPhases<dim>(scene_, body_, log_);
+    phases_.load(run);
+    compute_forces();
+    ends_elsewhere_ = !look_around(true);
+    if (!ends_elsewhere_) {
+      take_step();
+      told[body_file] = take_state(body_);
+      told[run_file] = run_state();
+      for (const KeptState &kept : recorder_.kept(body_))
+        told["kept " + kept.name] = kept.take();
+    }
+  }
+  told = core::from_first(told, ranks_);
+  if (told.empty()) {
+    ends_elsewhere_ = !ranks_.is_first();
+    return false;
+  }
+  const std::vector<std::int64_t> step = ranks_.gather_all(
+      ranks_.is_first() ? std::vector<std::int64_t>{clock_.now.step} : std::vector<std::int64_t>());
+  const std::vector<double> time = ranks_.gather_all(
+      ranks_.is_first() ? std::vector<double>{clock_.now.time} : std::vector<double>());
+  clock_.now.step = long(step[0]);
+  clock_.now.time = time[0];
+  const core::State &run = told[run_file];
+  take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, ranks_, weights_),
+            told[body_file], run);
+  phases_ = StaticPhases<dim>(scene_, body_, log_);
+  phases_.load(run);
+  if (ranks_.is_first())
+    return true;
+  damping_.load(run);
+  std::map<std::string, core::State> kept;
+  for (auto &[name, state] : told)
+    if (name.compare(0, 5, "kept ") == 0)
+      kept[name.substr(5)] = std::move(state);
+  recorder_.load(run, kept, body_, clock_.now.step);
+  return true;
+}
+
+template <int dim>
+std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
+{
+  keep_for_phases();
   compute_forces();
   const int ratio = body_.coupler->step_ratio();
   if (clock_.now.step == 0)
     let_rest();
   while (!clock_.is_at_end()) {
-    if (clock_.now.step % ratio == 0) {
-      if (stop_)
+    const bool far_acts = clock_.now.step % ratio == 0;
+    if (far_acts && stop_)
+      return stop_;
+    const bool is_calm = far_acts && phases_.are_due(body_, clock_);
+    if (is_calm && !ranks_.is_one()) {
+      if (!skip_steps_at_first())
         return stop_;
-      if (const auto stop = skip_steps())
-        return stop;
-      if (clock_.is_at_end())
-        break;
-      if (const auto stop = look())
-        return stop;
-      recorder_.in_static_phase(false);
-      if (!asked_by_.empty())
-        return {};
+    } else {
+      if (far_acts && !look_around(is_calm))
+        return stop_;
+      balance_.begin();
+      take_step();
+      balance_.end();
     }
-    balance_.begin();
-    damping_.before_kick(body_, clock_.now);
-    body_.coupler->kick(bodies, clock_.now); // velocities, one body in the overlap
-    damping_.after_kick(body_, clock_.now);
-    body_.coupler->drift(bodies, clock_.now); // positions
-    balance_.end();
-    clock_.advance();
     if (clock_.now.step % ratio == 0)
       look_at_the_clock(request);
-    if (const auto weights = new_weights()) {
+    if (const auto weights = new_weights())
       build_anew(*weights);
-      bodies = body_.bodies();
-    }
+    keep_for_phases();
     balance_.begin();
     compute_forces();
     balance_.end();
@@ -381,7 +464,7 @@ void Simulation<dim>::run_loop(const EndRequest &request, RunRecord &record)
                                   clock_.now.step, clock_.n_steps);
     }
   } catch (const core::EnvironmentError &error) {
-    if (!body_.ranks.is_one())
+    if (!ranks_.is_one())
       throw; // the others wait
     record.status = "failed";
     record.reason = fmt::format("{} (at {:.4g} s, in step {} of {})", error.what(), clock_.now.time,
@@ -408,6 +491,8 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
     log_.info("not needed: {} ({})", part.what, part.why);
 
   run_loop(request, record);
+  if (ends_elsewhere_)
+    return record;
   record.regime = regime_.history();
   record.phases = phases_.entries(body_, clock_);
   record.steps = clock_.now.step;

@@ -58,6 +58,8 @@ private:
   /// To a body that no step has moved.
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;
+  /// Goes on with another body that no step has moved, from this state of the one before.
+  void take_over(CoupledBody<dim> body, const core::State &of_body, const core::State &run);
   /// Cut for ranks by these weights of blocks of particles.
   void build_anew(const std::vector<std::int64_t> &weights);
   /// Behind the drift of a step: whether the body is to be built anew, and by which weights.
@@ -67,9 +69,19 @@ private:
   void compute_forces();
   /// Between forces and kick of a step in which the far field acts: what ends the run, or nothing.
   std::optional<Stop> look();
-  /// The same of all steps that an equilibrium stands for, where one is due; at its end in the last
-  /// of them.
+  /// The same of all steps that an equilibrium stands for; at its end in the last of them.
   std::optional<Stop> skip_steps();
+  /// What comes between forces and kick of a step in which the far field acts: false where that
+  /// ends the run.
+  bool look_around(bool is_calm);
+  /// Kick and drift.
+  void take_step();
+  /// Of a body in parts that is calm: the first rank takes the whole of it, skips steps, takes the
+  /// next one and deals it out again, while the others wait; where that ends the run it keeps it,
+  /// and the others have nothing more to do. False where the run ends.
+  bool skip_steps_at_first();
+  /// Of a body in parts: what skip_steps_at_first() begins with.
+  void keep_for_phases();
   /// The time loop; the reason when it ends early.
   std::optional<Stop> loop(const EndRequest &request);
   /// Between drift and forces of a step in which the far field acts: looks whether the end is asked
@@ -103,7 +115,11 @@ private:
   double build_seconds_ = 0; // of the body
   RankBalance balance_;
   std::string asked_by_;     // who asked for the end; empty: nobody
-  std::optional<Stop> stop_; // by a guard that looks at the motion
+  std::optional<Stop> stop_; // what ends the run before its time
+  core::Ranks ranks_;
+  std::vector<std::int64_t> weights_;        // by which ranks share the particles
+  std::optional<core::State> before_forces_; // of the present step, where a phase may be due
+  bool ends_elsewhere_ = false;              // on the first rank, which has the whole body
   int rebuild_interval_ = 0;
   long n_rebuilt_ = 0, n_broken_at_rebuild_ = 0;
 };

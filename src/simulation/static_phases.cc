@@ -79,7 +79,10 @@ double largest_extent(const CoupledBody<dim> &body)
     if (body.zone) {
       const auto &x = body.zone->state.reference[c];
       const auto [least, most] = std::minmax_element(x.begin(), x.end());
-      largest = std::max(largest, *most - *least);
+      const auto ends = body.ranks.gather_all(x.empty() ? std::vector<double>()
+                                                        : std::vector<double>{*least, *most});
+      const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
+      largest = std::max(largest, *last - *first);
     } else
       largest = std::max(largest, body.upper[c] - body.lower[c]);
   return largest;
@@ -97,7 +100,17 @@ double shear_wave_speed(const CoupledBody<dim> &body)
 template <int dim>
 long n_broken(const CoupledBody<dim> &body)
 {
-  return body.force() ? long(body.force()->broken_bonds().size()) : 0;
+  return body.force() ? long(body.force()->n_broken()) : 0;
+}
+
+/// In s, of the bonds that have broken so far.
+template <int dim>
+double last_break(const CoupledBody<dim> &body)
+{
+  const auto &broken = body.force()->broken_bonds();
+  const auto times = body.ranks.gather_all(broken.empty() ? std::vector<double>()
+                                                          : std::vector{broken.back().time});
+  return *std::max_element(times.begin(), times.end());
 }
 } // namespace
 
@@ -108,11 +121,13 @@ struct StaticPhases<dim>::Work
 
   Work(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
       : loading(scene.time.loading), calm(scene.time.calm), log(log), machine(body),
-        solver(body, preconditioning(scene.time.static_solver)),
         transit(largest_extent(body) / shear_wave_speed(body)), ratio(body.coupler->step_ratio())
   {
+    if (body.ranks.is_one())
+      solver.emplace(body, preconditioning(scene.time.static_solver));
   }
 
+  bool looks(const Clock &clock) const;
   bool is_calm(const CoupledBody<dim> &body, const Clock &clock);
   int n_failures() const;
   bool has_been_restless() const
@@ -136,7 +151,9 @@ struct StaticPhases<dim>::Work
   double calm; // transits
   core::Log &log;
   TestMachine<dim> machine;
-  EquilibriumSolver<dim> solver;
+  std::optional<EquilibriumSolver<dim>> solver; // of a whole body
+  double largest_load = 0;                      // that it last knew of, N
+  typename EquilibriumSolver<dim>::FreeShares free_shares{};
   double transit; // s
   int ratio;
 
@@ -164,6 +181,12 @@ template <int dim>
 StaticPhases<dim> &StaticPhases<dim>::operator=(StaticPhases &&) noexcept = default;
 
 template <int dim>
+bool StaticPhases<dim>::look_at(const Clock &clock) const
+{
+  return work_ && !clock.is_at_end() && work_->looks(clock);
+}
+
+template <int dim>
 bool StaticPhases<dim>::are_due(const CoupledBody<dim> &body, const Clock &clock)
 {
   return work_ && !clock.is_at_end() && work_->is_calm(body, clock);
@@ -187,18 +210,26 @@ int StaticPhases<dim>::Work::n_failures() const
 // Once every quarter of a transit, counted from the last phase: a run that goes on from a
 // checkpoint looks in the same steps.
 template <int dim>
-bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock &clock)
+bool StaticPhases<dim>::Work::looks(const Clock &clock) const
 {
   if (dynamic_since < 0 || (loading == Loading::sequential && n_failures() == 0))
     return true;
   const long far_steps = (clock.now.step - dynamic_since) / ratio;
   const long interval =
       std::max(1l, std::lround(transit / (looks_per_transit * ratio * clock.now.dt)));
-  if (far_steps == 0 || far_steps % interval != 0)
+  return far_steps > 0 && far_steps % interval == 0;
+}
+
+template <int dim>
+bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock &clock)
+{
+  if (dynamic_since < 0 || (loading == Loading::sequential && n_failures() == 0))
+    return true;
+  if (!looks(clock))
     return false;
   double since = time_of(clock, dynamic_since);
   if (n_broken(body) > 0)
-    since = std::max(since, body.force()->broken_bonds().back().time);
+    since = std::max(since, last_break(body));
   if (body.force())
     since = std::max(since, body.force()->last_softening());
   const double transits = (clock.now.time - since) / transit;
@@ -258,14 +289,14 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   const auto started = std::chrono::steady_clock::now();
   end_dynamic_phase(body, clock);
   Phase phase{true, clock.now.step, clock.now.step};
-  const int solves = solver.n_solves(), iterations = solver.n_iterations();
+  const int solves = solver->n_solves(), iterations = solver->n_iterations();
   const long broken_before = n_broken(body);
   const double released = body.force() ? body.force()->losses().fracture : 0;
   std::optional<Stop> stop;
   const auto finish = [&](PhaseEnd reason) {
     phase.end = clock.now.step;
-    phase.solves = solver.n_solves() - solves;
-    phase.iterations = solver.n_iterations() - iterations;
+    phase.solves = solver->n_solves() - solves;
+    phase.iterations = solver->n_iterations() - iterations;
     phase.load = load_of(body, clock);
     phase.broken = n_broken(body) - broken_before;
     phase.reason = reason;
@@ -286,15 +317,15 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
 
   if (loading == Loading::sequential && body.force()) // a body built anew does not know
     body.force()->break_one_by_one();
-  solver.renew();
+  solver->renew();
   double before = read_ledger(body, clock.now, damping).residual();
-  const auto velocities = solver.system().velocities();
+  const auto velocities = solver->system().velocities();
   Eigen::VectorXd moved;
   // To hand on to where the stretch ends.
   constexpr double near = 1e-6;
-  const End balanced = solver.find_equilibrium(clock.now.time, moved, near);
+  const End balanced = solver->find_equilibrium(clock.now.time, moved, near);
   if (balanced != End::converged) {
-    solver.system().put_back(velocities);
+    solver->system().put_back(velocities);
     auto bodies = body.bodies();
     body.coupler->compute_forces(bodies, clock.now);
     failed(balanced);
@@ -311,11 +342,11 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     regime = body.regime_change;
     before = read_ledger(body, clock.now, damping).residual();
     settles = true;
-    solver.renew();
-    return solver.find_equilibrium(clock.now.time, moved, near);
+    solver->renew();
+    return solver->find_equilibrium(clock.now.time, moved, near);
   };
   while (true) {
-    StaticStretch<dim> stretch(body, solver, clock, reach);
+    StaticStretch<dim> stretch(body, *solver, clock, reach);
     End end = stretch.find_response();
     const auto stay = [&] { commit(body, clock, stretch.velocities(clock.now.time)); };
     if (settles) {
@@ -388,7 +419,7 @@ template <int dim>
 void StaticPhases<dim>::Work::commit(CoupledBody<dim> &body, const Clock &clock,
                                      const Eigen::VectorXd &velocities)
 {
-  auto &system = solver.system();
+  auto &system = solver->system();
   if (ratio > 1)
     system.forces(clock.now.time); // of the far field, which its impulses are made of
   system.set_velocities(velocities, clock.now);
@@ -440,10 +471,12 @@ void StaticPhases<dim>::save(core::State &state) const
     return;
   core::save_value(state, "static_phases", "dynamic_since", std::int64_t(work_->dynamic_since));
   core::save_value(state, "static_phases", "broken_then", std::int64_t(work_->broken_then));
-  core::save_value(state, "static_phases", "largest_load", work_->solver.largest_load());
+  const bool has_solver = work_->solver.has_value();
+  core::save_value(state, "static_phases", "largest_load",
+                   has_solver ? work_->solver->largest_load() : work_->largest_load);
   core::save_value(state, "static_phases", "stretching_energy", work_->stretching_energy);
   // Found again, in a body in which bonds have broken, they would differ by round-off.
-  const auto free = work_->solver.free_shares();
+  const auto free = has_solver ? work_->solver->free_shares() : work_->free_shares;
   core::save_value(state, "static_phases", "free_motions", std::int64_t(free.n));
   core::Table shares = numbered_rows(free.shares.size());
   shares.add("share", free.shares);
@@ -475,10 +508,14 @@ void StaticPhases<dim>::load(const core::State &state)
     return;
   work_->dynamic_since = long(core::load_integer(state, "static_phases", "dynamic_since"));
   work_->broken_then = long(core::load_integer(state, "static_phases", "broken_then"));
-  work_->solver.set_largest_load(core::load_real(state, "static_phases", "largest_load"));
+  work_->largest_load = core::load_real(state, "static_phases", "largest_load");
   work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
-  work_->solver.set_free_shares({int(core::load_integer(state, "static_phases", "free_motions")),
-                                 core::table(state, "free_motions").reals("share")});
+  work_->free_shares = {int(core::load_integer(state, "static_phases", "free_motions")),
+                        core::table(state, "free_motions").reals("share")};
+  if (work_->solver) {
+    work_->solver->set_largest_load(work_->largest_load);
+    work_->solver->set_free_shares(work_->free_shares);
+  }
   const core::Table &rows = core::table(state, "phases");
   const auto numbers = [&](const char *name) { return rows.integers(name); };
   const auto is_static = numbers("is_static"), begin = numbers("begin"), end = numbers("end"),

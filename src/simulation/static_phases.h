@@ -27,12 +27,16 @@ public:
   StaticPhases(StaticPhases &&) noexcept;
   StaticPhases &operator=(StaticPhases &&) noexcept;
 
+  /// Whether are_due() may say yes in a step in which the far field acts: it looks now and then.
+  bool look_at(const Clock &clock) const;
+
   /// Between forces and kick of a step in which the far field acts: whether the body is calm, or
-  /// the run begins.
+  /// the run begins. All ranks of a body in parts ask.
   bool are_due(const CoupledBody<dim> &body, const Clock &clock);
 
   /// Takes body and clock to the next step in which a bond breaks, or to the end; forces and
-  /// velocities are then those between forces and kick of that step. `damping` in J so far.
+  /// velocities are then those between forces and kick of that step. `damping` in J so far. Of a
+  /// whole body alone.
   std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
                               const Look &look);
 
