@@ -471,6 +471,7 @@ void StaticPhases<dim>::save(core::State &state) const
     return;
   core::save_value(state, "static_phases", "dynamic_since", std::int64_t(work_->dynamic_since));
   core::save_value(state, "static_phases", "broken_then", std::int64_t(work_->broken_then));
+  core::save_value(state, "static_phases", "is_restless", std::int64_t(work_->is_restless));
   const bool has_solver = work_->solver.has_value();
   core::save_value(state, "static_phases", "largest_load",
                    has_solver ? work_->solver->largest_load() : work_->largest_load);
@@ -508,6 +509,7 @@ void StaticPhases<dim>::load(const core::State &state)
     return;
   work_->dynamic_since = long(core::load_integer(state, "static_phases", "dynamic_since"));
   work_->broken_then = long(core::load_integer(state, "static_phases", "broken_then"));
+  work_->is_restless = core::load_integer(state, "static_phases", "is_restless") != 0;
   work_->largest_load = core::load_real(state, "static_phases", "largest_load");
   work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
   work_->free_shares = {int(core::load_integer(state, "static_phases", "free_motions")),
