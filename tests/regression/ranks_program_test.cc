@@ -343,4 +343,19 @@ TEST_F(RanksProgram, AGuardOfTheMotionEndsAllInTheSameStep)
   scene["output"]["history_interval"] = 1000; // no look at the energy comes first
   expect_one_end(scene, "spacings in one step");
 }
+
+// Before the first step: all ranks find the same stable one.
+TEST_F(RanksProgram, AStepAboveTheStableOneIsRefusedByAll)
+{
+  const std::string name = written(halves_that_slide(), "scene.json");
+  std::vector<std::string> errors;
+  for (const char *n : {"1", "3"}) {
+    const Outcome outcome =
+        run_ligament("run " + name + " --set /time/step=5 -n " + n + " -o on_" + n);
+    EXPECT_EQ(outcome.code, 2);
+    errors.push_back(outcome.errors);
+  }
+  EXPECT_NE(errors[0].find("is above the stable step of"), std::string::npos) << errors[0];
+  EXPECT_EQ(errors[0], errors[1]);
+}
 } // namespace
