@@ -123,7 +123,14 @@ void expect_rings(const Packing<dim> &whole, int n_ranks, int rings)
         EXPECT_EQ(n_faces[k], int(neighbours[i].size()));
     }
     if (!whole.row_begin.empty()) {
+      EXPECT_EQ(p.row_begin.front(), 0);
       EXPECT_EQ(p.row_begin.back(), p.size());
+      // Rows are as long as they can be: one begins where the whole's does, or behind a gap.
+      for (std::size_t row = 1; row + 1 < p.row_begin.size(); ++row) {
+        const int k = p.row_begin[row], i = held.place[k];
+        EXPECT_TRUE(held.place[k - 1] + 1 != i ||
+                    std::count(whole.row_begin.begin(), whole.row_begin.end(), i) == 1);
+      }
       for (std::size_t row = 0; row + 1 < p.row_begin.size(); ++row)
         for (int k = p.row_begin[row]; k + 1 < p.row_begin[row + 1]; ++k)
           EXPECT_EQ(held.place[k + 1], held.place[k] + 1);
