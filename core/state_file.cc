@@ -136,7 +136,8 @@ Table read_table(const Entry &entry, Cursor &content)
   Table table(unpack_keys(keys, int(entry.n_keys), std::int64_t(entry.n_rows)), int(entry.n_keys));
   std::vector<std::uint64_t> values(entry.n_rows);
   for (std::uint64_t c = 0; c < entry.n_columns; ++c) {
-    std::memcpy(values.data(), columns[c].data(), columns[c].size());
+    if (!values.empty()) // memcpy takes no null pointer, not even for nothing
+      std::memcpy(values.data(), columns[c].data(), columns[c].size());
     table.add_words(entry.columns[c], values.data());
   }
   return table;

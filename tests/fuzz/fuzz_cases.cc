@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +15,10 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/common_interface_defs.h>
+#endif
+
 namespace ligament::fuzz
 {
 namespace
@@ -23,15 +28,25 @@ constexpr int most_seconds = 20; // of processor time, for one case
 std::string document; // that is read now
 char sentence[256];   // how to repeat the case; ready before a signal comes
 
-void tell_and_end(int signal)
+// The address sanitizer tells the others itself.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::array<int, 1> signals = {SIGPROF};
+#else
+constexpr std::array<int, 6> signals = {SIGPROF, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
+#endif
+
+/// The document may hold anything; the stream takes it as it is. All calls are safe in a handler.
+void tell(const char *what)
 {
-  const char *what = signal == SIGPROF ? "\nthis case takes too long: " : "\nthis case crashes: ";
-  // The document may hold anything; a file takes it as it is. All calls are safe in a handler but
-  // c_str(), which only reads.
   (void)!write(STDERR_FILENO, what, std::strlen(what));
   (void)!write(STDERR_FILENO, sentence, std::strlen(sentence));
-  (void)!write(STDERR_FILENO, document.c_str(), document.size());
+  (void)!write(STDERR_FILENO, document.data(), document.size());
   (void)!write(STDERR_FILENO, "\n", 1);
+}
+
+void tell_and_end(int signal)
+{
+  tell(signal == SIGPROF ? "\nthis case takes too long: " : "\nthis case crashes: ");
   std::signal(signal == SIGPROF ? SIGABRT : signal, SIG_DFL);
   raise(signal == SIGPROF ? SIGABRT : signal);
 }
@@ -42,9 +57,12 @@ class Guard
 public:
   Guard()
   {
-    for (const int signal : {SIGPROF, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL})
+    for (const int signal : signals)
       std::signal(signal, tell_and_end);
-#if !defined(__SANITIZE_ADDRESS__) // which reserves terabytes
+#ifdef __SANITIZE_ADDRESS__
+    __sanitizer_set_death_callback([] { tell("\nthis case crashes: "); });
+#endif
+#if !defined(__SANITIZE_ADDRESS__) // it reserves terabytes
     rlimit memory;
     getrlimit(RLIMIT_AS, &memory);
     before_ = memory;
@@ -58,8 +76,11 @@ public:
 #if !defined(__SANITIZE_ADDRESS__)
     setrlimit(RLIMIT_AS, &before_);
 #endif
-    for (const int signal : {SIGPROF, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL})
+    for (const int signal : signals)
       std::signal(signal, SIG_DFL);
+#ifdef __SANITIZE_ADDRESS__
+    __sanitizer_set_death_callback([] {});
+#endif
   }
   void set_time(int seconds)
   {

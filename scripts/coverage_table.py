@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Lines that ran, per folder, from the counters that programs of a build with --coverage left.
+
+    scripts/coverage_table.py build/coverage
+
+A line counts once, however many programs and instances of a template have it: it ran when any of
+them ran it. Prints a table in Markdown, and writes coverage.csv into the build folder.
+"""
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def counts_of(gcda):
+    """(file, line, count) of one object file, as gcov tells it."""
+    text = subprocess.run(["gcov", "--json-format", "--stdout", str(gcda)], cwd=gcda.parent,
+                          capture_output=True, text=True, check=True).stdout
+    for document in text.splitlines():
+        data = json.loads(document)
+        folder = Path(data["current_working_directory"])
+        for file in data["files"]:
+            for line in file["lines"]:
+                yield (folder / file["file"]).resolve(), line["line_number"], line["count"]
+
+
+def main():
+    build = Path(sys.argv[1]).resolve()
+    ran = {}  # by file and line
+    for gcda in sorted(build.rglob("*.gcda")):
+        for file, line, count in counts_of(gcda):
+            if ROOT in file.parents and build not in file.parents:
+                lines = ran.setdefault(file.relative_to(ROOT).as_posix(), {})
+                lines[line] = lines.get(line, 0) + count
+    if not ran:
+        sys.exit("error: no counters in %s: run its tests first" % build)
+    folders = {}
+    with open(build / "coverage.csv", "w", newline="") as out:
+        writer = csv.writer(out)
+        writer.writerow(["file", "lines", "ran", "first lines that did not"])
+        for file, lines in sorted(ran.items()):
+            missed = sorted(n for n, count in lines.items() if count == 0)
+            writer.writerow([file, len(lines), len(lines) - len(missed), " ".join(map(str, missed[:20]))])
+            sums = folders.setdefault(file.rsplit("/", 1)[0], [0, 0])
+            sums[0] += len(lines)
+            sums[1] += len(lines) - len(missed)
+    print("| folder | lines | ran | share |\n|---|---|---|---|")
+    for folder, (lines, good) in sorted(folders.items()):
+        if not folder.startswith("tests"):
+            print("| %s | %d | %d | %.1f %% |" % (folder, lines, good, 100 * good / lines))
+
+
+if __name__ == "__main__":
+    main()
