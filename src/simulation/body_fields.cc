@@ -230,7 +230,8 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
   for (auto *fields : {&state.particles.fields, &state.cells.node_fields})
     if (const Field *stress = find_field(*fields, "stress"))
       fields->push_back(make_field("equivalent_stress", equivalent_stress(stress->values)));
-  if (body.zone && !has_looked_) { // all ranks at once
+  // All ranks at once; the first one may have had the body for itself before.
+  if (body.zone && body.ranks.any(!has_looked_)) {
     look_at_what_stays(body);
     has_looked_ = true;
   }

@@ -517,7 +517,7 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   work_ = core::table(state, "history").reals("work");
   for (const double work : work_)
     most_work_ = std::max(most_work_, work);
-  if (writes_)
+  if (writes_ && fields_.times().empty()) // else they are its own
     fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
                   body.far != nullptr);
   const auto take = [&](const char *kind) -> std::optional<BodyState> {

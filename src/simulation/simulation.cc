@@ -341,6 +341,7 @@ bool Simulation<dim>::skip_steps_at_first()
 {
   core::Log nothing_new;
   std::map<std::string, core::State> told;
+  recorder_.wait(); // what it writes is part of the state
   if (ranks_.is_first()) {
     const core::State run = run_state();
     take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_),
@@ -351,6 +352,7 @@ bool Simulation<dim>::skip_steps_at_first()
     ends_elsewhere_ = !look_around(true);
     if (!ends_elsewhere_) {
       take_step();
+      recorder_.wait();
       told[body_file] = take_state(body_);
       told[run_file] = run_state();
       for (const KeptState &kept : recorder_.kept(body_))
@@ -373,8 +375,6 @@ bool Simulation<dim>::skip_steps_at_first()
             told[body_file], run);
   phases_ = StaticPhases<dim>(scene_, body_, log_);
   phases_.load(run);
-  if (ranks_.is_first())
-    return true;
   damping_.load(run);
   std::map<std::string, core::State> kept;
   for (auto &[name, state] : told)

@@ -166,6 +166,44 @@ TEST_F(RanksCoupled, ABarThatRests)
   for (const char *share : {"share_at_rest", "overlap_at_rest"})
     EXPECT_GT(file_json("on_2/run.json")["figures"][share]["value"], 0.02) << share;
 }
+TEST_F(RanksCoupled, CutAnewWhileFacesOfTheOverlapBreak)
+{
+  expect_the_same_when_cut_anew(3, crack_through_the_overlap(), 60, 50);
+}
+
+/// From equilibrium to equilibrium, with gauges.
+Json calm_until_it_breaks()
+{
+  Json scene = coupled(2, "random", {40, 100}, {0, 46}, 4.1);
+  scene["specimen"]["cracks"] = {{{"points", {{-21, 0}, {-8, 0}}}}};
+  scene["material"]["fracture"]["strength"] = 1e-3;
+  scene["time"] = {{"duration", 4000}, {"loading", "static"}};
+  scene["damping"] = {{"local", 0.4}};
+  scene["coupling"]["guard"] = "warn";
+  scene["loads"] = {{{"boundary", "top"}, {"velocity", {0, 5e-5}}},
+                    {{"boundary", "bottom"}, {"velocity", {0, -5e-5}}}};
+  scene["gauges"] = {
+      {{"name", "length"}, {"kind", "distance"}, {"points", {{0, -40}, {3, 9}}}},
+      {{"name", "mouth"}, {"kind", "opening"}, {"points", {{-18, -0.6}, {-18, 0.6}}}},
+      {{"name", "e"}, {"kind", "strain"}, {"lower", {-6, -8}}, {"upper", {6, 30}}},
+      {{"name", "s"}, {"kind", "stress"}, {"lower", {-6, -8}}, {"upper", {6, 30}}},
+      {{"name", "e_point"}, {"kind", "strain"}, {"points", {{2, 3}}}},
+      {{"name", "s_point"}, {"kind", "stress"}, {"points", {{2, 3}}}},
+      {{"name", "f"}, {"kind", "force"}, {"side", "top"}},
+      {{"name", "tip"}, {"kind", "crack_tip"}, {"points", {{-8, 0}}}, {"direction", {1, 0}}}};
+  return scene;
+}
+
+TEST_F(RanksCoupled, FromEquilibriumToEquilibriumWithGauges)
+{
+  expect_the_same_on({2, 3}, calm_until_it_breaks(), 10);
+}
+
+TEST_F(RanksCoupled, CutAnewBetweenEquilibria)
+{
+  expect_the_same_when_cut_anew(3, calm_until_it_breaks(), 100, 10);
+}
+
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 {
   expect_to_go_on(turned_with_steps(), 2);

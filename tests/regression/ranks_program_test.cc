@@ -115,6 +115,11 @@ TEST_F(RanksProgram, ABarThatRests)
   EXPECT_GT(file_json("on_2/run.json")["figures"]["share_at_rest"]["value"], 0.2);
 }
 
+TEST_F(RanksProgram, CutAnewWhereAllIsCrushed)
+{
+  expect_the_same_when_cut_anew(3, random_that_is_crushed(), 60, 50);
+}
+
 TEST_F(RanksProgram, SlowAllOnAnyNumber)
 {
   for (const Json &scene :

@@ -5,6 +5,8 @@
 #include "core/state_file.h"
 #include "tests/support/run_results.h"
 
+#include <fmt/format.h>
+
 namespace ligament::tests
 {
 namespace fs = std::filesystem;
@@ -113,6 +115,24 @@ protected:
       ASSERT_EQ(outcome.code, code) << outcome.errors;
       expect_same_body(run, "on_1", code == 0);
     }
+  }
+
+  /// And where they are cut anew every so many steps of the far field, elsewhere each time.
+  static void expect_the_same_when_cut_anew(int n, const Json &scene, int interval,
+                                            int least_broken)
+  {
+    expect_the_same_on({}, scene, least_broken);
+    const Outcome outcome = run_ligament(
+        fmt::format("run scene.json -n {} --rebuild-interval {} -o cut_anew", n, interval));
+    ASSERT_EQ(outcome.code, 0) << outcome.errors;
+    expect_same_body("cut_anew", "on_1");
+    const std::string log = file_text("cut_anew/run.log"), what = "cut anew at ";
+    int n_times = 0;
+    for (auto at = log.find(what); at != std::string::npos; at = log.find(what, at + 1)) {
+      ++n_times;
+      EXPECT_EQ(log.substr(at, 60).find(": 0 of "), std::string::npos) << log.substr(at, 60);
+    }
+    EXPECT_GE(n_times, 2);
   }
 
   /// Half of the time on every number of ranks, the rest on every other one.
