@@ -66,11 +66,10 @@ bool Void<dim>::hides(const Vector<dim> &a, const Vector<dim> &b, double depth) 
     const double excess_b = side.normal.dot(b) - side.offset + depth;
     if (excess_a > 0 && excess_b > 0)
       return false;
-    const double crossing = excess_a / (excess_a - excess_b);
     if (excess_a > 0)
-      begin = std::max(begin, crossing);
+      begin = std::max(begin, excess_a / (excess_a - excess_b));
     else if (excess_b > 0)
-      end = std::min(end, crossing);
+      end = std::min(end, excess_a / (excess_a - excess_b));
   }
   return begin < end;
 }
