@@ -66,7 +66,7 @@ void declare(CLI::App &app, CommandLine &line)
   CLI::App &run = *app.add_subcommand("run", "computes a scene");
   add_scene_options(run, line);
   add_ranks_option(run, line,
-                   "processes that compute it together; bodies of particles alone, for now");
+                   "processes that compute it together, with the results of one to the bit");
   add_wall_time_option(run, line);
   add_rebuild_option(run, line);
 
