@@ -175,8 +175,8 @@ TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
 {
   Json scene = scene_of(2, "hexagonal", {20, 20});
   pull(scene, 1, 1, 4e-4);
-  scene["gauges"] = {{{"name", "top"}, {"kind", "force"}, {"side", "top"}}};
-  scene["body_force"] = {{"acceleration", {0, -1e-6}}};
+  scene["specimen"]["periodic"] = {"x"};
+  scene["time"]["loading"] = "sequential";
   written(scene, "scene.json");
   for (const char *how :
        {"exec " LIGAMENT_PROGRAM " run scene.json -n 2 -o out",
@@ -184,7 +184,7 @@ TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
   {
     const Outcome outcome = run_shell(how);
     EXPECT_EQ(outcome.code, 2);
-    for (const char *part : {"gauges on several ranks", "an acceleration of the body"})
+    for (const char *part : {"joined sides on several ranks", "loading bond by bond on several ranks"})
       EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
     EXPECT_FALSE(fs::exists("out"));
   }
@@ -362,5 +362,19 @@ TEST_F(RanksProgram, AStepAboveTheStableOneIsRefusedByAll)
   }
   EXPECT_NE(errors[0].find("is above the stable step of"), std::string::npos) << errors[0];
   EXPECT_EQ(errors[0], errors[1]);
+}
+
+// What a later rank alone finds wrong, while the others wait for it in a message.
+TEST_F(RanksProgram, AnErrorOfOneRankEndsAllWithItsReason)
+{
+  const std::string name = written(halves_that_slide(), "wrong_on_one.json"),
+                    run = program + " run " + name + " -o out";
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = run_shell("exec mpirun -q --oversubscribe -n 2 " + run + " : -n 1 " + run +
+                                    " --set /time/step=5");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)); // documented
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(solvers_of(name).size(), 0u);
 }
 } // namespace
