@@ -111,7 +111,8 @@ void cut_back(const RunFolder &folder, const CheckpointManifest &manifest)
 int resume_command(const CommandLine &line, const core::Ranks &ranks)
 {
   core::Interruption interruption;
-  RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks};
+  RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks,
+                     line.in_pieces};
   const RunFolder folder{line.run};
   std::optional<OpenRun> run; // of the first rank, which locks it before anybody reads
   if (ranks.is_first())

@@ -33,7 +33,8 @@ int run_command(const CommandLine &line, const ReadResult &input, const core::Ra
     if (const auto refused = refused_on_ranks(input); !refused.empty())
       return refuse(line, line.scene, refused, input.warnings);
   core::Interruption interruption;
-  const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks};
+  const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks,
+                           line.in_pieces};
   const RunFolder folder{output_folder(line)};
   if (!ranks.is_first())
     return follow(input, folder, interruption, options);

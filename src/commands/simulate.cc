@@ -38,6 +38,8 @@ RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &w
     simulation.warn(text);
   simulation.keep_checkpoints(input.resolved);
   simulation.rebuild_every(options.rebuild_interval);
+  if (options.in_pieces)
+    simulation.write_pieces();
   interruption.leave_to_caller();
   return simulation.run(options.end_request);
 }

@@ -19,6 +19,7 @@ struct RunOptions
   const Checkpoint *from = nullptr; // where it goes on
   int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
   core::Ranks ranks = {};           // that compute it together
+  bool in_pieces = false;           // each writes the fields of its particles
 };
 
 /// With checkpoints; what stops it is in its record, and warnings in its log.

@@ -75,8 +75,11 @@ BodyState read_state(const RunFolder &folder, const StateEntry &entry)
   state.name = entry.name;
   state.caption = entry.caption;
   state.time = entry.time;
-  if (!entry.particles.empty())
-    state.particles = read_particles_vtp(folder.path + "/" + entry.particles);
+  if (!entry.particles.empty()) {
+    const std::string file = folder.path + "/" + entry.particles;
+    state.particles = std::filesystem::path(file).extension() == ".pvtp" ? read_particles_pvtp(file)
+                                                                         : read_particles_vtp(file);
+  }
   if (!entry.cells.empty())
     state.cells = read_cells_vtu(folder.path + "/" + entry.cells);
   if (std::filesystem::exists(folder.broken_bonds()))

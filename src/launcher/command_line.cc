@@ -56,6 +56,12 @@ void add_ranks_option(CLI::App &app, CommandLine &line, const char *text)
   app.add_option("-n", line.ranks, text)->type_name("RANKS")->check(CLI::Range(1, 1 << 16));
 }
 
+void add_pieces_option(CLI::App &app, CommandLine &line)
+{
+  app.add_flag("--pieces", line.in_pieces,
+               "with -n: every process writes the fields of its own particles (.pvtp)");
+}
+
 void declare(CLI::App &app, CommandLine &line)
 {
   app.require_subcommand(1);
@@ -67,6 +73,7 @@ void declare(CLI::App &app, CommandLine &line)
   add_scene_options(run, line);
   add_ranks_option(run, line,
                    "processes that compute it together, with the results of one to the bit");
+  add_pieces_option(run, line);
   add_wall_time_option(run, line);
   add_rebuild_option(run, line);
 
@@ -79,6 +86,7 @@ void declare(CLI::App &app, CommandLine &line)
       ->type_name("SCENE");
   add_override_option(resume, line);
   add_ranks_option(resume, line, "processes that go on with it, as many as you like");
+  add_pieces_option(resume, line);
   add_wall_time_option(resume, line);
   add_rebuild_option(resume, line);
 

@@ -19,6 +19,7 @@ struct CommandLine
   std::string kind;                   // new: of scene; empty: lists them
   std::string output;                 // what is written: folder, new: file; empty: of that name
   int ranks = 1;                      // run, resume, check
+  bool in_pieces = false;             // run, resume: fields, a file per rank
   bool draw = false;                  // check: also a picture
   std::string study;                  // sweep: file
   int jobs = 1;                       // sweep: runs at the same time

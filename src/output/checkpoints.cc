@@ -116,6 +116,33 @@ core::StateFileSum Checkpoints::write_reference(const core::State &state) const
   return sum;
 }
 
+std::vector<std::int64_t> Checkpoints::are_missing(const std::vector<KeptState> &kept) const
+{
+  std::vector<std::int64_t> missing(kept.size(), 1);
+  try {
+    const auto there = all_kept();
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      missing[k] = there.count(kept[k].name) == 0 ||
+                   !is_there(state_file(folder_, kept_prefix + kept[k].name));
+  } catch (const core::EnvironmentError &) {
+    // Who writes says so.
+  }
+  return missing;
+}
+
+std::vector<KeptState> Checkpoints::taken(std::vector<KeptState> kept,
+                                          const core::Ranks &ranks) const
+{
+  if (ranks.is_one())
+    return kept;
+  const auto missing =
+      ranks.max(ranks.is_first() ? are_missing(kept) : std::vector<std::int64_t>(kept.size(), 0));
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (missing[k])
+      kept[k].take = [state = kept[k].take()] { return state; };
+  return kept;
+}
+
 void Checkpoints::write_kept(CheckpointManifest &manifest, const std::vector<KeptState> &kept) const
 {
   const auto there = all_kept();

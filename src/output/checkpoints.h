@@ -1,6 +1,7 @@
 // The checkpoints of a run, from which it can go on: whole or not there, whatever happens.
 #pragma once
 
+#include "core/ranks.h"
 #include "core/state.h"
 #include "src/output/checkpoint_manifest.h"
 
@@ -51,6 +52,10 @@ public:
   void write(CheckpointManifest manifest, const std::map<std::string, core::State> &states,
              const std::vector<KeptState> &kept = {}) const;
 
+  /// Of several ranks, which all call it: with what take() gives on the first one, asked already
+  /// where that is not on the disk. All take part in it.
+  std::vector<KeptState> taken(std::vector<KeptState> kept, const core::Ranks &ranks) const;
+
   /// What all checkpoints of a run have in common, written once beside them; its sum belongs into
   /// their manifests. It is what a set-up can find again: a checkpoint can do without.
   core::StateFileSum write_reference(const core::State &state) const;
@@ -72,6 +77,8 @@ private:
   void clean() const;
   /// Writes those that are not there yet.
   void write_kept(CheckpointManifest &manifest, const std::vector<KeptState> &kept) const;
+  /// Whether one is on the disk already, and a checkpoint names it.
+  std::vector<std::int64_t> are_missing(const std::vector<KeptState> &kept) const;
   /// Of the checkpoints that are there.
   std::map<std::string, core::StateFileSum> all_kept() const;
   CheckpointManifest read_manifest(std::int64_t number) const;

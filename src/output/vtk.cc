@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "core/folders.h"
 #include "src/output/format.h"
 #include "src/output/xyz.h"
 
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
 namespace ligament::program
@@ -53,6 +55,13 @@ std::string packed(const std::vector<double> &values)
   return bytes;
 }
 
+const char *type_name(Field::Storage storage)
+{
+  return storage == Field::Storage::float32   ? "Float32"
+         : storage == Field::Storage::float64 ? "Float64"
+                                              : "Int64";
+}
+
 std::string component_names(Field::Kind kind)
 {
   if (kind != Field::Kind::tensor)
@@ -68,23 +77,20 @@ void write_array(core::OutputFile &file, const Field &field, std::size_t n_items
 {
   core::require(field.values.size() == n_items * field.n_components(),
                 "field '" + field.name + "': wrong number of values");
-  const char *type = "Float32";
   std::string bytes;
   switch (field.storage) {
   case Field::Storage::float32:
     bytes = packed<float>(field.values);
     break;
   case Field::Storage::float64:
-    type = "Float64";
     bytes = packed<double>(field.values);
     break;
   case Field::Storage::int64:
-    type = "Int64";
     bytes = packed<std::int64_t>(field.values);
   }
   file.write(fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{} "
                          "format=\"binary\">\n",
-                         type, escape_xml(field.name), field.n_components(),
+                         type_name(field.storage), escape_xml(field.name), field.n_components(),
                          component_names(field.kind)));
   file.write(compressed(bytes));
   // After the data: readers take the data from right behind the opening tag.
@@ -172,6 +178,27 @@ void write_particles_vtp(const std::string &path, const ParticleFields &particle
                 });
 }
 
+void write_particles_pvtp(const std::string &path, const ParticleFields &like,
+                          const std::vector<std::string> &files)
+{
+  const auto array = [](const Field &field) {
+    return fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{}/>\n",
+                       type_name(field.storage), escape_xml(field.name), field.n_components(),
+                       component_names(field.kind));
+  };
+  std::string text = "<?xml version=\"1.0\"?>\n"
+                     "<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                     "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
+                     "<PPolyData GhostLevel=\"0\">\n<PPointData>\n";
+  for (const Field &field : like.fields)
+    text += array(field);
+  text += "</PPointData>\n<PPoints>\n" +
+          array({"Points", "m", Field::Kind::vector, {}, Field::Storage::float64}) + "</PPoints>\n";
+  for (const std::string &file : files)
+    text += fmt::format("<Piece Source=\"{}\"/>\n", escape_xml(file));
+  core::write_file(path, text + "</PPolyData>\n</VTKFile>\n");
+}
+
 void write_cells_vtu(const std::string &path, const CellFields &cells)
 {
   constexpr int vtk_quad = 9, vtk_hexahedron = 12;
@@ -243,28 +270,67 @@ std::string bonds_file(const std::string &name)
   return "fields/broken_bonds_" + name + ".vtp";
 }
 
-StateFiles files_of(const std::string &name, bool has_particles, bool has_cells)
+std::string particles_file(const std::string &name, bool in_pieces)
+{
+  return fmt::format("fields/particles_{}.{}", name, in_pieces ? "pvtp" : "vtp");
+}
+
+/// Beside the file of all pieces.
+std::string piece_file(const std::string &name, int number)
+{
+  return fmt::format("particles_{}_{}.vtp", name, number);
+}
+
+StateFiles files_of(const std::string &name, bool has_particles, bool has_cells, bool in_pieces)
 {
   StateFiles files;
   if (has_particles)
-    files.particles = "fields/particles_" + name + ".vtp";
+    files.particles = particles_file(name, in_pieces);
   if (has_cells)
     files.cells = "fields/cells_" + name + ".vtu";
   return files;
 }
 } // namespace
 
-StateFiles FieldSeries::files(const BodyState &state, const std::string &name)
+StateFiles FieldSeries::files(const BodyState &state, const std::string &name, const Piece &piece)
 {
-  return files_of(name, state.particles.size() > 0, state.cells.n_cells() > 0);
+  return files_of(name, state.particles.size() > 0, state.cells.n_cells() > 0, piece.of > 1);
 }
 
-void FieldSeries::write(const BodyState &state)
+void FieldSeries::write_particles(const BodyState &state, const std::string &name,
+                                  const Piece &piece) const
+{
+  const std::string file = folder_.path + "/" + particles_file(name, piece.of > 1);
+  const auto beside = [&](int k) { return folder_.path + "/fields/" + piece_file(name, k); };
+  if (piece.of == 1)
+    write_particles_vtp(file, state.particles);
+  else
+    write_particles_vtp(beside(piece.number), state.particles);
+  if (piece.number > 0)
+    return;
+  if (piece.of > 1) {
+    std::vector<std::string> files;
+    for (int k = 0; k < piece.of; ++k)
+      files.push_back(piece_file(name, k));
+    write_particles_pvtp(file, state.particles, files);
+  }
+  // What a run wrote there before it was cut back, on another number of ranks.
+  const std::string other = folder_.path + "/" + particles_file(name, piece.of == 1);
+  if (std::filesystem::exists(other))
+    core::remove_file(other);
+}
+
+void FieldSeries::write(const BodyState &state, const Piece &piece)
 {
   const std::string name = state.name.empty() ? number(times_.size()) : state.name;
-  const StateFiles files = FieldSeries::files(state, name);
+  const StateFiles files = FieldSeries::files(state, name, piece);
+  if (state.name.empty())
+    times_.push_back(state.time);
+  if (!files.particles.empty())
+    write_particles(state, name, piece);
+  if (piece.number > 0)
+    return;
   if (!files.particles.empty()) {
-    write_particles_vtp(folder_.path + "/" + files.particles, state.particles);
     if (!state.particles.symbols.empty())
       write_atoms_xyz(fmt::format("{}/fields/atoms_{}.xyz", folder_.path, name), state.particles,
                       state.time);
@@ -273,8 +339,6 @@ void FieldSeries::write(const BodyState &state)
   }
   if (!files.cells.empty())
     write_cells_vtu(folder_.path + "/" + files.cells, state.cells);
-  if (state.name.empty())
-    times_.push_back(state.time);
   add(state.time, name, files);
   write_collection();
 }
@@ -283,7 +347,8 @@ void FieldSeries::go_on(const std::vector<double> &times, bool has_particles, bo
 {
   for (const double time : times) {
     const std::string name = number(times_.size());
-    add(time, name, files_of(name, has_particles, has_cells));
+    const bool in_pieces = std::filesystem::exists(folder_.path + "/" + particles_file(name, true));
+    add(time, name, files_of(name, has_particles, has_cells, in_pieces));
     times_.push_back(time);
   }
   if (!times.empty())

@@ -46,6 +46,16 @@ public:
     return field->values;
   }
 
+  /// The files of a set that lies in several.
+  std::vector<std::string> pieces() const
+  {
+    std::vector<std::string> files;
+    for (std::size_t at = 0; (at = text_.find("<Piece ", at)) != std::string::npos; ++at)
+      files.push_back(attribute(text_.substr(at, text_.find('>', at) - at), "Source"));
+    good(!files.empty());
+    return files;
+  }
+
 private:
   void good(bool condition) const
   {
@@ -137,6 +147,27 @@ ParticleFields read_particles_vtp(const std::string &path)
 {
   const Reader file(path);
   return {file.array("Points", "Points"), file.arrays("PointData")};
+}
+
+ParticleFields read_particles_pvtp(const std::string &path)
+{
+  const std::string folder = path.substr(0, path.find_last_of('/') + 1);
+  ParticleFields all;
+  for (const std::string &piece : Reader(path).pieces()) {
+    ParticleFields part = read_particles_vtp(folder + piece);
+    if (all.fields.empty()) {
+      all = std::move(part);
+      continue;
+    }
+    all.reference.insert(all.reference.end(), part.reference.begin(), part.reference.end());
+    for (Field &field : all.fields) {
+      const Field *more = find_field(part.fields, field.name);
+      core::require(more != nullptr && more->kind == field.kind,
+                    path + ": its pieces have different fields");
+      field.values.insert(field.values.end(), more->values.begin(), more->values.end());
+    }
+  }
+  return all;
 }
 
 CellFields read_cells_vtu(const std::string &path)

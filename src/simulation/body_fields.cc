@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 namespace ligament::program
 {
@@ -91,10 +92,23 @@ ParticleFields particle_fields(const CoupledBody<dim> &body)
   if (!body.zone)
     return {};
   ParticleFields fields = fields_at_hand(body);
-  fields.reference = at_first(*body.zone, std::move(fields.reference), 3);
+  fields.reference = owned(*body.zone, std::move(fields.reference), 3);
   for (Field &field : fields.fields)
-    field.values = at_first(*body.zone, std::move(field.values), field.n_components());
+    field.values = owned(*body.zone, std::move(field.values), field.n_components());
   return fields;
+}
+
+template <int dim>
+void gather_at_first(const CoupledBody<dim> &body, BodyState &state)
+{
+  if (body.ranks.is_one() || !body.zone)
+    return;
+  const auto gather = [&](std::vector<double> &values) {
+    values = body.ranks.gather_at_first(values);
+  };
+  gather(state.particles.reference);
+  for (Field &field : state.particles.fields)
+    gather(field.values);
 }
 
 template <int dim>
@@ -200,10 +214,10 @@ void StateFields<dim>::look_at_what_stays(const CoupledBody<dim> &body)
   if (const auto *overlap = body.coupler->overlap())
     for (const auto &m : overlap->members)
       zone_[m.particle] = double(m.pad ? ZoneNumber::pad : ZoneNumber::overlap);
-  zone_ = at_first(*body.zone, std::move(zone_));
-  n_faces_ = at_first(*body.zone, std::move(n_faces_));
-  material_ = at_first(*body.zone, std::move(material_));
-  names_ = names_at_first(*body.zone);
+  zone_ = owned(*body.zone, std::move(zone_));
+  n_faces_ = owned(*body.zone, std::move(n_faces_));
+  material_ = owned(*body.zone, std::move(material_));
+  names_ = owned<dim, std::int64_t>(*body.zone, state.global_id.list());
 }
 
 template <int dim>
@@ -230,11 +244,8 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
   for (auto *fields : {&state.particles.fields, &state.cells.node_fields})
     if (const Field *stress = find_field(*fields, "stress"))
       fields->push_back(make_field("equivalent_stress", equivalent_stress(stress->values)));
-  // All ranks at once; the first one may have had the body for itself before.
-  if (body.zone && body.ranks.any(!has_looked_)) {
+  if (body.zone && !std::exchange(has_looked_, true))
     look_at_what_stays(body);
-    has_looked_ = true;
-  }
   state.cuts = body.cut_faces;
   if (state.cells.n_cells() > 0)
     state.cells.cell_fields = constant_cell_fields(body);
@@ -385,6 +396,8 @@ double crack_length(const CoupledBody<dim> &body, int axis)
 
 template ParticleFields particle_fields(const CoupledBody<2> &);
 template ParticleFields particle_fields(const CoupledBody<3> &);
+template void gather_at_first(const CoupledBody<2> &, BodyState &);
+template void gather_at_first(const CoupledBody<3> &, BodyState &);
 template CellFields cell_fields(const CoupledBody<2> &);
 template CellFields cell_fields(const CoupledBody<3> &);
 template std::vector<ToolOutline> tool_outlines(const CoupledBody<2> &);

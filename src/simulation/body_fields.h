@@ -1,6 +1,5 @@
 // The present state of a body as the output sees it: fields, snapshots, broken faces. Of a body in
-// parts all ranks ask for it at once; the first one gets the fields of all particles, the others
-// empty ones.
+// parts each rank has the fields of the particles that it owns, until gather_at_first().
 #pragma once
 
 #include "src/output/fields.h"
@@ -9,7 +8,7 @@
 
 namespace ligament::program
 {
-/// Displacement, velocity, stress of all particles, and what flow has left where a material flows;
+/// Displacement, velocity, stress of the particles, and what flow has left where a material flows;
 /// empty without a zone. StateFields has the others.
 template <int dim>
 ParticleFields particle_fields(const CoupledBody<dim> &body);
@@ -21,6 +20,10 @@ CellFields cell_fields(const CoupledBody<dim> &body);
 /// The tools that are not gone.
 template <int dim>
 std::vector<ToolOutline> tool_outlines(const CoupledBody<dim> &body);
+
+/// All ranks call it: of the particles the first one has all then, the others none.
+template <int dim>
+void gather_at_first(const CoupledBody<dim> &body, BodyState &state);
 
 /// Completes states of a body by the fields that never change or that follow from others:
 /// equivalent stress, radius, id, material, zone, share of broken faces.
@@ -35,7 +38,7 @@ private:
   void look_at_what_stays(const CoupledBody<dim> &body);
 
   bool has_looked_ = false;
-  // Of the body's particles; found when first needed.
+  // Of the particles that the rank owns; found when first needed.
   std::vector<std::uint8_t> n_faces_; // shared with others
   std::vector<double> material_, zone_;
   std::vector<std::int64_t> names_;
@@ -48,11 +51,11 @@ core::State save_fields(const BodyState &kept, BodyNames<dim> &names);
 template <int dim>
 BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState like);
 
-/// Of the particles, without a motion.
+/// Of the particles, without a motion; all on the first of several ranks, which all call it.
 template <int dim>
 Snapshot empty_snapshot(const CoupledBody<dim> &body);
 
-/// All faces broken so far, in the order of breaking.
+/// All faces broken so far, in the order of breaking. On all ranks at once, which all have them.
 template <int dim>
 std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body);
 

@@ -213,8 +213,23 @@ void Recorder<dim>::record_fields(const CoupledBody<dim> &body, const coupling::
   BodyState state = present_state(body, step.time);
   state.bonds = broken_bonds(body);
   state_fields_.complete(body, state);
-  if (writes_)
-    writer_.submit([this, state = std::move(state)] { fields_.write(state); });
+  write_fields(body, std::move(state));
+}
+
+template <int dim>
+Piece Recorder<dim>::piece(const CoupledBody<dim> &body) const
+{
+  return writes_pieces_ ? Piece{body.ranks.rank(), body.ranks.size()} : Piece{};
+}
+
+template <int dim>
+void Recorder<dim>::write_fields(const CoupledBody<dim> &body, BodyState state)
+{
+  const Piece piece = this->piece(body);
+  if (piece.of == 1)
+    gather_at_first(body, state);
+  if (piece.of > 1 || writes_)
+    writer_.submit([this, piece, state = std::move(state)] { fields_.write(state, piece); });
 }
 
 template <int dim>
@@ -349,18 +364,22 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
                                     [&](const BrokenBond &b) { return b.time > state.time; });
     state.bonds.assign(bonds.begin(), later);
     state_fields_.complete(body, state);
-    const StateFiles files = FieldSeries::files(state, state.name);
+    const StateFiles files = FieldSeries::files(state, state.name, piece(body));
     record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
+    if (piece(body).of > 1)
+      attempt([&] { writer_.submit([this, state, p = piece(body)] { fields_.write(state, p); }); });
+    gather_at_first(body, state);
     all.push_back(&state);
   }
+  if (piece(body).of == 1 && writes_)
+    attempt([&] {
+      writer_.submit([&] {
+        for (const BodyState &state : states)
+          fields_.write(state);
+      });
+    });
   if (!writes_)
     return;
-  attempt([&] {
-    writer_.submit([&] {
-      for (const BodyState &state : states)
-        fields_.write(state);
-    });
-  });
   record.magnification =
       scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
   std::vector<std::string> missing;
@@ -430,6 +449,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.energy_residual = relative_residual(residual_, work_);
   add_warnings(body, record);
   attempt([&] { writer_.wait(); });
+  if (body.ranks.any(!failure_.empty()) && failure_.empty())
+    failure_ = "another rank could not write its part of the fields";
 }
 
 template <int dim>
@@ -483,11 +504,15 @@ void Recorder<dim>::save(core::State &state) const
 template <int dim>
 std::vector<KeptState> Recorder<dim>::kept(const CoupledBody<dim> &body) const
 {
-  const auto names = std::make_shared<BodyNames<dim>>(body);
-  std::vector<KeptState> states = snapshots_.kept(names);
-  const auto add = [&](const char *kind, const BodyState &state) {
-    states.push_back(
-        {kept_name(kind, state.time), [&state, names] { return save_fields<dim>(state, *names); }});
+  const auto names = BodyNames<dim>::at_first(body);
+  std::vector<KeptState> states = snapshots_.kept(body, names);
+  const auto add = [&](const char *kind, const BodyState &own) {
+    states.push_back({kept_name(kind, own.time), [&body, &own, names] {
+                        BodyState state = own;
+                        gather_at_first(body, state);
+                        return body.ranks.is_first() ? save_fields<dim>(state, *names)
+                                                     : core::State();
+                      }});
   };
   if (fields_copied_at_ != 0)
     add("peak", peak_state_);
@@ -498,9 +523,8 @@ std::vector<KeptState> Recorder<dim>::kept(const CoupledBody<dim> &body) const
 
 template <int dim>
 void Recorder<dim>::load(const core::State &state, const std::map<std::string, core::State> &kept,
-                         const CoupledBody<dim> &body, long step)
+                         const CoupledBody<dim> &body)
 {
-  first_step_ = step;
   next_history_ = core::load_real(state, "recorder", "next_history");
   next_fields_ = core::load_real(state, "recorder", "next_fields");
   quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
@@ -511,15 +535,25 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   guard_.load(state);
   path_.load(state);
   curve_.load(state);
-  BodyNames<dim> names(body);
-  snapshots_.load(state, kept, names);
   residual_ = core::table(state, "history").reals("residual");
   work_ = core::table(state, "history").reals("work");
   for (const double work : work_)
     most_work_ = std::max(most_work_, work);
-  if (writes_ && fields_.times().empty()) // else they are its own
-    fields_.go_on(core::table(state, "field_outputs").reals("time"), body.zone != nullptr,
-                  body.far != nullptr);
+  const std::vector<double> written = core::table(state, "field_outputs").reals("time");
+  if (!writes_)
+    fields_.count_on(written);
+  else if (fields_.times().empty()) // else they are its own
+    fields_.go_on(written, body.zone != nullptr, body.far != nullptr);
+  load_copies(state, kept, body);
+}
+
+template <int dim>
+void Recorder<dim>::load_copies(const core::State &state,
+                                const std::map<std::string, core::State> &kept,
+                                const CoupledBody<dim> &body)
+{
+  BodyNames<dim> names(body);
+  snapshots_.load(state, kept, names);
   const auto take = [&](const char *kind) -> std::optional<BodyState> {
     const auto time = load_optional(state, "recorder", kind);
     const auto found = time ? kept.find(kept_name(kind, *time)) : kept.end();
@@ -544,6 +578,7 @@ void Recorder<dim>::watch(const CoupledBody<dim> &body)
   guard_ = OverlapGuard<dim>(body);
   guard_.load(seen);
   history_.watch(scene_, body);
+  state_fields_ = StateFields<dim>();
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);

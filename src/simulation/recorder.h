@@ -31,7 +31,7 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
 
 /// Everything that looks at the body between forces and kick, each part with its own trigger. Only
 /// called in steps in which both models stand at the same time. Of several ranks, which look alike,
-/// the first one writes.
+/// each keeps what it owns, and the first one writes.
 template <int dim>
 class Recorder
 {
@@ -39,6 +39,9 @@ public:
   Recorder(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
            core::Log &log, core::Timers &timers, std::FILE *progress, long n_steps,
            bool draws_pictures, bool goes_on = false);
+
+  /// From now on each rank writes the fields of its own particles.
+  void write_pieces() { writes_pieces_ = true; }
 
   /// Looks at the present state; empty while the run goes on. `damping` in J so far.
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
@@ -68,14 +71,20 @@ public:
   /// After wait().
   void save(core::State &state) const;
   /// The copies of earlier times, which checkpoints keep beside it; to be taken before the next
-  /// look.
+  /// look, on all ranks at once: the first one gets them.
   std::vector<KeptState> kept(const CoupledBody<dim> &body) const;
   /// The body has its motion already, and the files have been cut back. Copies that are lost are
   /// missing in the outputs.
   void load(const core::State &state, const std::map<std::string, core::State> &kept,
-            const CoupledBody<dim> &body, long step);
+            const CoupledBody<dim> &body);
+  /// The part of load() that goes by particles.
+  void load_copies(const core::State &state, const std::map<std::string, core::State> &kept,
+                   const CoupledBody<dim> &body);
+  /// Where a run goes on.
+  void start_at(long step) { first_step_ = step; }
 
-  /// A new body with the state of the one that it took the place of.
+  /// A new body with the state of the one that it took the place of, maybe cut otherwise for ranks:
+  /// then load_copies() has to follow.
   void watch(const CoupledBody<dim> &body);
 
   /// The first file that finish() could not write, and why; empty: none.
@@ -95,6 +104,10 @@ private:
   BodyState present_state(const CoupledBody<dim> &body, double time) const;
   /// Of the pictures, in words of shown_field().
   std::vector<std::string> shown_fields() const;
+  /// The fields of a completed state of the particles at hand.
+  void write_fields(const CoupledBody<dim> &body, BodyState state);
+  /// What a rank writes of them.
+  Piece piece(const CoupledBody<dim> &body) const;
   /// Completes, writes and draws what the run keeps.
   void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record);
   std::string report(const std::string &finding, const coupling::StepTime &step);
@@ -114,7 +127,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_, first_step_ = 0;
-  bool draws_pictures_, writes_, in_static_phase_ = false;
+  bool draws_pictures_, writes_, writes_pieces_ = false, in_static_phase_ = false;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   OverlapGuard<dim> guard_;

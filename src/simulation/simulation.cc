@@ -69,7 +69,8 @@ void Simulation<dim>::go_on_from(const Checkpoint &checkpoint)
   damping_.load(run);
   phases_.load(run);
   servos_.load(run);
-  recorder_.load(run, checkpoint.kept, body_, clock_.now.step);
+  recorder_.load(run, checkpoint.kept, body_);
+  recorder_.start_at(clock_.now.step);
   setup_seconds_ += manifest.setup_seconds;
   timers_.add(manifest.timing);
   started_ = manifest.started;
@@ -98,6 +99,15 @@ core::State Simulation<dim>::run_state() const
   servos_.save(run);
   recorder_.save(run);
   return run;
+}
+
+template <int dim>
+std::map<std::string, core::State> Simulation<dim>::kept_copies() const
+{
+  std::map<std::string, core::State> copies;
+  for (const KeptState &kept : recorder_.kept(body_))
+    copies[kept.name] = kept.take();
+  return copies;
 }
 
 template <int dim>
@@ -137,12 +147,17 @@ void Simulation<dim>::build_anew(const std::vector<std::int64_t> &weights)
   const double begun = timers_.total();
   const auto own_before = body_.ranks.gather_all(std::vector<std::int64_t>{n_own()});
   const core::State body = core::merged(take_state(body_), body_.ranks);
-  core::State run;
-  regime_.save(run);
+  std::map<std::string, core::State> copies; // each rank keeps those of its particles
+  if (!body_.ranks.is_one())
+    copies = core::from_first(kept_copies(), body_.ranks);
+  recorder_.wait(); // what it writes is part of the state
+  const core::State run = run_state();
   core::Log nothing_new;
   weights_ = weights;
   take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_, ranks_, weights_),
             body, run);
+  if (!body_.ranks.is_one())
+    recorder_.load_copies(run, copies, body_);
   ++n_rebuilt_;
   build_seconds_ = timers_.total() - begun;
   if (!body_.ranks.is_one()) {
@@ -168,7 +183,7 @@ void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
 {
   // What all ranks take part in comes first: a disk may refuse what follows.
   const core::State body = core::merged(take_state(body_), body_.ranks);
-  const std::vector<KeptState> kept = recorder_.kept(body_);
+  const std::vector<KeptState> kept = checkpoints.taken(recorder_.kept(body_), body_.ranks);
   if (!body_.ranks.is_first())
     return;
   CheckpointManifest manifest;
@@ -341,11 +356,13 @@ bool Simulation<dim>::skip_steps_at_first()
 {
   core::Log nothing_new;
   std::map<std::string, core::State> told;
+  const auto copies = kept_copies();
   recorder_.wait(); // what it writes is part of the state
   if (ranks_.is_first()) {
     const core::State run = run_state();
     take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_),
               *before_forces_, run);
+    recorder_.load_copies(run, copies, body_);
     phases_ = StaticPhases<dim>(scene_, body_, log_);
     phases_.load(run);
     compute_forces();
@@ -355,8 +372,8 @@ bool Simulation<dim>::skip_steps_at_first()
       recorder_.wait();
       told[body_file] = take_state(body_);
       told[run_file] = run_state();
-      for (const KeptState &kept : recorder_.kept(body_))
-        told["kept " + kept.name] = kept.take();
+      for (auto &[name, copy] : kept_copies())
+        told["kept " + name] = std::move(copy);
     }
   }
   told = core::from_first(told, ranks_);
@@ -380,7 +397,7 @@ bool Simulation<dim>::skip_steps_at_first()
   for (auto &[name, state] : told)
     if (name.compare(0, 5, "kept ") == 0)
       kept[name.substr(5)] = std::move(state);
-  recorder_.load(run, kept, body_, clock_.now.step);
+  recorder_.load(run, kept, body_);
   return true;
 }
 

@@ -38,6 +38,9 @@ public:
   /// cut elsewhere each time.
   void rebuild_every(int interval) { rebuild_interval_ = interval; }
 
+  /// Of several ranks each writes the fields of its own particles.
+  void write_pieces() { recorder_.write_pieces(); }
+
   /// A warning about the input, which log and record repeat.
   void warn(const std::string &text) { log_.warning(text); }
 
@@ -58,6 +61,8 @@ private:
   /// To a body that no step has moved.
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;
+  /// What the recorder keeps of earlier times, on the first rank. All call it.
+  std::map<std::string, core::State> kept_copies() const;
   /// Goes on with another body that no step has moved, from this state of the one before.
   void take_over(CoupledBody<dim> body, const core::State &of_body, const core::State &run);
   /// Cut for ranks by these weights of blocks of particles.

@@ -14,7 +14,18 @@ template <int dim>
 Motion<dim> motion(const CoupledBody<dim> &body, double time)
 {
   const auto &state = body.zone->state;
-  return {time, at_first(*body.zone, state.displacement), at_first(*body.zone, state.velocity)};
+  return {time, owned(*body.zone, state.displacement), owned(*body.zone, state.velocity)};
+}
+
+/// All of it on the first rank.
+template <int dim>
+Motion<dim> at_first(const CoupledBody<dim> &body, Motion<dim> m)
+{
+  if (!body.ranks.is_one())
+    for (auto *values : {&m.displacement, &m.velocity})
+      for (auto &component : *values)
+        component = body.ranks.gather_at_first(component);
+  return m;
 }
 
 /// Names and slots of what is kept.
@@ -141,8 +152,11 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
   if (!kept_[0])
     return;
   Snapshot snapshot = empty_snapshot(body);
-  for (std::size_t k = 0; k < kept_.size() && body.ranks.is_first(); ++k) {
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
     if (!kept_[k])
+      continue;
+    const Motion<dim> all = at_first(body, *kept_[k]);
+    if (!body.ranks.is_first())
       continue;
     const auto in_turn = [&](const Components<dim> &components) {
       std::vector<double> values;
@@ -151,9 +165,9 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
           values.push_back(components[c][i]);
       return values;
     };
-    snapshot.time = kept_[k]->time;
-    snapshot.displacement = in_turn(kept_[k]->displacement);
-    snapshot.velocity = in_turn(kept_[k]->velocity);
+    snapshot.time = all.time;
+    snapshot.displacement = in_turn(all.displacement);
+    snapshot.velocity = in_turn(all.velocity);
     write_snapshot(folder.snapshots()[k], snapshot);
   }
 }
@@ -169,12 +183,16 @@ void SnapshotKeeper<dim>::save(core::State &state) const
 }
 
 template <int dim>
-std::vector<KeptState> SnapshotKeeper<dim>::kept(const std::shared_ptr<BodyNames<dim>> &names) const
+std::vector<KeptState> SnapshotKeeper<dim>::kept(const CoupledBody<dim> &body,
+                                                 const std::shared_ptr<BodyNames<dim>> &names) const
 {
   std::vector<KeptState> states;
   const auto add = [&](const char *kind, const std::optional<Motion<dim>> &m) {
     if (m)
-      states.push_back({kept_name(kind, m->time), [&m, names] { return state_of(*m, *names); }});
+      states.push_back({kept_name(kind, m->time), [&body, &m, names] {
+                          const Motion<dim> all = at_first(body, *m);
+                          return body.ranks.is_first() ? state_of(all, *names) : core::State();
+                        }});
   };
   for (const auto &m : kept_)
     add("snapshot", m);

@@ -1,5 +1,5 @@
 // The motion of the particles at the last common times, for comparisons with other runs. Of a body
-// in parts the first rank keeps that of all.
+// in parts each rank keeps that of the particles it owns.
 #pragma once
 
 #include "src/output/checkpoints.h"
@@ -13,7 +13,7 @@
 
 namespace ligament::program
 {
-/// Of all particles.
+/// Of the particles.
 template <int dim>
 struct Motion
 {
@@ -49,12 +49,14 @@ public:
   void look_at_equilibrium(const CoupledBody<dim> &body, const coupling::StepTime &step,
                            bool wanted);
 
-  /// Writes what was kept, the latest first.
+  /// Writes what was kept, the latest first. All ranks call it; the first one writes.
   void write(const CoupledBody<dim> &body, const RunFolder &folder) const;
 
   void save(core::State &state) const;
-  /// The motions, which checkpoints keep beside it; the names must live until they are taken.
-  std::vector<KeptState> kept(const std::shared_ptr<BodyNames<dim>> &names) const;
+  /// The motions, which checkpoints keep beside it; the body must live until they are taken, on all
+  /// ranks at once. `names`: of all particles on the first rank.
+  std::vector<KeptState> kept(const CoupledBody<dim> &body,
+                              const std::shared_ptr<BodyNames<dim>> &names) const;
   /// Motions that are lost are missing.
   void load(const core::State &state, const std::map<std::string, core::State> &kept,
             BodyNames<dim> &names);

@@ -1,11 +1,35 @@
-// What observers see of a body in parts: the first rank has all of it, in the one order of the
-// particles, the others nothing.
+// What observers see of a body in parts: each rank what it owns, and the first one, where it asks
+// for that, all of it in the one order of the particles, the others nothing.
 #pragma once
 
 #include "src/simulation/coupled_body.h"
 
 namespace ligament::program
 {
+/// From values of the particles at hand, n of each, those of what the rank owns. One process owns
+/// all.
+template <int dim, typename T>
+std::vector<T> owned(const particles::ParticleSolver<dim> &zone, std::vector<T> values, int n = 1)
+{
+  if (zone.ranks().is_one())
+    return values;
+  std::vector<T> own;
+  for (const auto &[begin, end] : zone.state.part.owned)
+    own.insert(own.end(), values.begin() + std::ptrdiff_t(n) * begin,
+               values.begin() + std::ptrdiff_t(n) * end);
+  return own;
+}
+
+/// Component by component.
+template <int dim, std::size_t n>
+std::array<std::vector<double>, n> owned(const particles::ParticleSolver<dim> &zone,
+                                         std::array<std::vector<double>, n> values)
+{
+  for (auto &component : values)
+    component = owned<dim, double>(zone, std::move(component));
+  return values;
+}
+
 /// From values of the particles at hand, n of each, those of the body's on the first rank; nothing
 /// on the others. One process has them already. All ranks call it.
 template <int dim, typename T>
@@ -14,11 +38,7 @@ std::vector<T> at_first(const particles::ParticleSolver<dim> &zone, std::vector<
 {
   if (zone.ranks().is_one())
     return values;
-  std::vector<T> own;
-  for (const auto &[begin, end] : zone.state.part.owned)
-    own.insert(own.end(), values.begin() + std::ptrdiff_t(n) * begin,
-               values.begin() + std::ptrdiff_t(n) * end);
-  return zone.ranks().gather_at_first(own);
+  return zone.ranks().gather_at_first(owned<dim, T>(zone, std::move(values), n));
 }
 
 /// Component by component.

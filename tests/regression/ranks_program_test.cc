@@ -1,5 +1,6 @@
 // Runs on several ranks: byte for byte what one process writes, also where they go on on other
 // numbers of ranks. Through the programs.
+#include "src/output/vtk_reader.h"
 #include "tests/support/rank_runs.h"
 
 #include <csignal>
@@ -149,6 +150,56 @@ TEST_F(RanksProgram, GoOnOnAnotherNumber)
 }
 
 // States of parts don't say what rests: whoever goes on wakes all.
+/// The same values, whatever the files are.
+void expect_same_fields(const std::string &run, const std::string &reference)
+{
+  int n_times = 0;
+  for (const auto &entry : fs::directory_iterator(reference + "/fields")) {
+    const std::string name = entry.path().stem();
+    if (name.compare(0, 10, "particles_") != 0)
+      continue;
+    ++n_times;
+    const auto whole = program::read_particles_vtp(entry.path()),
+               pieces = program::read_particles_pvtp(run + "/fields/" + name + ".pvtp");
+    EXPECT_TRUE(pieces.reference == whole.reference) << name;
+    ASSERT_EQ(pieces.fields.size(), whole.fields.size());
+    for (std::size_t k = 0; k < whole.fields.size(); ++k)
+      EXPECT_TRUE(pieces.fields[k].name == whole.fields[k].name &&
+                  pieces.fields[k].values == whole.fields[k].values)
+          << name << " " << whole.fields[k].name;
+  }
+  EXPECT_GT(n_times, 3);
+}
+
+// Each rank the fields of its own particles; where the run is cut anew and goes on, too. Pictures,
+// tables and motions are those of one process.
+TEST_F(RanksProgram, FieldsInPieces)
+{
+  const Json scene = halves_that_slide();
+  expect_the_same_on({}, scene, 10);
+  const std::string half = std::to_string(double(scene["time"]["duration"]) / 2),
+                    whole = std::to_string(double(scene["time"]["duration"]));
+  ASSERT_EQ(run_ligament("run scene.json -n 3 --pieces --rebuild-interval 60 -o pieces "
+                         "--set /time/duration=" +
+                         half)
+                .code,
+            0);
+  const Outcome outcome = run_ligament("resume pieces -n 2 --pieces --set /time/duration=" + whole);
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  expect_same_fields("pieces", "on_1");
+  auto found = results("pieces"), expected = results("on_1");
+  for (auto *files : {&found, &expected})
+    for (auto file = files->begin(); file != files->end();)
+      file = file->first.find("particles_") != std::string::npos || file->first == "fields.pvd" ||
+                     file->first == "body.bin"
+                 ? files->erase(file)
+                 : std::next(file);
+  EXPECT_GT(expected.size(), 8u);
+  EXPECT_TRUE(found == expected);
+  EXPECT_TRUE(last_state("pieces") == last_state("on_1"));
+  EXPECT_EQ(run_ligament("report pieces").code, 0);
+}
+
 TEST_F(RanksProgram, GoOnFromABarThatRests)
 {
   Json scene = bar_that_rests();
@@ -184,7 +235,8 @@ TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
   {
     const Outcome outcome = run_shell(how);
     EXPECT_EQ(outcome.code, 2);
-    for (const char *part : {"joined sides on several ranks", "loading bond by bond on several ranks"})
+    for (const char *part :
+         {"joined sides on several ranks", "loading bond by bond on several ranks"})
       EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
     EXPECT_FALSE(fs::exists("out"));
   }
@@ -370,11 +422,12 @@ TEST_F(RanksProgram, AnErrorOfOneRankEndsAllWithItsReason)
   const std::string name = written(halves_that_slide(), "wrong_on_one.json"),
                     run = program + " run " + name + " -o out";
   const auto begin = std::chrono::steady_clock::now();
-  const Outcome outcome = run_shell("exec mpirun -q --oversubscribe -n 2 " + run + " : -n 1 " + run +
-                                    " --set /time/step=5");
+  const Outcome outcome = run_shell("exec mpirun -q --oversubscribe -n 2 " + run + " : -n 1 " +
+                                    run + " --set /time/step=5");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)); // documented
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos)
+      << outcome.errors;
   EXPECT_EQ(solvers_of(name).size(), 0u);
 }
 } // namespace

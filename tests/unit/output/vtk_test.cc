@@ -318,6 +318,48 @@ TEST(Vtk, StatesAreReadBack)
   EXPECT_THROW(read_particles_vtp("kept/absent.vtp"), core::InputError);
 }
 
+// As several ranks write them, in any order; what an earlier run wrote there in one piece goes.
+TEST(Vtk, StatesInPiecesAreReadBack)
+{
+  std::filesystem::remove_all("pieces");
+  const RunFolder folder{"pieces"};
+  folder.create();
+  BodyState state;
+  state.time = 0.5;
+  state.particles = some_particles(10);
+  FieldSeries(folder, 2).write(state);
+  const std::vector<std::size_t> cuts = {0, 3, 4, 10};
+  for (const int k : {2, 0, 1}) {
+    BodyState part = state;
+    const auto take = [&](std::vector<double> &values, int n) {
+      values = {values.begin() + long(n * cuts[k]), values.begin() + long(n * cuts[k + 1])};
+    };
+    take(part.particles.reference, 3);
+    for (Field &field : part.particles.fields)
+      take(field.values, field.n_components());
+    FieldSeries(folder, 2).write(part, {k, 3});
+  }
+  EXPECT_FALSE(std::filesystem::exists("pieces/fields/particles_0000.vtp"));
+  EXPECT_NE(core::read_file(folder.pvd()).find("\"fields/particles_0000.pvtp\""),
+            std::string::npos);
+  const BodyState back = read_state(folder, {"0000", "", 0.5, "fields/particles_0000.pvtp", ""});
+  EXPECT_EQ(back.particles.reference, state.particles.reference);
+  ASSERT_EQ(back.particles.fields.size(), state.particles.fields.size());
+  for (const Field &field : state.particles.fields)
+    EXPECT_EQ(find_field(back.particles.fields, field.name)->values, field.values) << field.name;
+
+  FieldSeries more(folder, 2);
+  more.go_on({0.5}, true, false);
+  EXPECT_NE(core::read_file(folder.pvd()).find("\"fields/particles_0000.pvtp\""),
+            std::string::npos);
+  FieldSeries(folder, 2).write(state);
+  EXPECT_FALSE(std::filesystem::exists("pieces/fields/particles_0000.pvtp"));
+
+  std::filesystem::remove("pieces/fields/particles_0000_1.vtp");
+  FieldSeries(folder, 2).write(state, {0, 3});
+  EXPECT_THROW(read_particles_pvtp("pieces/fields/particles_0000.pvtp"), core::InputError);
+}
+
 TEST(Vtk, FullDiskAndWrongSizesAreNoticed)
 {
   EXPECT_THROW(write_particles_vtp("/dev/full", some_particles(3)), core::EnvironmentError);
