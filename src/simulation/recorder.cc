@@ -6,14 +6,12 @@
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
 #include "src/simulation/guards.h"
-#include "src/simulation/kept_tables.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 
 namespace ligament::program
 {
@@ -458,127 +456,6 @@ void Recorder<dim>::write_bonds(const std::string &path, const std::vector<Broke
 {
   if (writes_)
     write_broken_bonds(path, bonds, dim);
-}
-
-template <int dim>
-std::map<std::string, std::int64_t> Recorder<dim>::sync()
-{
-  if (!writes_)
-    return {};
-  history_.sync();
-  std::map<std::string, std::int64_t> sizes;
-  for (const std::string &file : {folder_.history(), folder_.log()}) {
-    std::error_code none; // the log may have ended early
-    const auto size = std::filesystem::file_size(file, none);
-    sizes[std::filesystem::path(file).filename()] = none ? 0 : std::int64_t(size);
-  }
-  return sizes;
-}
-
-template <int dim>
-void Recorder<dim>::save(core::State &state) const
-{
-  core::save_value(state, "recorder", "next_history", next_history_);
-  core::save_value(state, "recorder", "next_fields", next_fields_);
-  core::save_value(state, "recorder", "quasi_static", std::int64_t(quasi_static_));
-  core::save_value(state, "recorder", "in_static_phase", std::int64_t(in_static_phase_));
-  core::save_value(state, "recorder", "fields_copied_at", fields_copied_at_);
-  save_optional(state, "recorder", "broken_time", broken_time_);
-  save_optional(state, "recorder", "trusted_until", trusted_until_);
-  guard_.save(state);
-  path_.save(state);
-  curve_.save(state);
-  snapshots_.save(state);
-  core::Table rows = numbered_rows(work_.size()), outputs = numbered_rows(fields_.times().size());
-  rows.add("residual", residual_);
-  rows.add("work", work_);
-  state.emplace("history", std::move(rows));
-  outputs.add("time", fields_.times());
-  state.emplace("field_outputs", std::move(outputs));
-  save_optional(state, "recorder", "peak",
-                fields_copied_at_ != 0 ? std::optional(peak_state_.time) : std::nullopt);
-  save_optional(state, "recorder", "broken",
-                break_state_ ? std::optional(break_state_->time) : std::nullopt);
-}
-
-template <int dim>
-std::vector<KeptState> Recorder<dim>::kept(const CoupledBody<dim> &body) const
-{
-  const auto names = BodyNames<dim>::at_first(body);
-  std::vector<KeptState> states = snapshots_.kept(body, names);
-  const auto add = [&](const char *kind, const BodyState &own) {
-    states.push_back({kept_name(kind, own.time), [&body, &own, names] {
-                        BodyState state = own;
-                        gather_at_first(body, state);
-                        return body.ranks.is_first() ? save_fields<dim>(state, *names)
-                                                     : core::State();
-                      }});
-  };
-  if (fields_copied_at_ != 0)
-    add("peak", peak_state_);
-  if (break_state_)
-    add("broken", *break_state_);
-  return states;
-}
-
-template <int dim>
-void Recorder<dim>::load(const core::State &state, const std::map<std::string, core::State> &kept,
-                         const CoupledBody<dim> &body)
-{
-  next_history_ = core::load_real(state, "recorder", "next_history");
-  next_fields_ = core::load_real(state, "recorder", "next_fields");
-  quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
-  in_static_phase_ = core::load_integer(state, "recorder", "in_static_phase") != 0;
-  fields_copied_at_ = core::load_real(state, "recorder", "fields_copied_at");
-  broken_time_ = load_optional(state, "recorder", "broken_time");
-  trusted_until_ = load_optional(state, "recorder", "trusted_until");
-  guard_.load(state);
-  path_.load(state);
-  curve_.load(state);
-  residual_ = core::table(state, "history").reals("residual");
-  work_ = core::table(state, "history").reals("work");
-  for (const double work : work_)
-    most_work_ = std::max(most_work_, work);
-  const std::vector<double> written = core::table(state, "field_outputs").reals("time");
-  if (!writes_)
-    fields_.count_on(written);
-  else if (fields_.times().empty()) // else they are its own
-    fields_.go_on(written, body.zone != nullptr, body.far != nullptr);
-  load_copies(state, kept, body);
-}
-
-template <int dim>
-void Recorder<dim>::load_copies(const core::State &state,
-                                const std::map<std::string, core::State> &kept,
-                                const CoupledBody<dim> &body)
-{
-  BodyNames<dim> names(body);
-  snapshots_.load(state, kept, names);
-  const auto take = [&](const char *kind) -> std::optional<BodyState> {
-    const auto time = load_optional(state, "recorder", kind);
-    const auto found = time ? kept.find(kept_name(kind, *time)) : kept.end();
-    if (found == kept.end())
-      return {};
-    BodyState taken = load_fields(found->second, names, present_state(body, 0));
-    taken.time = *time;
-    return taken;
-  };
-  if (auto peak = take("peak"))
-    peak_state_ = std::move(*peak);
-  else
-    fields_copied_at_ = 0; // another copy is due
-  break_state_ = take("broken");
-}
-
-template <int dim>
-void Recorder<dim>::watch(const CoupledBody<dim> &body)
-{
-  core::State seen;
-  guard_.save(seen);
-  guard_ = OverlapGuard<dim>(body);
-  guard_.load(seen);
-  history_.watch(scene_, body);
-  state_fields_ = StateFields<dim>();
 }
 
 template double output_seconds(const Scene &, const CoupledBody<2> &, long);
