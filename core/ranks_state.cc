@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <optional>
 
 namespace ligament::core
 {
 namespace
 {
-using Key = std::vector<std::int64_t>;
-using Row = std::vector<std::uint64_t>;
-
 /// The same on all ranks? Empty lines of those that have nothing to say don't count.
 std::vector<std::string> different_texts(const std::string &mine, const Ranks &ranks)
 {
@@ -45,41 +44,72 @@ std::vector<std::string> columns_of(const std::string &name, const Table &mine, 
   return columns;
 }
 
-/// Of all ranks; false where two say different things under one name.
-bool merge_rows(const Table &mine, std::size_t n_columns, const Ranks &ranks,
-                std::map<Key, Row> &rows)
+/// What some ranks have together, or one of them.
+template <typename T>
+std::vector<T> gathered(const std::vector<T> &here, const Ranks &ranks, bool at_first)
 {
-  const std::size_t n_keys = mine.n_keys(), n = mine.n_rows();
-  const auto keys = ranks.gather(mine.keys());
+  return at_first ? ranks.gather_at_first(here) : ranks.gather_all(here);
+}
+
+/// Rows of several ranks, one behind the other.
+struct Rows
+{
+  std::size_t n_keys, n_columns;
+  std::vector<std::int64_t> keys;
+  std::vector<std::uint64_t> words; // row by row
+
+  const std::int64_t *key(std::size_t row) const { return keys.data() + row * n_keys; }
+  const std::uint64_t *row(std::size_t row) const { return words.data() + row * n_columns; }
+  bool is_before(std::size_t a, std::size_t b) const
+  {
+    return std::lexicographical_compare(key(a), key(a) + n_keys, key(b), key(b) + n_keys);
+  }
+};
+
+Rows rows_of(const Table &mine, std::size_t n_columns, const Ranks &ranks, bool at_first)
+{
+  const std::size_t n = mine.n_rows();
   // Row by row, whatever the number of rows of each.
   std::vector<std::uint64_t> words(n * n_columns);
   for (std::size_t r = 0; r < n; ++r)
     for (std::size_t c = 0; c < n_columns; ++c)
       words[r * n_columns + c] = mine.words()[c * n + r];
-  const auto all = ranks.gather(words);
-  bool agree = true;
-  for (std::size_t rank = 0; rank < keys.size(); ++rank)
-    for (std::size_t r = 0; r * n_keys < keys[rank].size(); ++r) {
-      const auto key = keys[rank].begin() + std::ptrdiff_t(r * n_keys);
-      const auto first = all[rank].begin() + std::ptrdiff_t(r * n_columns);
-      Row row(first, first + std::ptrdiff_t(n_columns));
-      const auto [place, is_new] = rows.emplace(Key(key, key + std::ptrdiff_t(n_keys)), row);
-      agree = agree && (is_new || place->second == row);
-    }
-  return agree;
+  return {std::size_t(mine.n_keys()), n_columns, gathered(mine.keys(), ranks, at_first),
+          gathered(words, ranks, at_first)};
 }
 
-Table table_of(const std::map<Key, Row> &rows, int n_keys, const std::vector<std::string> &columns)
+/// The rows in the order of their keys, one for each; nothing where two say different things under
+/// one key.
+std::optional<std::vector<std::size_t>> order_of(const Rows &rows)
+{
+  std::vector<std::size_t> order(rows.keys.size() / rows.n_keys), one_each;
+  std::iota(order.begin(), order.end(), 0);
+  const auto is_before = [&](std::size_t a, std::size_t b) { return rows.is_before(a, b); };
+  // Parts of a body follow each other: of most tables nothing is to be sorted.
+  if (!std::is_sorted(order.begin(), order.end(), is_before))
+    std::stable_sort(order.begin(), order.end(), is_before);
+  one_each.reserve(order.size());
+  for (const std::size_t r : order) {
+    if (one_each.empty() || rows.is_before(one_each.back(), r))
+      one_each.push_back(r);
+    else if (!std::equal(rows.row(r), rows.row(r) + rows.n_columns, rows.row(one_each.back())))
+      return {};
+  }
+  return one_each;
+}
+
+Table table_of(const Rows &rows, const std::vector<std::size_t> &order,
+               const std::vector<std::string> &columns)
 {
   std::vector<std::int64_t> keys;
-  for (const auto &[key, row] : rows)
-    keys.insert(keys.end(), key.begin(), key.end());
-  Table table(std::move(keys), n_keys);
-  std::vector<std::uint64_t> words(rows.size());
+  keys.reserve(order.size() * rows.n_keys);
+  for (const std::size_t r : order)
+    keys.insert(keys.end(), rows.key(r), rows.key(r) + rows.n_keys);
+  Table table(std::move(keys), int(rows.n_keys));
+  std::vector<std::uint64_t> words(order.size());
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    std::size_t r = 0;
-    for (const auto &[key, row] : rows)
-      words[r++] = row[c];
+    for (std::size_t k = 0; k < order.size(); ++k)
+      words[k] = rows.row(order[k])[c];
     table.add_words(columns[c], words.data());
   }
   return table;
@@ -170,7 +200,9 @@ bool is_sum(const Table &table)
          table.columns() == std::vector<std::string>{"word"};
 }
 
-State merged(const State &part, const Ranks &ranks)
+namespace
+{
+State merged(const State &part, const Ranks &ranks, bool at_first)
 {
   if (ranks.is_one())
     return part;
@@ -185,12 +217,24 @@ State merged(const State &part, const Ranks &ranks)
       continue;
     }
     const auto columns = columns_of(name, table, ranks);
-    std::map<Key, Row> rows;
-    require(merge_rows(table, columns.size(), ranks, rows),
-            "state: the ranks have come apart in the table '" + name + "'");
-    whole[name] = table_of(rows, table.n_keys(), columns);
+    const Rows rows = rows_of(table, columns.size(), ranks, at_first);
+    const auto order = order_of(rows);
+    require(order.has_value(), "state: the ranks have come apart in the table '" + name + "'");
+    whole[name] = table_of(rows, *order, columns);
   }
   return whole;
+}
+} // namespace
+
+State merged(const State &part, const Ranks &ranks)
+{
+  return merged(part, ranks, false);
+}
+
+State merged_at_first(const State &part, const Ranks &ranks)
+{
+  State whole = merged(part, ranks, true);
+  return ranks.is_first() ? whole : State();
 }
 
 State share_of(const State &whole, const Ranks &ranks)

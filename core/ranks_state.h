@@ -11,6 +11,9 @@ namespace ligament::core
 /// they are not.
 State merged(const State &part, const Ranks &ranks);
 
+/// The same on the first rank alone, which may throw; the others get nothing.
+State merged_at_first(const State &part, const Ranks &ranks);
+
 /// What a part takes of the whole: everything, but for sums, which one rank goes on with; merged()
 /// then has them once.
 State share_of(const State &whole, const Ranks &ranks);

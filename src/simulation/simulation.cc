@@ -182,7 +182,7 @@ template <int dim>
 void Simulation<dim>::write_checkpoint(const Checkpoints &checkpoints)
 {
   // What all ranks take part in comes first: a disk may refuse what follows.
-  const core::State body = core::merged(take_state(body_), body_.ranks);
+  const core::State body = core::merged_at_first(take_state(body_), body_.ranks);
   const std::vector<KeptState> kept = checkpoints.taken(recorder_.kept(body_), body_.ranks);
   if (!body_.ranks.is_first())
     return;
@@ -346,7 +346,7 @@ void Simulation<dim>::keep_for_phases()
   before_forces_.reset();
   if (!ranks_.is_one() && clock_.now.step % body_.coupler->step_ratio() == 0 &&
       phases_.look_at(clock_))
-    before_forces_ = core::merged(take_state(body_), ranks_);
+    before_forces_ = core::merged_at_first(take_state(body_), ranks_);
 }
 
 // Equilibria are solved for in one process: their systems couple all of the body. The state goes

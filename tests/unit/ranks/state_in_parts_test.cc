@@ -13,7 +13,7 @@ TEST(RanksState, MergesRowsAndSums)
   const core::Ranks &ranks = test::ranks();
   const int r = ranks.rank(), n = ranks.size();
   core::State part;
-  core::Table own({10 + r}), shared({1, 2, 3}),
+  core::Table own({20 - r}), shared({1, 2, 3}), // against the order of the ranks
       some(r == n - 1 ? std::vector<std::int64_t>{7} : std::vector<std::int64_t>{});
   own.add("x", std::vector<double>{r + 0.5});
   shared.add("y", std::vector<std::int64_t>{4, 5, 6});
@@ -28,7 +28,7 @@ TEST(RanksState, MergesRowsAndSums)
   const core::State whole = core::merged(part, ranks);
   EXPECT_EQ(int(whole.at("own").n_rows()), n);
   for (int k = 0; k < n; ++k)
-    EXPECT_EQ(whole.at("own").reals("x")[k], k + 0.5);
+    EXPECT_EQ(whole.at("own").reals("x")[k], n - 1 - k + 0.5);
   EXPECT_TRUE(whole.at("shared") == shared);
   EXPECT_EQ(whole.at("some").reals("z"), std::vector<double>{0.25});
   double expected = 0;
@@ -38,6 +38,7 @@ TEST(RanksState, MergesRowsAndSums)
   // Shared out and merged again it is the same.
   const core::State again = core::merged(core::share_of(whole, ranks), ranks);
   EXPECT_TRUE(again == whole);
+  EXPECT_TRUE(core::merged_at_first(part, ranks) == (ranks.is_first() ? whole : core::State()));
 }
 
 TEST(RanksState, RefusesRanksThatHaveComeApart)
