@@ -111,7 +111,10 @@ TEST(Launcher, WrongStudiesArePrintedWithAllErrors)
 TEST(Launcher, SeveralRanksRefuseWhatOneProcessMustCompute)
 {
   for (const std::string command : {"run ", "check "}) {
-    EXPECT_EQ(start(command + plate + " --set /coupling/scheme=acceleration -n 2").code, 2);
+    EXPECT_EQ(start(command + plate +
+                    " --set /coupling/scheme=acceleration --set /coupling/step_ratio=1 -n 2")
+                  .code,
+              2);
     EXPECT_TRUE(has(errors(), "an energy-weighted scheme on several ranks")) << errors();
   }
   EXPECT_EQ(start("run " + plate + " -n 0").code, 2);
