@@ -176,7 +176,7 @@ void expect_same_fields(const std::string &run, const std::string &reference)
 TEST_F(RanksProgram, FieldsInPieces)
 {
   const Json scene = halves_that_slide();
-  expect_the_same_on({}, scene, 10);
+  expect_the_same_on({}, scene, 0);
   const std::string half = std::to_string(double(scene["time"]["duration"]) / 2),
                     whole = std::to_string(double(scene["time"]["duration"]));
   ASSERT_EQ(run_ligament("run scene.json -n 3 --pieces --rebuild-interval 60 -o pieces "
@@ -416,15 +416,19 @@ TEST_F(RanksProgram, AStepAboveTheStableOneIsRefusedByAll)
   EXPECT_EQ(errors[0], errors[1]);
 }
 
-// What a later rank alone finds wrong, while the others wait for it in a message.
+// What a later rank alone finds wrong, while the others wait for it in a message: the job ends,
+// when it would have ended had all found it, and 10 s later at most (documented).
 TEST_F(RanksProgram, AnErrorOfOneRankEndsAllWithItsReason)
 {
+  using Clock = std::chrono::steady_clock;
   const std::string name = written(halves_that_slide(), "wrong_on_one.json"),
-                    run = program + " run " + name + " -o out";
-  const auto begin = std::chrono::steady_clock::now();
-  const Outcome outcome = run_shell("exec mpirun -q --oversubscribe -n 2 " + run + " : -n 1 " +
-                                    run + " --set /time/step=5");
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)); // documented
+                    run = program + " run " + name + " -o out", wrong = run + " --set /time/step=5",
+                    start = "exec mpirun -q --oversubscribe -n ";
+  const auto all_begin = Clock::now();
+  EXPECT_EQ(run_shell(start + "3 " + wrong).code, 2);
+  const auto alone_begin = Clock::now();
+  const Outcome outcome = run_shell(start + "2 " + run + " : -n 1 " + wrong);
+  EXPECT_LT(Clock::now() - alone_begin, alone_begin - all_begin + std::chrono::seconds(10));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos)
       << outcome.errors;
