@@ -118,12 +118,15 @@ namespace
 {
 /// Whole on every rank: the operators of the overlap are the same on all.
 template <int dim>
-void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
+void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force,
+                        std::optional<packings::Packing<dim>> overlap,
                         const packings::Groups<dim> &cells, CoupledBody<dim> &body)
 {
   core::Log nothing_new;
-  auto packing = make_overlap_packing<dim>(scene, reference, body.ranks, cells,
-                                           ghost_rings<dim>(scene), nothing_new);
+  auto packing =
+      overlap ? *std::move(overlap)
+              : packings::make_grouped_lattice<dim>(lattice_of<dim>(scene), body.ranks.size(),
+                                                    cells, ghost_rings<dim>(scene));
   particles::Particles<dim> state;
   packings::fill_particles(packing, scene.densities(), state);
   auto figures = body.figures; // known already
@@ -139,7 +142,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
                ContactSurface<dim> &surface, core::Log &log)
 {
   const auto cells = cells_of_overlap(scene, body);
-  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, cells, weights, log);
+  auto [held, seeds, n_healed, overlap] =
+      pack_part<dim>(scene, reference, body.ranks, cells, weights, log);
   packings::Packing<dim> &packing = held.packing;
   body.seeds = std::move(seeds);
   if (n_healed)
@@ -169,7 +173,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   if (!body.ranks.is_one())
     body.zone->join({body.ranks, held.owner});
   if (!body.ranks.is_one() && cells.of)
-    make_whole_overlap(scene, make_force, reference, cells, body);
+    make_whole_overlap(scene, make_force, std::move(overlap), cells, body);
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   if (faces)
