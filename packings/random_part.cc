@@ -2,7 +2,7 @@
 
 #include "core/check.h"
 #include "packings/periodic_sides.h"
-#include "packings/relaxation.h"
+#include "packings/rank_share.h"
 #include "packings/seed_packer.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class PartMaker
 public:
   PartMaker(const SpecimenParameters<dim> &specimen, Seeds<dim> seeds, const core::Ranks &ranks,
             const Groups<dim> &groups)
-      : ranks_(ranks), groups_(groups), packer_(specimen, std::move(seeds)),
+      : ranks_(ranks), groups_(groups), packer_(specimen, std::move(seeds), ranks),
         seed_of_(seeds_with_particle())
   {
     core::require(!seed_of_.empty(), no_whole_particle);

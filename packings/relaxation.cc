@@ -2,6 +2,7 @@
 
 #include "packings/clipped_cell.h"
 #include "packings/power_diagram.h"
+#include "packings/rank_share.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,12 +25,12 @@ double share_of_size(double size_ratio, int k, int sweeps)
 /// Radii of sweep k: they grow from equal ones, so that no cell is lost before its neighbours have
 /// made room for it. Weights enter by their differences alone.
 template <int dim>
-Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin)
+Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin, const core::Ranks &ranks = {})
 {
   Seeds<dim> result = seeds;
   for (double &r : result.radius)
     r *= share;
-  heal_radii(result, bin);
+  heal_radii(result, bin, ranks);
   return result;
 }
 
@@ -100,12 +101,6 @@ void keep_off_surfaces(Seeds<dim> &seeds, const SpecimenShape<dim> &shape, doubl
 }
 } // namespace
 
-std::pair<std::size_t, std::size_t> share_of(std::size_t n, const core::Ranks &ranks)
-{
-  const auto begin = [&](int rank) { return n * std::size_t(rank) / std::size_t(ranks.size()); };
-  return {begin(ranks.rank()), begin(ranks.rank() + 1)};
-}
-
 template <int dim>
 Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
                          double size_ratio, int sweeps, const Vector<dim> &lower,
@@ -118,7 +113,7 @@ Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int se
   const double bin = mean_distance<dim>(spacing);
   for (int k = 0; k < sweeps; ++k) {
     const double share = share_of_size(size_ratio, k, sweeps);
-    move_to_centroids(seeds, grown(seeds, share, bin), shape, spacing, bin, lower, upper,
+    move_to_centroids(seeds, grown(seeds, share, bin, ranks), shape, spacing, bin, lower, upper,
                       (sweeps + 1 - k) * reach, ranks);
   }
   keep_off_surfaces(seeds, shape, spacing);

@@ -9,9 +9,6 @@ namespace ligament::packings
 /// Cells of seeds are cut from a cube of this half width, in units of the spacing.
 inline constexpr double start_half_width = 6;
 
-/// Which of n things this rank does: [first, last).
-std::pair<std::size_t, std::size_t> share_of(std::size_t n, const core::Ranks &ranks);
-
 /// Seeds for a zone [lower, upper] of the specimen, drawn and relaxed so that in the zone and one
 /// cell around it they are those of the whole specimen; none is nearer than 0.3 d (small ones: 0.3
 /// of their size) to a surface, as far as corners allow. Those that corners leave nearer than 0.25

@@ -14,10 +14,10 @@ namespace
 {
 /// Heals the radii; returns those before.
 template <int dim>
-std::vector<double> healed(Seeds<dim> &seeds, double bin)
+std::vector<double> healed(Seeds<dim> &seeds, double bin, const core::Ranks &ranks)
 {
   const std::vector<double> before = seeds.radius;
-  heal_radii(seeds, bin);
+  heal_radii(seeds, bin, ranks);
   return before;
 }
 
@@ -31,10 +31,11 @@ void merge_from(std::size_t first, std::vector<T> &values, SeedOf &&seed_of)
 } // namespace
 
 template <int dim>
-SeedPacker<dim>::SeedPacker(const SpecimenParameters<dim> &p, Seeds<dim> seeds)
+SeedPacker<dim>::SeedPacker(const SpecimenParameters<dim> &p, Seeds<dim> seeds,
+                            const core::Ranks &ranks)
     : shape_(p), spacing_(p.spacing), thickness_(dim == 2 ? p.thickness : 1),
       parts_of_zone_(p.zone_parts), seeds_(sorted_by_id(std::move(seeds))),
-      given_radius_(healed(seeds_, mean_distance<dim>(p.spacing))),
+      given_radius_(healed(seeds_, mean_distance<dim>(p.spacing), ranks)),
       diagram_(seeds_, mean_distance<dim>(p.spacing)), is_met_(seeds_.size(), 0)
 {
   for (int a = 0; a < dim; ++a) {

@@ -16,8 +16,9 @@ template <int dim>
 class SeedPacker
 {
 public:
-  /// The seeds are sorted by their ids, and their radii healed.
-  SeedPacker(const SpecimenParameters<dim> &specimen, Seeds<dim> seeds);
+  /// The seeds are sorted by their ids, and their radii healed: by all ranks, if there are several.
+  SeedPacker(const SpecimenParameters<dim> &specimen, Seeds<dim> seeds,
+             const core::Ranks &ranks = {});
   SeedPacker(const SeedPacker &) = delete; // the diagram refers to the seeds
   SeedPacker &operator=(const SeedPacker &) = delete;
 
