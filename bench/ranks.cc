@@ -67,7 +67,7 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_ra
   const std::int64_t n = held.n_whole;
   auto force = std::make_unique<dem::ManyBodyForce<dim>>(
       held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
-  held.packing.faces = {}; // before particles are made
+  std::vector<packings::Face<dim>>().swap(held.packing.faces); // before particles are made
   particles::Particles<dim> p;
   packings::fill_particles(held.packing, 1, p);
   p.part = held.part;

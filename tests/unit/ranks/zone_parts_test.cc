@@ -20,7 +20,7 @@ packings::Groups<2> overlap_cells()
   packings::Groups<2> groups;
   groups.reach = 4.1;
   groups.of = [](const Vector<2> &x) {
-    if (x[1] > 5 && x[1] < 11)
+    if (x[1] > 3 && x[1] < 12)
       return -1;
     return int(std::floor(x[0] / 4.1)) + 100 * int(std::floor(x[1] / 4.1)) + 10000;
   };
