@@ -1,13 +1,13 @@
-// A body of particles in parts: mpirun -n RANKS bin/bench_ranks DIMENSION PARTICLES STEPS
+// A body of particles in parts: mpirun -n RANKS bin/bench_ranks DIMENSION PARTICLES STEPS [random]
 //
-// Hexagonal or face-centred cubic, twice as long along its layers' normal as it is wide; seconds a
-// step, what of them goes into the exchange of ghosts (waiting included), bytes and messages of one
-// rank in a step, and how unequal the ranks' forces are.
+// Hexagonal or face-centred cubic, or random, twice as long along its layers' normal as it is wide;
+// seconds a step, what of them goes into the exchange of ghosts (waiting included), bytes and
+// messages of one rank in a step, and how unequal the ranks' forces are.
 #include "core/flush_denormals.h"
 #include "core/mpi_job.h"
 #include "dem/many_body_force.h"
 #include "packings/lattice_packing.h"
-#include "packings/packing_part.h"
+#include "packings/random_part.h"
 #include "particles/particle_solver.h"
 
 #include <fmt/format.h>
@@ -26,31 +26,54 @@ double now()
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-template <int dim>
-void measure(const core::Ranks &ranks, double n_particles, int steps)
+template <int dim, typename Parameters>
+Parameters specimen_of(double n_particles)
 {
-  packings::LatticeParameters<dim> lattice;
-  lattice.spacing = 1;
+  Parameters p;
+  p.spacing = 1;
   const double width =
       std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)), 1. / dim);
-  lattice.upper.setConstant(width);
-  lattice.upper[dim - 1] *= 2;
+  p.upper.setConstant(width);
+  p.upper[dim - 1] *= 2;
+  return p;
+}
+
+template <int dim>
+packings::PackingPart<dim> pack_part(const core::Ranks &ranks, double n_particles, bool is_random,
+                                     int rings)
+{
+  if (!is_random)
+    return packings::make_lattice_part(
+        specimen_of<dim, packings::LatticeParameters<dim>>(n_particles), ranks, rings);
+  const auto p = specimen_of<dim, packings::RandomParameters<dim>>(n_particles);
+  const double began = now();
+  auto seeds = packings::make_random_seeds(p, ranks);
+  if (ranks.is_first())
+    fmt::print("seeds relaxed in {:.2f} s\n", now() - began);
+  return packings::make_random_part<dim>(p, std::move(seeds), ranks, rings).held;
+}
+
+template <int dim>
+void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_random)
+{
   const dem::DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0};
   dem::FractureLaw law;
   law.criterion = dem::FractureLaw::Criterion::face_tension;
   law.strength = 1;
 
   double began = now();
-  auto held = packings::make_lattice_part(lattice, ranks, dem::ManyBodyForce<dim>::n_rings(law));
+  auto held = pack_part<dim>(ranks, n_particles, is_random, dem::ManyBodyForce<dim>::n_rings(law));
+  const double packed = now() - began;
   const std::int64_t n = held.n_whole;
+  auto force = std::make_unique<dem::ManyBodyForce<dim>>(
+      held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
+  std::vector<packings::Face<dim>>().swap(held.packing.faces); // before particles are made
   particles::Particles<dim> p;
   packings::fill_particles(held.packing, 1, p);
   p.part = held.part;
   particles::for_each(p.part.owned, [&](int i) {
     p.velocity[0][i] = 1e-4 * std::sin(0.1 * p.reference[dim - 1][i]);
   });
-  auto force = std::make_unique<dem::ManyBodyForce<dim>>(
-      held.packing, material, std::vector<core::BoundaryLoad<dim>>{}, law);
   held.packing = {};
   particles::ParticleSolver<dim> solver(std::move(p), std::move(force));
   solver.join({ranks, held.owner});
@@ -89,22 +112,24 @@ void measure(const core::Ranks &ranks, double n_particles, int steps)
   fmt::print(
       "{} particles, {} ranks, {:.0f} ghosts: {:.3f} ms a step ({:.1f} ns a particle), {:.3f} "
       "ms of it in the halo, forces {:.3f} ms (the slowest {:.2f} of the mean); {:.0f} bytes "
-      "in {} messages a rank and step; set-up {:.2f} s, {:.0f} bytes a particle at most\n",
+      "in {} messages a rank and step; set-up {:.2f} s, {:.2f} s of it the packing; {:.0f} bytes "
+      "a particle at most\n",
       n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n, 1e3 * halo / steps,
       1e3 * mean / steps, most / mean, bytes / ranks.size(), solver.halo().n_neighbours(), set_up,
-      memory / double(n));
+      packed, memory / double(n));
 }
 } // namespace
 
 int main(int argc, char **argv)
 {
-  if (argc != 4) {
-    fmt::print(stderr, "bench_ranks DIMENSION PARTICLES STEPS\n");
+  const bool is_random = argc == 5 && std::string(argv[4]) == "random";
+  if (argc != 4 && !is_random) {
+    fmt::print(stderr, "bench_ranks DIMENSION PARTICLES STEPS [random]\n");
     return 2;
   }
   core::flush_denormals();
   const core::MpiJob job;
   const auto run = std::atoi(argv[1]) == 2 ? measure<2> : measure<3>;
-  run(job.ranks(), std::atof(argv[2]), std::atoi(argv[3]));
+  run(job.ranks(), std::atof(argv[2]), std::atoi(argv[3]), is_random);
   return 0;
 }

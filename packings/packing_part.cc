@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <unordered_set>
 
 namespace ligament::packings
@@ -134,16 +135,20 @@ Packing<dim> those_at(const std::vector<int> &places, Packing<dim> whole)
 }
 
 template <int dim>
-PackingPart<dim> part_of(Packing<dim> whole, const particles::Partition &partition, int rank,
-                         int rings, std::int64_t first, const Groups<dim> &groups)
+PackingPart<dim> part_of(Packing<dim> piece, const std::vector<int> &places,
+                         const particles::Partition &partition, int rank, int rings,
+                         const Groups<dim> &groups)
 {
-  core::require(partition.end(rank) <= first + whole.size() &&
-                    (first > 0 || partition.cuts.back() >= whole.size()),
-                "the partition is one of another number of particles");
   core::require(rings >= 2, "a rank sees at least two rings around its particles");
-  const int begin = int(partition.begin(rank) - first), end = int(partition.end(rank) - first);
-  std::vector<int> distance = stepped_with(whole, begin, end, groups);
-  grow_rings(whole, rings, distance);
+  const auto number_of = [&](std::int64_t place) {
+    return int(std::lower_bound(places.begin(), places.end(), place) - places.begin());
+  };
+  const int begin = number_of(partition.begin(rank)), end = number_of(partition.end(rank));
+  core::require(int(places.size()) == piece.size() &&
+                    end - begin == partition.end(rank) - partition.begin(rank),
+                "the partition is one of another number of particles");
+  std::vector<int> distance = stepped_with(piece, begin, end, groups);
+  grow_rings(piece, rings, distance);
   const std::vector<int> kept = places_within_reach(distance);
   const auto where = [&](auto &&is_in) {
     particles::ParticleRanges ranges;
@@ -167,11 +172,22 @@ PackingPart<dim> part_of(Packing<dim> whole, const particles::Partition &partiti
   held.owner.reserve(kept.size());
   held.place.reserve(kept.size());
   for (const int i : kept) {
-    held.place.push_back(int(first + i));
-    held.owner.push_back(partition.owner(first + i));
+    held.place.push_back(places[i]);
+    held.owner.push_back(partition.owner(places[i]));
   }
-  held.packing = those_at(kept, std::move(whole));
+  held.packing = those_at(kept, std::move(piece));
   return held;
+}
+
+template <int dim>
+PackingPart<dim> part_of(Packing<dim> whole, const particles::Partition &partition, int rank,
+                         int rings, std::int64_t first, const Groups<dim> &groups)
+{
+  core::require(first > 0 || partition.cuts.back() >= whole.size(),
+                "the partition is one of another number of particles");
+  std::vector<int> places(whole.size());
+  std::iota(places.begin(), places.end(), int(first));
+  return part_of(std::move(whole), places, partition, rank, rings, groups);
 }
 
 template <int dim>
@@ -193,6 +209,10 @@ Packing<dim> grouped_part(Packing<dim> whole, const Groups<dim> &groups, int rin
   return those_at(places, std::move(whole));
 }
 
+template PackingPart<2> part_of(Packing<2>, const std::vector<int> &, const particles::Partition &,
+                                int, int, const Groups<2> &);
+template PackingPart<3> part_of(Packing<3>, const std::vector<int> &, const particles::Partition &,
+                                int, int, const Groups<3> &);
 template PackingPart<2> part_of(Packing<2>, const particles::Partition &, int, int, std::int64_t,
                                 const Groups<2> &);
 template PackingPart<3> part_of(Packing<3>, const particles::Partition &, int, int, std::int64_t,

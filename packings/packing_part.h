@@ -40,6 +40,13 @@ template <int dim>
 PackingPart<dim> part_of(Packing<dim> whole, const particles::Partition &partition, int rank,
                          int rings, std::int64_t first = 0, const Groups<dim> &groups = {});
 
+/// The same from any particles of the whole that hold at least the part, given their places there,
+/// ascending. Sizes of the whole are those in Packing::whole, or of lattice directions.
+template <int dim>
+PackingPart<dim> part_of(Packing<dim> piece, const std::vector<int> &places,
+                         const particles::Partition &partition, int rank, int rings,
+                         const Groups<dim> &groups = {});
+
 /// The particles that are in a group and `rings` of neighbours around them, in the order of the
 /// whole, with the faces between them as part_of() has them.
 template <int dim>

@@ -1,6 +1,7 @@
 #include "packings/power_diagram.h"
 
 #include "core/check.h"
+#include "packings/rank_share.h"
 
 #include <fmt/format.h>
 
@@ -129,9 +130,10 @@ void PowerDiagram<dim>::cut(VoronoiCell<dim> &cell, int i) const
 // The weight of j may exceed that of i by D^2 - 2 D q at most, or the face between them comes
 // nearer than q to i. Seeds in the order of their weights, smallest first, bound the weights of the
 // others: the shortest-path algorithm of E. W. Dijkstra (1959), with one answer whatever the order
-// of equals.
+// of equals. It begins with those that bound others by the weight that they have: the rest say
+// nothing before theirs is made smaller.
 template <int dim>
-int heal_radii(Seeds<dim> &seeds, double bin)
+int heal_radii(Seeds<dim> &seeds, double bin, const core::Ranks &ranks)
 {
   const auto [least, most] = std::minmax_element(seeds.radius.begin(), seeds.radius.end());
   if (seeds.size() == 0 || *least == *most)
@@ -139,29 +141,44 @@ int heal_radii(Seeds<dim> &seeds, double bin)
   const PowerDiagram<dim> diagram(seeds, bin);
   const std::vector<double> radius = seeds.radius;
   const double largest = *most * *most;
-  std::vector<double> weight(seeds.size());
+  std::vector<double> weight;
+  for (const double r : radius)
+    weight.push_back(r * r);
+  // Of the weights of others by one of weight w.
+  const auto bound = [&](int i, double w, double r) {
+    return w + std::max(0., r * r - 2 * r * std::min(radius[i] / 2, r / 4));
+  };
+  // Round-off of a seed that was healed before must not count as a change.
+  const auto exceeds = [&](int j, double most_of_j) { return weight[j] > most_of_j * (1 + 1e-14); };
+  std::vector<int> begin;
+  const auto [first, last] = share_of(weight.size(), ranks);
+  for (int i = int(first); i < int(last); ++i) {
+    bool bounds_one = false;
+    diagram.for_each_near(
+        i, [&](double r) { return !bounds_one && bound(i, weight[i], r) < largest; },
+        [&](int j, const Vector<dim> &, double r) {
+          bounds_one = bounds_one || exceeds(j, bound(i, weight[i], r));
+        });
+    if (bounds_one)
+      begin.push_back(i);
+  }
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (int i = 0; i < seeds.size(); ++i)
-    queue.push({weight[i] = radius[i] * radius[i], i});
+  for (const int i : ranks.gather_all(begin))
+    queue.push({weight[i], i});
   std::vector<char> is_smaller(seeds.size(), 0);
   while (!queue.empty()) {
     const auto [w, i] = queue.top();
     queue.pop();
     if (w > weight[i])
       continue;
-    const double half = radius[i] / 2;
-    const auto allowed = [&](double r) {
-      return std::max(0., r * r - 2 * r * std::min(half, r / 4));
-    };
     diagram.for_each_near(
-        i, [&](double r) { return w + allowed(r) < largest; },
-        [&](int j, const Vector<dim> &, double r) {
-          // Round-off of a seed that was healed before must not count as a change.
-          if (const double bound = w + allowed(r); weight[j] > bound * (1 + 1e-14)) {
-            weight[j] = bound;
+        i, [&, w = w, i = i](double r) { return bound(i, w, r) < largest; },
+        [&, w = w, i = i](int j, const Vector<dim> &, double r) {
+          if (const double most_of_j = bound(i, w, r); exceeds(j, most_of_j)) {
+            weight[j] = most_of_j;
             is_smaller[j] = 1;
-            queue.push({bound, j});
+            queue.push({most_of_j, j});
           }
         });
   }
@@ -173,6 +190,6 @@ int heal_radii(Seeds<dim> &seeds, double bin)
 
 template class PowerDiagram<2>;
 template class PowerDiagram<3>;
-template int heal_radii(Seeds<2> &, double);
-template int heal_radii(Seeds<3> &, double);
+template int heal_radii(Seeds<2> &, double, const core::Ranks &);
+template int heal_radii(Seeds<3> &, double, const core::Ranks &);
 } // namespace ligament::packings

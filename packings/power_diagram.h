@@ -1,6 +1,7 @@
 // Which seeds are near a point, the Laguerre cells of seeds, and how lost cells are healed.
 #pragma once
 
+#include "core/ranks.h"
 #include "packings/seeds.h"
 #include "packings/voronoi_cell.h"
 
@@ -43,7 +44,8 @@ private:
 /// A radius much larger than a neighbour's takes the neighbour's centre into its own cell, or all
 /// of its cell. Makes such radii smaller, as little as possible, until every seed lies inside its
 /// own cell: away from each face by half of its radius, or a quarter of the distance of the two
-/// seeds where that is less. Returns how many radii it changed.
+/// seeds where that is less. Returns how many radii it changed. Of several ranks, which all call it
+/// with the same seeds, each looks at its share of them first.
 template <int dim>
-int heal_radii(Seeds<dim> &seeds, double bin);
+int heal_radii(Seeds<dim> &seeds, double bin, const core::Ranks &ranks = {});
 } // namespace ligament::packings

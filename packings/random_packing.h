@@ -1,6 +1,7 @@
 // Random packings: Voronoi or Laguerre cells of relaxed random seeds, cut by the specimen.
 #pragma once
 
+#include "core/ranks.h"
 #include "packings/packing.h"
 #include "packings/seeds.h"
 
@@ -35,6 +36,17 @@ struct RandomPacking
 /// particles.
 template <int dim>
 RandomPacking<dim> make_random_packing(const RandomParameters<dim> &parameters);
+
+/// Its seeds as they are after relaxation, with radii that are not healed yet: what takes most of
+/// the time. Of several ranks, which all call it, each moves some of them and has all.
+template <int dim>
+Seeds<dim> make_random_seeds(const RandomParameters<dim> &parameters,
+                             const core::Ranks &ranks = {});
+
+/// The packing of seeds that make_random_seeds() found for the specimen; or of any that
+/// pack_seeds() has taken.
+template <int dim>
+RandomPacking<dim> pack_relaxed_seeds(const SpecimenParameters<dim> &specimen, Seeds<dim> seeds);
 
 /// The packing of given seeds, in the order of their ids: Laguerre cells, cut by the specimen's
 /// true surface. All levers end at the centroid of the face, so that (D2a), (D2b) hold to round-off

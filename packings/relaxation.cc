@@ -2,6 +2,7 @@
 
 #include "packings/clipped_cell.h"
 #include "packings/power_diagram.h"
+#include "packings/rank_share.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,33 +25,52 @@ double share_of_size(double size_ratio, int k, int sweeps)
 /// Radii of sweep k: they grow from equal ones, so that no cell is lost before its neighbours have
 /// made room for it. Weights enter by their differences alone.
 template <int dim>
-Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin)
+Seeds<dim> grown(const Seeds<dim> &seeds, double share, double bin, const core::Ranks &ranks = {})
 {
   Seeds<dim> result = seeds;
   for (double &r : result.radius)
     r *= share;
-  heal_radii(result, bin);
+  heal_radii(result, bin, ranks);
   return result;
 }
 
-/// `present` are the seeds with other radii, and after them their images.
+/// Centroid of the cell of a seed; its own place where that is no better.
+template <int dim>
+Vector<dim> centroid_of_cell(const PowerDiagram<dim> &diagram, int i, const Vector<dim> &x,
+                             const SpecimenShape<dim> &shape, double spacing)
+{
+  VoronoiCell<dim> cell(start_half_width * spacing, start_plane, 1e-13 * spacing);
+  clip_by_sides(cell, shape, x);
+  diagram.cut(cell, i);
+  const auto [volume, moment] = clipped_volume(cell, shape, x, spacing);
+  const Vector<dim> to = x + moment / volume;
+  return volume > 0 && shape.distance(to) > 0 ? to : x;
+}
+
+/// `present` are the seeds with other radii, and after them their images. Each rank moves some and
+/// tells the others where to.
 template <int dim>
 void move_to_centroids(Seeds<dim> &seeds, const Seeds<dim> &present,
                        const SpecimenShape<dim> &shape, double spacing, double bin,
-                       const Vector<dim> &lower, const Vector<dim> &upper, double margin)
+                       const Vector<dim> &lower, const Vector<dim> &upper, double margin,
+                       const core::Ranks &ranks = {})
 {
   const PowerDiagram<dim> diagram(present, bin);
-  for (int i = 0; i < seeds.size(); ++i) {
-    const Vector<dim> &x = present.centre[i];
-    if (!is_in(x, lower, upper, margin))
-      continue;
-    VoronoiCell<dim> cell(start_half_width * spacing, start_plane, 1e-13 * spacing);
-    clip_by_sides(cell, shape, x);
-    diagram.cut(cell, i);
-    const auto [volume, moment] = clipped_volume(cell, shape, x, spacing);
-    if (const Vector<dim> to = x + moment / volume; volume > 0 && shape.distance(to) > 0)
-      seeds.centre[i] = to;
+  std::vector<int> moved;
+  for (int i = 0; i < seeds.size(); ++i)
+    if (is_in(present.centre[i], lower, upper, margin))
+      moved.push_back(i);
+  const auto [first, last] = share_of(moved.size(), ranks);
+  std::vector<double> to;
+  to.reserve(dim * (last - first));
+  for (std::size_t k = first; k < last; ++k) {
+    const int i = moved[k];
+    const Vector<dim> x = centroid_of_cell<dim>(diagram, i, present.centre[i], shape, spacing);
+    to.insert(to.end(), x.data(), x.data() + dim);
   }
+  to = ranks.gather_all(to);
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    seeds.centre[moved[k]] = Eigen::Map<const Vector<dim>>(&to[dim * k]);
 }
 
 /// Unit vector along which the distance to the surface grows.
@@ -84,17 +104,17 @@ void keep_off_surfaces(Seeds<dim> &seeds, const SpecimenShape<dim> &shape, doubl
 template <int dim>
 Seeds<dim> relaxed_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
                          double size_ratio, int sweeps, const Vector<dim> &lower,
-                         const Vector<dim> &upper)
+                         const Vector<dim> &upper, const core::Ranks &ranks)
 {
   // A seed feels its neighbours' neighbours at most, in each sweep.
   const double reach = 3 * spacing * std::sqrt(size_ratio);
   const Vector<dim> all = Vector<dim>::Constant((sweeps + 2) * reach);
   Seeds<dim> seeds = draw_seeds<dim>(shape, spacing, seed, size_ratio, lower - all, upper + all);
-  const double bin = std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
+  const double bin = mean_distance<dim>(spacing);
   for (int k = 0; k < sweeps; ++k) {
     const double share = share_of_size(size_ratio, k, sweeps);
-    move_to_centroids(seeds, grown(seeds, share, bin), shape, spacing, bin, lower, upper,
-                      (sweeps + 1 - k) * reach);
+    move_to_centroids(seeds, grown(seeds, share, bin, ranks), shape, spacing, bin, lower, upper,
+                      (sweeps + 1 - k) * reach, ranks);
   }
   keep_off_surfaces(seeds, shape, spacing);
   return seeds;
@@ -126,7 +146,7 @@ Seeds<dim> relaxed_periodic_seeds(const SpecimenParameters<dim> &p, const Period
     for (Vector<dim> &x : seeds.centre)
       x = box.wrapped(x);
   };
-  const double bin = std::pow(mean_cell_volume<dim>(p.spacing), 1. / dim);
+  const double bin = mean_distance<dim>(p.spacing);
   for (int k = 0; k < sweeps; ++k) {
     const double share = share_of_size(size_ratio, k, sweeps);
     const auto [from, to] = widened_by((sweeps + 1 - k) * reach);
@@ -144,7 +164,7 @@ template Seeds<2> relaxed_periodic_seeds(const SpecimenParameters<2> &, const Pe
 template Seeds<3> relaxed_periodic_seeds(const SpecimenParameters<3> &, const PeriodicBox<3> &, int,
                                          double, int);
 template Seeds<2> relaxed_seeds(const SpecimenShape<2> &, double, int, double, int,
-                                const Vector<2> &, const Vector<2> &);
+                                const Vector<2> &, const Vector<2> &, const core::Ranks &);
 template Seeds<3> relaxed_seeds(const SpecimenShape<3> &, double, int, double, int,
-                                const Vector<3> &, const Vector<3> &);
+                                const Vector<3> &, const Vector<3> &, const core::Ranks &);
 } // namespace ligament::packings

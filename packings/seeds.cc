@@ -3,8 +3,11 @@
 #include "core/check.h"
 #include "core/counter_random.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ligament::packings
 {
@@ -38,11 +41,40 @@ double mean_cell_volume(double spacing)
 }
 
 template <int dim>
+Seeds<dim> sorted_by_id(Seeds<dim> seeds)
+{
+  if (std::is_sorted(seeds.id.begin(), seeds.id.end()))
+    return seeds;
+  std::vector<int> order(seeds.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return seeds.id[a] < seeds.id[b]; });
+  Seeds<dim> sorted;
+  for (const int i : order)
+    sorted.add(seeds.centre[i], seeds.radius[i], seeds.id[i]);
+  return sorted;
+}
+
+template <int dim>
+double mean_distance(double spacing)
+{
+  return std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
+}
+
+template <int dim>
+std::string place_text(const Vector<dim> &x)
+{
+  std::string text = fmt::format("{:.6g}", x[0]);
+  for (int a = 1; a < dim; ++a)
+    text += fmt::format(", {:.6g}", x[a]);
+  return text;
+}
+
+template <int dim>
 Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed, double size_ratio,
                       const Vector<dim> &lower, const Vector<dim> &upper)
 {
   using Index = Eigen::Matrix<std::int64_t, dim, 1>;
-  const double side = std::pow(mean_cell_volume<dim>(spacing), 1. / dim);
+  const double side = mean_distance<dim>(spacing);
   const double log_ratio = std::log(size_ratio);
   // Mean of (r / r_min)^dim for r / r_min = size_ratio^u, u uniform in [0, 1].
   const double mean = log_ratio > 0 ? (std::pow(size_ratio, dim) - 1) / (dim * log_ratio) : 1.;
@@ -82,6 +114,12 @@ Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed,
 
 template double mean_cell_volume<2>(double);
 template double mean_cell_volume<3>(double);
+template Seeds<2> sorted_by_id(Seeds<2>);
+template Seeds<3> sorted_by_id(Seeds<3>);
+template double mean_distance<2>(double);
+template double mean_distance<3>(double);
+template std::string place_text<2>(const Vector<2> &);
+template std::string place_text<3>(const Vector<3> &);
 template Seeds<2> draw_seeds(const SpecimenShape<2> &, double, int, double, const Vector<2> &,
                              const Vector<2> &);
 template Seeds<3> draw_seeds(const SpecimenShape<3> &, double, int, double, const Vector<3> &,

@@ -4,6 +4,7 @@
 #include "packings/specimen_shape.h"
 
 #include <cstdint>
+#include <string>
 
 namespace ligament::packings
 {
@@ -34,8 +35,20 @@ template <int dim>
 Seeds<dim> draw_seeds(const SpecimenShape<dim> &shape, double spacing, int seed, double size_ratio,
                       const Vector<dim> &lower, const Vector<dim> &upper);
 
+/// Without materials.
+template <int dim>
+Seeds<dim> sorted_by_id(Seeds<dim> seeds);
+
 /// Mean volume of a cell of a random packing (m^dim): sqrt(3)/2 d^2 or d^3/sqrt(2), that of the
 /// densest lattice.
 template <int dim>
 double mean_cell_volume(double spacing);
+
+/// Side of a square (cube) of that volume, in m.
+template <int dim>
+double mean_distance(double spacing);
+
+/// "x, y[, z]" for messages.
+template <int dim>
+std::string place_text(const Vector<dim> &x);
 } // namespace ligament::packings

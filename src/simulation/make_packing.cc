@@ -3,7 +3,9 @@
 #include "core/check.h"
 #include "core/keyed_error.h"
 #include "core/sums.h"
+#include "packings/gathered_part.h"
 #include "packings/packing_file.h"
+#include "packings/random_part.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_force.h"
@@ -163,14 +165,22 @@ void require_cover(const Scene &scene, const packings::RandomParameters<dim> &p,
   }
 }
 
-/// Seeds of an irregular packing, from their file or from random numbers.
+/// Of an irregular packing: from its file, or drawn and relaxed, which ranks share.
 template <int dim>
-packings::RandomPacking<dim> irregular_packing(const Scene &scene)
+packings::Seeds<dim> find_seeds(const Scene &scene, Reference &reference,
+                                const core::Ranks &ranks = {})
+{
+  return reference.seeds<dim>([&] {
+    return scene.zone.packing == PackingKind::random
+               ? packings::make_random_seeds(random_packing_of<dim>(scene), ranks)
+               : read_seeds<dim>(scene);
+  });
+}
+
+template <int dim>
+packings::RandomPacking<dim> pack_file(const Scene &scene, packings::Seeds<dim> seeds)
 {
   const auto parameters = random_packing_of<dim>(scene);
-  if (scene.zone.packing == PackingKind::random)
-    return packings::make_random_packing<dim>(parameters);
-  auto seeds = read_seeds<dim>(scene);
   const std::vector<int> material = std::move(seeds.material);
   seeds.material.clear();
   require_cover(scene, parameters, seeds);
@@ -194,6 +204,12 @@ packings::RandomPacking<dim> irregular_packing(const Scene &scene)
         "the file says how large its particles are: " + scene.zone.packing_file,
         fmt::format("give {:.4g} m", ratio * scene.zone.spacing));
   return packing;
+}
+
+void report_healed(int n_healed, core::Log &log)
+{
+  if (n_healed > 0)
+    log.info("{} radii made smaller, lest a neighbour's cell lose its centre", n_healed);
 }
 
 /// The last inclusion, from 1, with a region around the point or an image of it; 0: none.
@@ -278,11 +294,12 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
   if (!scene.zone.is_irregular())
     zone.packing = packings::make_lattice_packing<dim>(lattice_of<dim>(scene));
   else {
-    auto irregular = reference.packing<dim>(random_packing_of<dim>(scene),
-                                            [&] { return irregular_packing<dim>(scene); });
-    if (irregular.n_healed > 0)
-      log.info("{} radii made smaller, lest a neighbour's cell lose its centre",
-               irregular.n_healed);
+    auto seeds = find_seeds<dim>(scene, reference);
+    auto irregular =
+        scene.zone.packing == PackingKind::random
+            ? packings::pack_relaxed_seeds<dim>(random_packing_of<dim>(scene), std::move(seeds))
+            : pack_file<dim>(scene, std::move(seeds));
+    report_healed(irregular.n_healed, log);
     zone.n_healed = irregular.n_healed;
     zone.seeds = std::move(irregular.seeds);
     zone.packing = std::move(irregular.packing);
@@ -291,30 +308,51 @@ PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log
   return zone;
 }
 
+namespace
+{
+// A file is packed whole: what it costs is one cell for each particle.
+template <int dim>
+PartOfZone<dim> make_irregular_part(const Scene &scene, Reference &reference,
+                                    const core::Ranks &ranks, int rings, core::Log &log,
+                                    const packings::Groups<dim> &groups,
+                                    const std::vector<std::int64_t> &weights)
+{
+  PartOfZone<dim> zone;
+  if (scene.zone.packing == PackingKind::file) {
+    auto [whole, seeds, n_healed] = make_packing<dim>(scene, reference, log);
+    const auto partition = particles::make_partition(whole.size(), ranks.size(), weights);
+    zone.held = packings::part_of(std::move(whole), partition, ranks.rank(), rings, 0, groups);
+    zone.seeds = std::move(seeds);
+    zone.n_healed = n_healed;
+    return zone;
+  }
+  auto random = packings::make_random_part<dim>(random_packing_of<dim>(scene),
+                                                find_seeds<dim>(scene, reference, ranks), ranks,
+                                                rings, groups, weights);
+  report_healed(random.n_healed, log);
+  zone.held = std::move(random.held);
+  zone.seeds = std::move(random.seeds);
+  zone.n_healed = random.n_healed;
+  return zone;
+}
+} // namespace
+
 template <int dim>
 PartOfZone<dim> make_packing_part(const Scene &scene, Reference &reference,
                                   const core::Ranks &ranks, int rings, core::Log &log,
                                   const packings::Groups<dim> &groups,
                                   const std::vector<std::int64_t> &weights)
 {
-  if (!scene.zone.is_irregular())
-    return {packings::make_lattice_part<dim>(lattice_of<dim>(scene), ranks, rings, groups, weights),
-            {},
-            {}};
-  auto [whole, seeds, n_healed] = make_packing<dim>(scene, reference, log);
-  const auto partition = particles::make_partition(whole.size(), ranks.size(), weights);
-  return {packings::part_of(std::move(whole), partition, ranks.rank(), rings, 0, groups),
-          std::move(seeds), n_healed};
-}
-
-template <int dim>
-packings::Packing<dim>
-make_overlap_packing(const Scene &scene, Reference &reference, const core::Ranks &ranks,
-                     const packings::Groups<dim> &groups, int rings, core::Log &log)
-{
-  if (!scene.zone.is_irregular())
-    return packings::make_grouped_lattice<dim>(lattice_of<dim>(scene), ranks.size(), groups, rings);
-  return packings::grouped_part(make_packing<dim>(scene, reference, log).packing, groups, rings);
+  PartOfZone<dim> zone;
+  if (!scene.zone.is_irregular()) {
+    zone.held =
+        packings::make_lattice_part<dim>(lattice_of<dim>(scene), ranks, rings, groups, weights);
+    return zone;
+  }
+  zone = make_irregular_part(scene, reference, ranks, rings, log, groups, weights);
+  if (groups.of)
+    zone.overlap = packings::gather_grouped(zone.held, groups, rings, ranks);
+  return zone;
 }
 
 template packings::SpecimenParameters<2> packed_specimen_of(const Scene &);
@@ -328,11 +366,7 @@ template PackedZone<3> make_packing(const Scene &, Reference &, core::Log &);
 template PartOfZone<2> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
                                          core::Log &, const packings::Groups<2> &,
                                          const std::vector<std::int64_t> &);
-template packings::Packing<2> make_overlap_packing(const Scene &, Reference &, const core::Ranks &,
-                                                   const packings::Groups<2> &, int, core::Log &);
 template PartOfZone<3> make_packing_part(const Scene &, Reference &, const core::Ranks &, int,
                                          core::Log &, const packings::Groups<3> &,
                                          const std::vector<std::int64_t> &);
-template packings::Packing<3> make_overlap_packing(const Scene &, Reference &, const core::Ranks &,
-                                                   const packings::Groups<3> &, int, core::Log &);
 } // namespace ligament::program

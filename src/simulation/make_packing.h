@@ -24,27 +24,25 @@ struct PackedZone
 template <int dim>
 PackedZone<dim> make_packing(const Scene &scene, Reference &reference, core::Log &log);
 
-/// The part of it that a rank of several has, with so many rings of ghosts around what it steps.
-/// Shares go by the weights of blocks (particles::make_partition). Lattices are packed by part; of
-/// other packings each rank makes the whole and keeps its part.
 template <int dim>
 struct PartOfZone
 {
   packings::PackingPart<dim> held;
   std::optional<packings::Seeds<dim>> seeds; // of the whole
   std::optional<int> n_healed;
+  /// The particles in groups, whoever owns them, and rings around them, of an irregular packing.
+  /// Lattices are packed there once more when it is needed (packings::make_grouped_lattice).
+  std::optional<packings::Packing<dim>> overlap;
 };
+
+/// The part of it that a rank of several has, with so many rings of ghosts around what it steps.
+/// Shares go by the weights of blocks (particles::make_partition). Lattices and random packings are
+/// made by part; of a file each rank packs the whole and keeps its part.
 template <int dim>
 PartOfZone<dim> make_packing_part(const Scene &scene, Reference &reference,
                                   const core::Ranks &ranks, int rings, core::Log &log,
                                   const packings::Groups<dim> &groups = {},
                                   const std::vector<std::int64_t> &weights = {});
-
-/// The particles in groups, whoever owns them, and so many rings around them: on every rank.
-template <int dim>
-packings::Packing<dim>
-make_overlap_packing(const Scene &scene, Reference &reference, const core::Ranks &ranks,
-                     const packings::Groups<dim> &groups, int rings, core::Log &log);
 
 /// The specimen and the zone as packings see them.
 template <int dim>

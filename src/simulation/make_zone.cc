@@ -116,14 +116,28 @@ void require_same_solid(const particles::ElasticConstants<dim> &force,
 
 namespace
 {
+/// What particles are made of: all but the faces between them, which most of a packing is.
+template <int dim>
+packings::Packing<dim> without_faces(packings::Packing<dim> &packing)
+{
+  auto faces = std::move(packing.faces);
+  packing.faces.clear();
+  packings::Packing<dim> cells = packing;
+  packing.faces = std::move(faces);
+  return cells;
+}
+
 /// Whole on every rank: the operators of the overlap are the same on all.
 template <int dim>
-void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force, Reference &reference,
+void make_whole_overlap(const Scene &scene, const ForceMaker<dim> &make_force,
+                        std::optional<packings::Packing<dim>> overlap,
                         const packings::Groups<dim> &cells, CoupledBody<dim> &body)
 {
   core::Log nothing_new;
-  auto packing = make_overlap_packing<dim>(scene, reference, body.ranks, cells,
-                                           ghost_rings<dim>(scene), nothing_new);
+  auto packing =
+      overlap ? *std::move(overlap)
+              : packings::make_grouped_lattice<dim>(lattice_of<dim>(scene), body.ranks.size(),
+                                                    cells, ghost_rings<dim>(scene));
   particles::Particles<dim> state;
   packings::fill_particles(packing, scene.densities(), state);
   auto figures = body.figures; // known already
@@ -139,7 +153,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
                ContactSurface<dim> &surface, core::Log &log)
 {
   const auto cells = cells_of_overlap(scene, body);
-  auto [held, seeds, n_healed] = pack_part<dim>(scene, reference, body.ranks, cells, weights, log);
+  auto [held, seeds, n_healed, overlap] =
+      pack_part<dim>(scene, reference, body.ranks, cells, weights, log);
   packings::Packing<dim> &packing = held.packing;
   body.seeds = std::move(seeds);
   if (n_healed)
@@ -148,28 +163,32 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.loaded_faces = loaded_areas(body, held);
   body.cut_faces = all_cut_faces(body, held);
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
-  particles::Particles<dim> state;
-  packings::fill_particles(packing, scene.densities(), state);
-  state.part = held.part;
   const auto constants = elastic_constants_of<dim>(scene);
-  auto dashpots = packings::absorbing_dashpots(packing, state, body.loads, scene.material.density,
-                                               constants.wave_speed_p, constants.wave_speed_s);
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};
-  std::optional<packings::Packing<dim>> faces; // the force keeps the packing
+  std::optional<packings::Packing<dim>> faces; // the force uses the packing up
   if (!scene.tools.empty())
     faces = packing;
+  // Particles come when the faces are gone.
+  packings::Packing<dim> of_particles = without_faces(packing);
   auto force = make_force(scene, std::move(packing), body.loads, body.figures, log);
   for (const auto &[name, figure] : body.figures)
     if (name.compare(0, calibrated.size(), calibrated) == 0)
       reference.value(name, [&value = figure.value] { return value; });
   require_same_solid(force->elastic_constants(), constants);
+  particles::Particles<dim> state;
+  packings::fill_particles(of_particles, scene.densities(), state);
+  state.part = held.part;
+  auto dashpots =
+      packings::absorbing_dashpots(of_particles, state, body.loads, scene.material.density,
+                                   constants.wave_speed_p, constants.wave_speed_s);
+  of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);
   if (!body.ranks.is_one())
     body.zone->join({body.ranks, held.owner});
   if (!body.ranks.is_one() && cells.of)
-    make_whole_overlap(scene, make_force, reference, cells, body);
+    make_whole_overlap(scene, make_force, std::move(overlap), cells, body);
   body.dt_zone =
       reference.value("stable_step", [&] { return body.force()->stable_step(body.zone->state); });
   if (faces)

@@ -1,4 +1,4 @@
-// What a set-up finds out at some cost and a resumed run takes as found: the geometry of a random
+// What a set-up finds out at some cost and a resumed run takes as found: the seeds of an irregular
 // packing, the factor between toughness and strength, the stable step.
 #pragma once
 
@@ -23,26 +23,27 @@ public:
   /// Names of the values that begin so.
   std::vector<std::string> names(const std::string &begin) const;
 
-  /// Likewise; `cracks` of the specimen are those of the scene.
+  /// Likewise, from which the packing is cut again.
   template <int dim>
-  packings::RandomPacking<dim> packing(const packings::SpecimenParameters<dim> &specimen,
-                                       const std::function<packings::RandomPacking<dim>()> &find);
+  packings::Seeds<dim> seeds(const std::function<packings::Seeds<dim>()> &find);
 
   const core::State &tables() const { return tables_; }
 
 private:
+  // Not "seeds": those were healed, and thinned out.
+  static constexpr const char *packed_seeds = "packed_seeds";
+
   core::State tables_;
 };
 
 template <int dim>
-packings::RandomPacking<dim>
-Reference::packing(const packings::SpecimenParameters<dim> &specimen,
-                   const std::function<packings::RandomPacking<dim>()> &find)
+packings::Seeds<dim> Reference::seeds(const std::function<packings::Seeds<dim>()> &find)
 {
-  if (tables_.count("cells"))
-    return packings::load_packing<dim>(tables_, specimen);
-  auto packing = find();
-  packings::save_packing(tables_, packing);
-  return packing;
+  const auto known = tables_.find(packed_seeds);
+  if (known != tables_.end())
+    return packings::seeds_of<dim>(known->second);
+  auto seeds = find();
+  tables_[packed_seeds] = packings::table_of(seeds);
+  return seeds;
 }
 } // namespace ligament::program

@@ -58,6 +58,19 @@ Json random_that_is_crushed()
   return scene;
 }
 
+/// Radii are healed, seeds kept off surfaces; a cut with a blunt end.
+Json random_of_unequal_sizes()
+{
+  Json scene = scene_of(2, "random", {28, 36});
+  scene["discrete_zone"]["size_ratio"] = 4;
+  scene["specimen"]["holes"] = {{{"centre", {6, -4}}, {"radius", 3}}};
+  scene["specimen"]["notches"] = {{{"lower", {-15, 3}}, {"upper", {-8, 5}}}};
+  scene["specimen"]["cracks"] = {{{"points", {{-4, -9}, {2, -7}}}}};
+  pull(scene, 1, 1, 2e-3, 20);
+  scene["time"]["duration"] = 80;
+  return scene;
+}
+
 Json fcc_with_a_crack()
 {
   Json scene = scene_of(3, "fcc", {12, 10, 14});
@@ -101,6 +114,21 @@ TEST_F(RanksProgram, RandomThatIsCrushed)
 {
   expect_the_same_on({2}, random_that_is_crushed(), 50);
 }
+TEST_F(RanksProgram, RandomOfUnequalSizes)
+{
+  expect_the_same_on({2, 3}, random_of_unequal_sizes(), 10);
+  // Relaxed by all together, and kept.
+  const std::string reference = "/checkpoints/reference.bin";
+  EXPECT_FALSE(file_text("on_1" + reference).empty());
+  for (const std::string run : {"on_2", "on_3"})
+    EXPECT_TRUE(file_text(run + reference) == file_text("on_1" + reference)) << run;
+}
+TEST_F(RanksProgram, GoOnInARandomPacking)
+{
+  Json scene = random_of_unequal_sizes();
+  scene["time"]["duration"] = 40;
+  expect_to_go_on(scene, 2);
+}
 TEST_F(RanksProgram, FccWithACrack)
 {
   expect_the_same_on({2}, fcc_with_a_crack(), 10);
@@ -123,9 +151,9 @@ TEST_F(RanksProgram, CutAnewWhereAllIsCrushed)
 
 TEST_F(RanksProgram, SlowAllOnAnyNumber)
 {
-  for (const Json &scene :
-       {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
-        random_that_is_crushed(), fcc_with_a_crack(), random_in_space(), bar_that_rests()})
+  for (const Json &scene : {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
+                            random_that_is_crushed(), random_of_unequal_sizes(), fcc_with_a_crack(),
+                            random_in_space(), bar_that_rests()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 5);
