@@ -43,27 +43,27 @@ TYPED_TEST(SofteningInParts, OpensAndTearsLikeTheWholeLattice)
 {
   constexpr int dim = TypeParam::dim;
   Scene<dim> scene;
-  scene.packing = packings::make_lattice_packing(box<TypeParam>(dim == 2 ? 24 : 8));
+  scene.packing = packings::make_lattice_packing(box<TypeParam>(dim == 2 ? 16 : 6));
   scene.material.friction = 0.4;
   int n_torn = 0, n_soft = 0, n_soft_across = 0;
   for (const int axis : {0, dim - 1}) {
     scene.law = softening(3, axis == 0 ? Softening{} : Softening{1 / 3., 0.8});
     scene.loads = draw_apart<dim>(axis, 0.03);
-    const Outcome outcome = expect_parts_to_move_like_the_whole(scene, dim == 2 ? 150 : 60, axis);
+    const Outcome outcome = expect_parts_to_move_like_the_whole(scene, dim == 2 ? 100 : 40, axis);
     n_torn += outcome.n_broken;
     n_soft += outcome.n_soft;
     n_soft_across += outcome.n_soft_across;
     EXPECT_EQ(outcome.n_told > 0, test::ranks().size() > 1);
   }
   EXPECT_GT(n_torn, 10); // else the test would say little
-  EXPECT_GT(n_soft, 100);
+  EXPECT_GT(n_soft, 50);
   EXPECT_EQ(n_soft_across > 0, test::ranks().size() > 1);
 }
 
 /// A box with a notch and a crack that goes on from its end, along an axis or at an angle.
 Packing<2> cracked(const Vector<2> &way, bool turned)
 {
-  auto lattice = box<Case<2, Kind::hexagonal, false>>(28);
+  auto lattice = box<Case<2, Kind::hexagonal, false>>(18);
   if (turned)
     lattice.orientation[0] = 0.3;
   const double half = lattice.upper[0];
@@ -77,7 +77,7 @@ TEST(SofteningInParts, CracksOpenAndShutLikeThoseOfTheWhole)
 {
   int n_torn = 0;
   for (const bool turned : {false, true})
-    for (const double degrees : {0., 40., 90.}) {
+    for (const double degrees : {turned ? 40. : 0., 90.}) {
       const double angle = degrees * M_PI / 180;
       Scene<2> scene;
       scene.packing = cracked({std::cos(angle), std::sin(angle)}, turned);
@@ -90,9 +90,9 @@ TEST(SofteningInParts, CracksOpenAndShutLikeThoseOfTheWhole)
         const double sign = side == 0 ? -1 : 1;
         load.value[degrees > 45 ? 0 : 1] = sign * 0.012;
         load.value[degrees > 45 ? 1 : 0] = sign * 0.003;
-        load.history = core::Cycles{core::Ramp{0.05}, 0.25, 1, 0.5};
+        load.history = core::Cycles{core::Ramp{0.05}, 0.4, 1, 0.3};
       }
-      const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 450, 2);
+      const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 220, 2);
       n_torn += outcome.n_broken;
       EXPECT_GT(outcome.n_soft, 10) << degrees;
       EXPECT_TRUE(outcome.has_reloaded) << degrees;
@@ -105,9 +105,9 @@ TEST(SofteningInParts, CracksOpenAndShutLikeThoseOfTheWhole)
 TEST(SofteningInParts, WhatNobodyElseSeesIsNotTold)
 {
   Scene<2> scene;
-  auto lattice = box<Case<2, Kind::hexagonal, false>>(20);
-  lattice.lower[1] *= 4;
-  lattice.upper[1] *= 4;
+  auto lattice = box<Case<2, Kind::hexagonal, false>>(12);
+  lattice.lower[1] *= 6;
+  lattice.upper[1] *= 6;
   const double half = lattice.upper[0], height = lattice.upper[1];
   for (const double y : {-0.75, -0.27, 0.26, 0.75})
     lattice.cracks.push_back(
@@ -116,7 +116,7 @@ TEST(SofteningInParts, WhatNobodyElseSeesIsNotTold)
   scene.law = softening(4);
   scene.loads = draw_apart<2>(1, 0.03);
   for (const unsigned cut : {0u, 1u}) {
-    const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 350, cut);
+    const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 150, cut);
     EXPECT_GT(outcome.n_soft, 20);
     EXPECT_GT(outcome.n_untold, 0);
   }
@@ -144,13 +144,13 @@ TEST(SofteningInParts, OpensAndTearsLikeTheWholeRandom2D)
 {
   FractureLaw law = softening(3, {1 / 3., 0.8});
   law.strength.scatter.modulus = 20;
-  const Outcome outcome = soften_random<2>(22, 120, law);
+  const Outcome outcome = soften_random<2>(18, 80, law);
   EXPECT_GT(outcome.n_broken, 10);
   EXPECT_EQ(outcome.n_soft_across > 0, test::ranks().size() > 1);
 }
 TEST(SofteningInParts, OpensAndTearsLikeTheWholeRandom3D)
 {
-  const Outcome outcome = soften_random<3>(7.5, 60, softening(3));
+  const Outcome outcome = soften_random<3>(6, 40, softening(3));
   EXPECT_GT(outcome.n_broken, 10);
   EXPECT_EQ(outcome.n_soft_across > 0, test::ranks().size() > 1);
 }
@@ -167,7 +167,7 @@ TEST(SofteningInParts, FallsLikeTheWhole)
     law.strength.cohesion = 1;
     law.strength.friction_angle = 0.4;
     law.crack_velocities = {0.2};
-    const Outcome outcome = soften_random<2>(22, 120, law);
+    const Outcome outcome = soften_random<2>(18, 80, law);
     EXPECT_GT(outcome.n_broken, 20);
     EXPECT_GT(outcome.n_soft, 20);
   }

@@ -92,6 +92,7 @@ void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
   int n_states_so_far = 0;
   auto part = std::make_unique<Solver<dim>>(scene, &held);
   part->solver->compute_forces(0);
+  std::size_t n_soft = 0; // where a state was taken
   std::string differs;
   for (int s = 1; s <= steps && !test::ranks().any(!differs.empty()); ++s) {
     for (Solver<dim> *of : {&whole, part.get()}) {
@@ -102,6 +103,7 @@ void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
     if (s % (steps / n_states) == 0) {
       const core::State of_whole = state_of(whole), of_parts = state_of(*part);
       differs = different_tables(of_parts, of_whole);
+      n_soft += whole.force->cohesive().all().size();
       EXPECT_EQ(differs, "") << "step " << s;
       held = part_number(unsigned(s), 1 + n_states_so_far++ % test::ranks().size());
       Scene<dim> still = scene;
@@ -118,7 +120,7 @@ void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
     EXPECT_EQ(differs, "") << "step " << s;
   }
   EXPECT_GE(whole.force->broken_bonds().size(), least_broken); // else the test would say little
-  EXPECT_EQ(whole.force->cohesive().all().empty(), !scene.law.faces_open());
+  EXPECT_EQ(n_soft > 20, scene.law.faces_open());
 }
 
 TEST(StateInParts, GoesOnInOtherParts2D)
@@ -196,8 +198,8 @@ TEST(StateInParts, GoesOnWhereFacesSoften2D)
 
 TEST(StateInParts, GoesOnWhereFacesSoften3D)
 {
-  const auto packing = packings::make_lattice_packing(box<Case<3, Kind::fcc, false>>(7));
-  expect_the_state_to_go_on(softens<3>(packing, 0.06), 80, 10, 5);
+  const auto packing = packings::make_lattice_packing(box<Case<3, Kind::fcc, false>>(5.5));
+  expect_the_state_to_go_on(softens<3>(packing, 0.06), 60, 10, 5);
 }
 
 TEST(StateInParts, GoesOnWhereFacesFall)
