@@ -109,12 +109,15 @@ Json cohesive_random()
   scene["material"]["fracture"]["softening"] = "bilinear";
   scene["specimen"]["notches"] = {{{"lower", {-13, -1}}, {"upper", {-6, 1}}}};
   pull(scene, 1, 1, 1e-3, 10);
+  scene["time"]["duration"] = 110;
   return scene;
 }
 
 Json cohesive_fcc()
 {
-  return softening(fcc_with_a_crack(), 3);
+  Json scene = softening(fcc_with_a_crack(), 2);
+  scene["time"]["duration"] = 35;
+  return scene;
 }
 
 /// Cracks run at a tenth of the velocity of shear waves.
@@ -158,7 +161,7 @@ TEST_F(RanksProgram, ABarThatRests)
 
 TEST_F(RanksProgram, ACohesiveCrackAlongTheSeam)
 {
-  expect_the_same_on({2, 4}, cohesive_crack_along_the_seam(), 10);
+  expect_the_same_on({4}, cohesive_crack_along_the_seam(), 10);
 }
 TEST_F(RanksProgram, ACohesiveCrackAcrossTheSeam)
 {
@@ -170,7 +173,7 @@ TEST_F(RanksProgram, ACohesiveCrackFromANotchOfARandomPacking)
 }
 TEST_F(RanksProgram, CohesiveFcc)
 {
-  expect_the_same_on({2}, cohesive_fcc(), 5);
+  expect_the_same_on({2}, cohesive_fcc(), 2);
 }
 TEST_F(RanksProgram, SlowCracks)
 {

@@ -45,7 +45,7 @@ TYPED_TEST(SofteningInParts, OpensAndTearsLikeTheWholeLattice)
   Scene<dim> scene;
   scene.packing = packings::make_lattice_packing(box<TypeParam>(dim == 2 ? 16 : 6));
   scene.material.friction = 0.4;
-  int n_torn = 0, n_soft = 0, n_soft_across = 0;
+  int n_torn = 0, n_soft = 0, n_soft_across = 0, n_told = 0;
   for (const int axis : {0, dim - 1}) {
     scene.law = softening(3, axis == 0 ? Softening{} : Softening{1 / 3., 0.8});
     scene.loads = draw_apart<dim>(axis, 0.03);
@@ -53,17 +53,18 @@ TYPED_TEST(SofteningInParts, OpensAndTearsLikeTheWholeLattice)
     n_torn += outcome.n_broken;
     n_soft += outcome.n_soft;
     n_soft_across += outcome.n_soft_across;
-    EXPECT_EQ(outcome.n_told > 0, test::ranks().size() > 1);
+    n_told += outcome.n_told;
   }
   EXPECT_GT(n_torn, 10); // else the test would say little
   EXPECT_GT(n_soft, 50);
+  EXPECT_EQ(n_told > 0, test::ranks().size() > 1);
   EXPECT_EQ(n_soft_across > 0, test::ranks().size() > 1);
 }
 
 /// A box with a notch and a crack that goes on from its end, along an axis or at an angle.
 Packing<2> cracked(const Vector<2> &way, bool turned)
 {
-  auto lattice = box<Case<2, Kind::hexagonal, false>>(18);
+  auto lattice = box<Case<2, Kind::hexagonal, false>>(15);
   if (turned)
     lattice.orientation[0] = 0.3;
   const double half = lattice.upper[0];
@@ -92,7 +93,7 @@ TEST(SofteningInParts, CracksOpenAndShutLikeThoseOfTheWhole)
         load.value[degrees > 45 ? 1 : 0] = sign * 0.003;
         load.history = core::Cycles{core::Ramp{0.05}, 0.4, 1, 0.3};
       }
-      const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 220, 2);
+      const Outcome outcome = expect_parts_to_move_like_the_whole(scene, 180, 2);
       n_torn += outcome.n_broken;
       EXPECT_GT(outcome.n_soft, 10) << degrees;
       EXPECT_TRUE(outcome.has_reloaded) << degrees;
