@@ -1,8 +1,10 @@
-// A body of particles in parts: mpirun -n RANKS bin/bench_ranks DIMENSION PARTICLES STEPS [random]
+// A body of particles in parts: mpirun -n RANKS bin/bench_ranks DIMENSION PARTICLES STEPS [WORD]
 //
-// Hexagonal or face-centred cubic, or random, twice as long along its layers' normal as it is wide;
-// seconds a step, what of them goes into the exchange of ghosts (waiting included), bytes and
-// messages of one rank in a step, and how unequal the ranks' forces are.
+// Hexagonal or face-centred cubic, or with the word "random" that, twice as long along its layers'
+// normal as it is wide; seconds a step, what of them goes into the exchange of ghosts (waiting
+// included), bytes and messages of one rank in a step, and how unequal the ranks' forces are. With
+// the word "soften" both halves are drawn apart across all seams, layer from layer: faces between
+// them soften.
 #include "core/flush_denormals.h"
 #include "core/mpi_job.h"
 #include "dem/many_body_force.h"
@@ -14,6 +16,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <string>
 
 #include <sys/resource.h>
 
@@ -54,12 +57,18 @@ packings::PackingPart<dim> pack_part(const core::Ranks &ranks, double n_particle
 }
 
 template <int dim>
-void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_random)
+void measure(const core::Ranks &ranks, double n_particles, int steps, const std::string &word)
 {
+  const bool is_random = word == "random", softens = word == "soften";
   const dem::DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0};
   dem::FractureLaw law;
   law.criterion = dem::FractureLaw::Criterion::face_tension;
   law.strength = 1;
+  if (softens) {
+    law.criterion = dem::FractureLaw::Criterion::maximum_tension;
+    law.strength = 1e-3;
+    law.energy = 100 * 1e-6; // over so many spacings
+  }
 
   double began = now();
   auto held = pack_part<dim>(ranks, n_particles, is_random, dem::ManyBodyForce<dim>::n_rings(law));
@@ -80,12 +89,28 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_ra
   const double dt = 0.3, set_up = now() - began;
   solver.compute_forces(0);
 
+  const auto draw_apart = [&](double by) {
+    particles::for_each(solver.state.part.owned, [&](int i) {
+      const bool right = solver.state.reference[0][i] > width / 2;
+      solver.state.displacement[0][i] = right ? by / 2 : -by / 2;
+    });
+  };
+  const double reach = 2 * law.energy / law.strength.value;
+  if (softens) {
+    draw_apart(0.01 * reach);
+    solver.update_ghosts();
+    solver.compute_forces(dt / 2);
+  }
   double in_halo = 0, in_forces = 0;
   ranks.any(false); // all begin together
   began = now();
   for (int s = 1; s <= steps; ++s) {
-    solver.kick(dt);
-    solver.drift(dt);
+    if (softens)
+      draw_apart(reach * (0.01 + 0.3 * s / steps));
+    else {
+      solver.kick(dt);
+      solver.drift(dt);
+    }
     const double drifted = now();
     solver.update_ghosts();
     const double updated = now();
@@ -104,6 +129,14 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_ra
   }
   const double bytes = double(ranks.sum(std::int64_t(solver.halo().bytes(solver.state)))),
                ghosts = double(ranks.sum(std::int64_t(solver.halo().n_ghosts())));
+  std::int64_t n_soft = 0, n_told = 0;
+  const auto &force = static_cast<const dem::ManyBodyForce<dim> &>(*solver.force);
+  for (const auto &[name, face] : force.cohesive().all()) {
+    n_soft += face.is_own;
+    n_told += face.is_told;
+  }
+  n_soft = ranks.sum(n_soft);
+  n_told = ranks.sum(n_told);
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   const double memory = 1024. * double(ranks.sum(std::int64_t(usage.ru_maxrss)));
@@ -117,19 +150,21 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, bool is_ra
       n, ranks.size(), ghosts, 1e3 * seconds / steps, 1e9 * seconds / steps / n, 1e3 * halo / steps,
       1e3 * mean / steps, most / mean, bytes / ranks.size(), solver.halo().n_neighbours(), set_up,
       packed, memory / double(n));
+  if (softens)
+    fmt::print("{} faces soften, {} of them are told to all ranks\n", n_soft, n_told);
 }
 } // namespace
 
 int main(int argc, char **argv)
 {
-  const bool is_random = argc == 5 && std::string(argv[4]) == "random";
-  if (argc != 4 && !is_random) {
-    fmt::print(stderr, "bench_ranks DIMENSION PARTICLES STEPS [random]\n");
+  const std::string word = argc == 5 ? argv[4] : "";
+  if (argc < 4 || argc > 5 || (argc == 5 && word != "random" && word != "soften")) {
+    fmt::print(stderr, "bench_ranks DIMENSION PARTICLES STEPS [random|soften]\n");
     return 2;
   }
   core::flush_denormals();
   const core::MpiJob job;
   const auto run = std::atoi(argv[1]) == 2 ? measure<2> : measure<3>;
-  run(job.ranks(), std::atof(argv[2]), std::atoi(argv[3]), is_random);
+  run(job.ranks(), std::atof(argv[2]), std::atoi(argv[3]), word);
   return 0;
 }

@@ -189,13 +189,19 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       const Vector<dim> way = PrincipalTension<dim>::direction(mean);
       cohesive_.begin(id, b, p, force, way, material, whole);
     }
-    for (const int i : {b.i, b.j}) {
-      body_.add_other_particle(i);
-      strains_.open_cell(i, p.volume[i]);
-    }
+    follow_softening(b, p);
     began_at_ = time_;
   }
   return at_once;
+}
+
+template <int dim>
+void ManyBodyForce<dim>::follow_softening(const Bond<dim> &b, const Particles &p)
+{
+  for (const int i : {b.i, b.j}) {
+    body_.add_other_particle(i);
+    strains_.open_cell(i, p.volume[i]);
+  }
 }
 
 template <int dim>
@@ -260,6 +266,8 @@ template std::vector<BondId> ManyBodyForce<2>::begin_softening(const Particles &
                                                                const std::vector<BondId> &);
 template std::vector<BondId> ManyBodyForce<3>::begin_softening(const Particles &,
                                                                const std::vector<BondId> &);
+template void ManyBodyForce<2>::follow_softening(const Bond<2> &, const Particles &);
+template void ManyBodyForce<3>::follow_softening(const Bond<3> &, const Particles &);
 template void ManyBodyForce<2>::drop_bond(const BondId &, const Bond<2> &, const Particles &);
 template void ManyBodyForce<3>::drop_bond(const BondId &, const Bond<3> &, const Particles &);
 template void ManyBodyForce<2>::break_bonds(Particles &, const std::vector<BondId> &,

@@ -279,13 +279,17 @@ void ManyBodyForce<dim>::look_for_breaks(Particles &p)
 {
   const StressedBody<dim> state = stressed(p, evaluation_);
   search_.clear_by_stress(state, evaluation_);
-  std::vector<BondId> breaking = cohesive_.torn();
-  std::vector<std::int64_t> places;
-  const auto at_once = begin_softening(p, breaking_bonds(state, places));
+  if (!ranks().is_one()) {
+    look_for_breaks_in_parts(state, p);
+    return;
+  }
+  std::vector<BondId> breaking = cohesive_.torn(), exceeding;
+  if (auto found = search_.exceeding_bonds(state); !found.empty())
+    for (const auto &bond : search_.breaking(std::move(found), body_))
+      exceeding.push_back(bond.id);
+  const auto at_once = begin_softening(p, exceeding);
   breaking.insert(breaking.end(), at_once.begin(), at_once.end());
   break_bonds(p, breaking, rebonded_.torn(p, evaluation_.pressure));
-  if (n_breaking_ > 0)
-    follow_break(places);
 }
 
 template <int dim>

@@ -44,8 +44,8 @@ public:
   double potential_energy(const Particles &particles) const override;
 
   /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains
-  /// of the particles' own, faces that soften, fall or are bonded again, several materials whose
-  /// faces meet, joined sides, pressures that follow the surface.
+  /// of the particles' own, faces that are bonded again, several materials whose faces meet, joined
+  /// sides, pressures that follow the surface.
   void join(const particles::Owners &owners, const Particles &particles) override;
   void invite(const core::State &state, Particles &particles) override;
   /// Rings of ghosts around the particles of a rank: forces need two, criteria that read the stress
@@ -133,7 +133,7 @@ public:
   /// Energy in J that breaking bonds released.
   double fracture_energy() const { return ranks().sum(broken_.energy()).value(); }
   /// Energy in J that opened faces which soften.
-  double cohesive_work() const { return cohesive_.work(); }
+  double cohesive_work() const { return ranks().sum(cohesive_.work()).value(); }
   const CohesiveFaces<dim> &cohesive() const { return cohesive_; }
   /// Energy in J that faces lost as they were bonded again; and those that are.
   double rebonding_energy() const { return rebonded_.energy(); }
@@ -198,16 +198,20 @@ public:
 
 private:
   const core::Ranks &ranks() const { return owners_->ranks; }
-  /// What breaks now of the bonds at hand, in the order of the body's; `places` of theirs among
-  /// these where others have some, too. All ranks call it.
-  std::vector<BondId> breaking_bonds(const StressedBody<dim> &state,
-                                     std::vector<std::int64_t> &places);
-  /// On every rank, where bonds broke on some.
-  void follow_break(const std::vector<std::int64_t> &places);
-  /// Of the bonds that the body has: where they are at hand.
-  std::vector<BondId> bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
+  using BondName = std::array<std::int64_t, 2>;
+  /// look_for_breaks() of a body in parts. All ranks call it.
+  void look_for_breaks_in_parts(const StressedBody<dim> &state, Particles &particles);
+  /// Of the bonds that exceed in the body those that break at once; the others soften from now on.
+  std::vector<BondName>
+  begin_softening_in_parts(const Particles &particles,
+                           const std::vector<ExceedingBond<dim>> &exceeding);
+  /// On every rank, where bonds broke on some; `places` of those at hand among all these.
+  void follow_break(const Particles &particles, const std::vector<std::int64_t> &places,
+                    std::size_t n_all);
+  /// Of bonds of the body those at hand, and their places among all.
+  std::vector<BondId> bonds_here(const std::vector<BondName> &names,
                                  std::vector<std::int64_t> &places) const;
-  std::optional<BondId> bond_between(const std::array<std::int64_t, 2> &name) const;
+  std::optional<BondId> bond_between(const BondName &name) const;
   /// Whose contacts are needed here, all of them: 1.
   std::vector<char> kept_particles(const Particles &p) const;
   StressedBody<dim> stressed(const Particles &particles, const Evaluation<dim> &evaluation) const
@@ -250,6 +254,8 @@ private:
   void look_for_breaks(Particles &particles);
   /// Returns those that break at once; the others soften from now on.
   std::vector<BondId> begin_softening(const Particles &particles, const std::vector<BondId> &bonds);
+  /// What all parts but the softening ones need to know of a bond that has begun to soften.
+  void follow_softening(const Bond<dim> &bond, const Particles &particles);
   /// In J, of a face so strong that with less it would lose more than its neighbourhood gives back.
   double least_energy(const Bond<dim> &bond, const Vector<dim> &force,
                       const Softening &shape) const;
@@ -310,10 +316,10 @@ private:
   particles::RestBlocks<dim> *rest_ = nullptr;
   std::shared_ptr<particles::Owners> owners_ = std::make_shared<particles::Owners>();
   // Of a body in parts.
-  core::Names names_;                          // of what is held from the start
-  std::int64_t n_broken_ = 0, n_breaking_ = 0; // in all of them: before, and now
-  double thickness_;                           // m, 2D
-  double time_ = 0, last_time_ = 0;            // s
-  double began_at_ = -1;                       // s, softening of faces, last
+  core::Names names_;               // of what is held from the start
+  std::int64_t n_broken_ = 0;       // in all of them
+  double thickness_;                // m, 2D
+  double time_ = 0, last_time_ = 0; // s
+  double began_at_ = -1;            // s, softening of faces, last
 };
 } // namespace ligament::dem

@@ -15,9 +15,10 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners, const Particles &
   const auto refuse_where = [&](bool here, const std::string &what) {
     core::require(!owners.ranks.any(here), what + " is known in one process only; use one rank");
   };
+  refuse_where(fracture().faces_open() && strains_.has_law(),
+               "a body that flows and whose faces soften or fall");
   refuse_where(!interfaces_.empty(), "a body whose particles of several materials meet");
   refuse_where(strains_.has_law(), "a body that flows");
-  refuse_where(fracture().faces_open(), "a body whose faces soften or fall");
   refuse_where(rebonded_.is_on(), "a body whose faces are bonded again");
   refuse_where(body_.images().is_any(), "a body whose sides are joined");
   refuse_where(surface_.presses(), "a pressure that follows the surface");
@@ -26,6 +27,8 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners, const Particles &
   owners_ = std::make_shared<particles::Owners>(owners);
   names_ = p.names();
   contacts_.join(owners_, p, kept_particles(p));
+  if (fracture().faces_open())
+    cohesive_.join(owners_, names_, p);
 }
 
 // Contacts act on what is stepped; where bonds break by stresses, these are asked for at the other
@@ -50,40 +53,73 @@ void ManyBodyForce<dim>::invite(const core::State &state, Particles &p)
     contacts_.invite(state, p);
 }
 
+// What one rank sees all are told of; they choose alike.
 template <int dim>
-std::vector<BondId> ManyBodyForce<dim>::breaking_bonds(const StressedBody<dim> &state,
-                                                       std::vector<std::int64_t> &places)
+void ManyBodyForce<dim>::look_for_breaks_in_parts(const StressedBody<dim> &state, Particles &p)
 {
-  n_breaking_ = 0;
-  auto found = search_.exceeding_bonds(state, ranks().rank());
-  if (!ranks().is_one()) {
-    if (!search_.can_break() && contacts_.none())
-      return {};
-    std::vector<std::int64_t> seen = contacts_.seen();
-    seen.push_back(!found.empty());
-    seen = ranks().max(std::move(seen));
-    contacts_.agree(seen);
-    if (seen.back() == 0)
-      return {};
-    found = ranks().gather_all(found);
+  if (!search_.can_break() && contacts_.none())
+    return;
+  const auto exceeding = search_.exceeding_bonds(state);
+  std::vector<std::int64_t> seen = contacts_.seen();
+  seen.insert(seen.end(), {!exceeding.empty(), !cohesive_.own_torn().empty()});
+  seen = ranks().max(std::move(seen));
+  contacts_.agree(seen);
+  const bool tears = seen.back() != 0, exceeds = *(seen.end() - 2) != 0;
+  std::vector<BondName> breaking = tears ? cohesive_.torn_of_body() : std::vector<BondName>();
+  const std::size_t n_torn = breaking.size();
+  if (exceeds) {
+    const auto at_once =
+        begin_softening_in_parts(p, search_.breaking(ranks().gather_all(exceeding), body_));
+    breaking.insert(breaking.end(), at_once.begin(), at_once.end());
   }
-  if (found.empty())
-    return {};
-  const auto breaking = search_.breaking(std::move(found), body_);
-  if (!ranks().is_one())
-    n_breaking_ = std::int64_t(breaking.size());
-  return bonds_here(breaking, places);
+  if (breaking.empty())
+    return;
+  std::vector<std::int64_t> places;
+  break_bonds(p, bonds_here(breaking, places), {});
+  cohesive_.follow_torn(n_torn);
+  follow_break(p, places, breaking.size());
+}
+
+// How a face begins is known to whoever owns its first particle: it has the stresses of both.
+template <int dim>
+auto ManyBodyForce<dim>::begin_softening_in_parts(const Particles &p,
+                                                  const std::vector<ExceedingBond<dim>> &exceeding)
+    -> std::vector<BondName>
+{
+  std::vector<BondName> names, begun;
+  for (const auto &bond : exceeding)
+    names.push_back(bond.name);
+  if (!fracture().faces_open())
+    return names;
+  std::vector<BondId> own;
+  for (const BondName &name : names)
+    if (const auto id = bond_between(name); id && p.part.owns(body_.bonds().bond(*id).i))
+      own.push_back(*id);
+  begin_softening(p, own);
+  for (const BondId &id : own)
+    if (const Bond<dim> b = body_.bonds().bond(id); cohesive_.has(b, p))
+      begun.push_back(cohesive_.name_of(b, p));
+  begun = cohesive_.tell_begun(begun, p);
+  for (const BondName &name : begun)
+    if (const auto id = bond_between(name))
+      follow_softening(body_.bonds().bond(*id), p);
+  if (!begun.empty())
+    began_at_ = time_;
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&](const BondName &name) {
+                               return std::binary_search(begun.begin(), begun.end(), name);
+                             }),
+              names.end());
+  return names;
 }
 
 template <int dim>
-std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBond<dim>> &bonds,
+std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<BondName> &names,
                                                    std::vector<std::int64_t> &places) const
 {
   std::vector<BondId> here;
-  for (std::size_t k = 0; k < bonds.size(); ++k)
-    if (const auto id = bonds[k].rank == ranks().rank() ? std::optional(bonds[k].id)
-                                                        : bond_between(bonds[k].name))
-    {
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (const auto id = bond_between(names[k])) {
       here.push_back(*id);
       places.push_back(std::int64_t(k));
     }
@@ -91,8 +127,7 @@ std::vector<BondId> ManyBodyForce<dim>::bonds_here(const std::vector<ExceedingBo
 }
 
 template <int dim>
-std::optional<BondId>
-ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name) const
+std::optional<BondId> ManyBodyForce<dim>::bond_between(const BondName &name) const
 {
   const int i = names_.index(name[0]), j = names_.index(name[1]);
   std::optional<BondId> found;
@@ -104,13 +139,15 @@ ManyBodyForce<dim>::bond_between(const std::array<std::int64_t, 2> &name) const
   return found;
 }
 
-// What broke elsewhere touches contacts as what broke here does.
+// What broke elsewhere touches contacts, and all faces that soften, as what broke here does.
 template <int dim>
-void ManyBodyForce<dim>::follow_break(const std::vector<std::int64_t> &places)
+void ManyBodyForce<dim>::follow_break(const Particles &p, const std::vector<std::int64_t> &places,
+                                      std::size_t n_all)
 {
+  if (places.empty())
+    cohesive_.take_up(p, evaluation_);
   broken_.count(time_, n_broken_, places);
-  n_broken_ += n_breaking_;
-  n_breaking_ = 0;
+  n_broken_ += std::int64_t(n_all);
   contacts_.follow_break();
 }
 
@@ -169,12 +206,8 @@ template void ManyBodyForce<2>::join(const particles::Owners &, const Particles 
 template void ManyBodyForce<2>::invite(const core::State &, Particles &);
 template void ManyBodyForce<3>::join(const particles::Owners &, const Particles &);
 template void ManyBodyForce<3>::invite(const core::State &, Particles &);
-template std::vector<BondId> ManyBodyForce<2>::breaking_bonds(const StressedBody<2> &,
-                                                              std::vector<std::int64_t> &);
-template std::vector<BondId> ManyBodyForce<3>::breaking_bonds(const StressedBody<3> &,
-                                                              std::vector<std::int64_t> &);
-template void ManyBodyForce<2>::follow_break(const std::vector<std::int64_t> &);
-template void ManyBodyForce<3>::follow_break(const std::vector<std::int64_t> &);
+template void ManyBodyForce<2>::look_for_breaks_in_parts(const StressedBody<2> &, Particles &);
+template void ManyBodyForce<3>::look_for_breaks_in_parts(const StressedBody<3> &, Particles &);
 template Vector<2> ManyBodyForce<2>::reaction(int) const;
 template Vector<3> ManyBodyForce<3>::reaction(int) const;
 template double ManyBodyForce<2>::breaking_step_error() const;

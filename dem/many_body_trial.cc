@@ -116,6 +116,7 @@ void ManyBodyForce<dim>::add_other_tangent(
 template <int dim>
 void ManyBodyForce<dim>::resume_at(double time)
 {
+  core::require(ranks().is_one(), "equilibria are found in one process");
   broken_.forget_step();
   last_time_ = time_ = time;
   contacts_.forget_steps();

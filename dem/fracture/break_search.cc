@@ -237,8 +237,8 @@ void BreakSearch<dim>::find_tensions(std::vector<BondTension<dim>> &bonds,
 }
 
 template <int dim>
-std::vector<ExceedingBond<dim>> BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state,
-                                                                  int rank) const
+std::vector<ExceedingBond<dim>>
+BreakSearch<dim>::exceeding_bonds(const StressedBody<dim> &state) const
 {
   if (!can_break())
     return {};
@@ -259,7 +259,7 @@ std::vector<ExceedingBond<dim>> BreakSearch<dim>::exceeding_bonds(const Stressed
   for (const auto &t : found) {
     const auto [first, second] = std::minmax({p.global_id[t.bond.i], p.global_id[t.bond.j]});
     ExceedingBond<dim> &e =
-        exceeding.emplace_back(ExceedingBond<dim>{{first, second}, t.utilisation, {}, t.id, rank});
+        exceeding.emplace_back(ExceedingBond<dim>{{first, second}, t.utilisation, {}, t.id});
     const Vector<dim> place = get(p.reference, t.bond.i) + t.bond.lever_i;
     std::copy(place.begin(), place.end(), e.place.begin());
   }

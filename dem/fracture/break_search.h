@@ -29,7 +29,6 @@ struct ExceedingBond
   double utilisation;
   std::array<double, dim> place; // m, of the face in the reference
   BondId id;                     // on the rank that tells
-  int rank;
 };
 
 template <int dim>
@@ -60,9 +59,9 @@ public:
   /// After it: leaves out what the stresses clear of the particles that it noted.
   void clear_by_stress(const StressedBody<dim> &state, Evaluation<dim> &evaluation);
 
-  /// Of the bonds at hand, in any order, some of them twice; `rank` tells of them. A bond is sure
-  /// to be among those of a rank that steps one of its particles.
-  std::vector<ExceedingBond<dim>> exceeding_bonds(const StressedBody<dim> &state, int rank) const;
+  /// Of the bonds at hand, in any order, some of them twice. A bond is sure to be among those of a
+  /// rank that steps one of its particles.
+  std::vector<ExceedingBond<dim>> exceeding_bonds(const StressedBody<dim> &state) const;
   /// Of all that exceed in the body those that break now, each once, in this order.
   std::vector<ExceedingBond<dim>> breaking(std::vector<ExceedingBond<dim>> exceeding,
                                            const BondedBody<dim> &body) const;

@@ -13,30 +13,6 @@ constexpr double excess_slope = 0.25;
 /// n.e1 of faces that a straight crack across e1 needs at least; and of the criterion's cone. Those
 /// between keep more of what they bear: else a crack along any row would cost the same.
 constexpr double crack_cosine = 0.5, least_cosine = 0.3;
-
-/// visit(column, number) for all that a face remembers.
-template <int dim, typename F, typename Visit>
-void for_each_number(F &face, Visit &&visit)
-{
-  const auto vector = [&](const std::string &name, auto &v) {
-    for (int k = 0; k < int(v.size()); ++k)
-      visit(name + "_" + std::to_string(k), v[k]);
-  };
-  visit("strength", face.law.strength);
-  visit("reach", face.law.reach);
-  visit("excess", face.law.excess);
-  visit("excess_reach", face.law.excess_reach);
-  vector("opening", face.stayed.jump);
-  visit("largest", face.stayed.largest);
-  visit("damage", face.stayed.damage);
-  vector("last_force", face.last_force);
-  vector("last_turn", face.last_turn);
-  visit("spent", face.spent);
-  visit("whole_energy", face.whole_energy);
-  visit("work", face.work);
-  visit("fall_begin", face.fall.begin);
-  visit("fall_duration", face.fall.duration);
-}
 } // namespace
 
 template <int dim>
@@ -60,13 +36,15 @@ auto CohesiveFaces<dim>::make(const BondId &id, const Bond<dim> &b, const Partic
                               int material) const -> Face
 {
   const double friction = body_.materials().friction(b.i, b.j);
-  return {id,
-          b,
-          {0, 0, law_.softening_of(material), law_.mode_ratio_of(material), friction},
-          p.global_id[b.i] == name_of(b, p)[0],
-          material,
-          {Vector<dim>::Zero()},
-          {Vector<dim>::Zero()}};
+  Face face = {id,
+               b,
+               {0, 0, law_.softening_of(material), law_.mode_ratio_of(material), friction},
+               p.global_id[b.i] == name_of(b, p)[0],
+               material,
+               {Vector<dim>::Zero()},
+               {Vector<dim>::Zero()}};
+  face.is_own = p.part.owns(b.i);
+  return face;
 }
 
 // The strength is the face's share of what a crack across `way` bears. What it bears now beyond
@@ -148,7 +126,11 @@ void CohesiveFaces<dim>::forget_trial()
 template <int dim>
 bool CohesiveFaces<dim>::begin_opening(double time)
 {
-  if (faces_.empty() || opened_at_ == time)
+  if (none()) {
+    has_jumped_ = false;
+    return false;
+  }
+  if (opened_at_ == time)
     return false;
   opened_at_ = time;
   is_booked_ = false;
@@ -165,6 +147,8 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     return;
   OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
   opening.find_pressures();
+  if (tells_)
+    opening.hear_others(owners_->ranks, *names_);
   opening.follow_law(has_jumped_);
   has_jumped_ = false;
   book(p);
@@ -233,7 +217,8 @@ void CohesiveFaces<dim>::book(const Particles &p)
                          face.law.shape.area_from(face.opening.damage)) +
                     face.law.excess_energy_from(face.stayed.largest) -
                     face.law.excess_energy_from(face.opening.largest);
-    work_.add(taken);
+    if (face.is_own)
+      work_.add(taken);
     face.work += taken;
     face.stayed = face.opening;
     face.last_force = face.force;
@@ -296,15 +281,33 @@ void CohesiveFaces<dim>::take_up(const Particles &p, const Evaluation<dim> &e)
 // A face that is closed goes on as it is, with its share of the volumes: without it forces would
 // jump.
 template <int dim>
-std::vector<BondId> CohesiveFaces<dim>::torn() const
+template <typename Visit>
+void CohesiveFaces<dim>::for_each_torn(Visit &&visit) const
 {
-  std::vector<BondId> found;
   for (const auto &[name, face] : faces_) {
     const double open = face.bond.normal.dot(face.opening.jump);
     const bool has_left = face.opening.jump.norm() > body_.spacing() / 4;
     if (face.law.left(face.opening) == 0 && (open > 0 || has_left))
-      found.push_back(face.id);
+      visit(name, face);
   }
+}
+
+template <int dim>
+std::vector<BondId> CohesiveFaces<dim>::torn() const
+{
+  std::vector<BondId> found;
+  for_each_torn([&](const Name &, const Face &face) { found.push_back(face.id); });
+  return found;
+}
+
+template <int dim>
+auto CohesiveFaces<dim>::own_torn() const -> std::vector<Name>
+{
+  std::vector<Name> found;
+  for_each_torn([&](const Name &name, const Face &face) {
+    if (face.is_own)
+      found.push_back(name);
+  });
   return found;
 }
 
@@ -455,68 +458,6 @@ void CohesiveFaces<dim>::remove(const BondId &, const Bond<dim> &b, const Partic
     return;
   faces_.erase(name_of(b, p));
   find_fronts();
-}
-
-template <int dim>
-void CohesiveFaces<dim>::save(core::State &state, const core::Names &) const
-{
-  if (faces_.empty() && !opened_at_)
-    return;
-  std::vector<std::int64_t> keys;
-  std::map<std::string, std::vector<double>> columns;
-  std::vector<std::int64_t> materials;
-  for (const auto &[name, face] : faces_) {
-    keys.insert(keys.end(), name.begin(), name.end());
-    materials.push_back(face.material);
-    for_each_number<dim>(
-        face, [&](const std::string &column, double value) { columns[column].push_back(value); });
-  }
-  core::Table table(std::move(keys), 2);
-  for (const auto &[column, values] : columns)
-    table.add(column, values);
-  table.add("material", materials);
-  state["cohesive"] = std::move(table);
-  core::save_value(state, "cohesive_clock", "opened_at", opened_at_.value_or(std::nan("")));
-  core::save_sum(state, "cohesive_work", work_);
-}
-
-template <int dim>
-void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names,
-                              const Particles &p)
-{
-  const auto found = state.find("cohesive");
-  if (found == state.end())
-    return;
-  const core::Table &table = found->second;
-  std::map<std::string, std::vector<double>> columns;
-  for (const std::string &column : table.columns())
-    if (column != "material")
-      columns[column] = table.reals(column);
-  const auto materials = table.integers("material");
-  for (std::size_t r = 0; r < table.n_rows(); ++r) {
-    const int here = names.index(table.keys()[2 * r]), there = names.index(table.keys()[2 * r + 1]);
-    if (here < 0 || there < 0)
-      continue;
-    std::optional<BondId> id;
-    body_.bonds().for_each_bond_of(here, [&](BondId of, const Bond<dim> &b) {
-      if (b.i == there || b.j == there)
-        id = of;
-    });
-    core::require(id.has_value(), "the state opens a bond that this body doesn't have");
-    const Bond<dim> b = body_.bonds().bond(*id);
-    Face face = make(*id, b, p, int(materials[r]));
-    for_each_number<dim>(
-        face, [&](const std::string &column, double &value) { value = columns.at(column)[r]; });
-    if (face.fall.is_on())
-      face.law.shape = {}, face.law.mode_ratio = 1;
-    face.opening = face.stayed;
-    face.force = face.last_force;
-    faces_.emplace(name_of(b, p), face);
-  }
-  find_fronts();
-  const double time = core::load_real(state, "cohesive_clock", "opened_at");
-  opened_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
-  work_ = core::load_sum(state, "cohesive_work");
 }
 
 template class CohesiveFaces<2>;

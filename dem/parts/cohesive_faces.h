@@ -5,6 +5,7 @@
 #include "dem/fracture/crack_velocity.h"
 #include "dem/fracture_law.h"
 #include "dem/parts/inelastic_strains.h"
+#include "particles/halo.h"
 
 #include <algorithm>
 #include <map>
@@ -31,6 +32,9 @@ struct CohesiveFace
   double work = 0;                              // J, done on the opening so far
   FallInTime fall = {};                         // in place of softening
   double gone = 0;                              // of what falls, at the time of the opening
+  // Of a body in parts: whoever owns the bond's first particle opens it and books its work, and
+  // tells others of it where they need to know.
+  bool is_own = true, is_told = false;
 
   /// From which the opening of this step goes on.
   double damage_before() const { return fall.is_on() ? gone : stayed.damage; }
@@ -69,6 +73,22 @@ public:
   /// it bears neither tension nor shear: then nothing could fall.
   bool begin_fall(const BondId &id, const Bond<dim> &bond, const Particles &particles,
                   const Vector<dim> &force, int material, double now, double duration);
+  /// Of a body in parts: ranks tell each other which faces began and which are torn, and open
+  /// together those that hang together across a seam. All ranks call it, and the next three.
+  /// `names` outlive this: of the particles at hand.
+  void join(std::shared_ptr<particles::Owners> owners, const core::Names &names,
+            const Particles &particles);
+  /// What began here by begin() or begin_fall(), called by these names, begins on all ranks that
+  /// have the bond. Returns the names of all that began in the body, ascending.
+  std::vector<Name> tell_begun(const std::vector<Name> &here, const Particles &particles);
+  /// Those of own_torn() of all ranks, ascending.
+  std::vector<Name> torn_of_body() const;
+  /// So many faces of the body are no more; remove() was called where they are at hand.
+  void follow_torn(std::size_t n) { n_all_ -= std::int64_t(n); }
+  /// One's own of those of torn(), ascending.
+  std::vector<Name> own_torn() const;
+  static Name name_of(const Bond<dim> &bond, const Particles &particles);
+
   /// Whether a crack is still crossing one of the particle's faces.
   bool is_at_front(int particle) const
   {
@@ -126,7 +146,7 @@ public:
       const Particles &particles,
       const std::function<void(int, const Eigen::Matrix<double, dim, dim> &)> &visit) const;
   /// Work in J that opened faces so far. What closing ones give back is taken off.
-  double work() const { return work_.value(); }
+  const core::ExactSum &work() const { return work_; }
 
   std::vector<int> particles() const override;
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const override;
@@ -150,7 +170,6 @@ public:
 
 private:
   using Face = CohesiveFace<dim>;
-  static Name name_of(const Bond<dim> &bond, const Particles &particles);
   Face make(const BondId &id, const Bond<dim> &bond, const Particles &particles,
             int material) const;
   bool begin_opening(double time);
@@ -158,6 +177,19 @@ private:
   void book(const Particles &particles);
 
   void find_fronts();
+
+  bool is_in_parts() const { return owners_ && !owners_->ranks.is_one(); }
+  /// Whether the body has none.
+  bool none() const { return is_in_parts() ? n_all_ == 0 : faces_.empty(); }
+  /// Both of them are at hand.
+  std::optional<BondId> bond_between(int i, int j) const;
+  /// A face as it was left, after its numbers.
+  static void go_on(Face &face);
+  /// visit(name, face) for those that bear nothing any more and are open, or have slid far.
+  template <typename Visit>
+  void for_each_torn(Visit &&visit) const;
+  /// Which of one's own faces are told to others. All ranks call it.
+  void find_told();
 
   const BondedBody<dim> &body_;
   const InelasticStrains<dim> &strains_;
@@ -167,5 +199,11 @@ private:
   std::optional<double> opened_at_; // s
   bool has_jumped_ = false, is_booked_ = true;
   core::ExactSum work_;
+  // Of a body in parts.
+  std::shared_ptr<particles::Owners> owners_;
+  const core::Names *names_ = nullptr; // of the particles at hand
+  std::vector<char> seen_;             // by particle: another rank has it, too
+  std::int64_t n_all_ = 0;             // faces of the body
+  bool tells_ = false;                 // some rank tells others of faces
 };
 } // namespace ligament::dem

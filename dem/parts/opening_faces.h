@@ -2,35 +2,16 @@
 // together.
 #pragma once
 
-#include "dem/bond_law.h"
 #include "dem/parts/cohesive_faces.h"
 #include "dem/parts/flow_trial.h"
+#include "dem/parts/swept_face.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace ligament::dem
 {
-/// What an opening w changes of a bond, whether its sides are of one material or in series, (D18):
-/// its force by -k w, V theta of i by -s_i a_i . w and that of j by s_j a_j . w.
-struct OpenedBond
-{
-  double shear;            // k, N/m
-  double share_i, share_j; // s, m; S/r within a material
-
-  template <int dim>
-  static OpenedBond of(const Bond<dim> &b)
-  {
-    if (!b.joins_materials) {
-      const auto law = law_of(b);
-      return {law.shear, law.area_r, law.area_r};
-    }
-    const double c_i = b.lever_i.dot(b.normal) / (2 * b.shear_i),
-                 c_j = -b.lever_j.dot(b.normal) / (2 * b.shear_j), k = b.area / (c_i + c_j);
-    return {k, k / (2 * b.shear_i), k / (2 * b.shear_j)};
-  }
-};
-
 /// A softening face in a state of its particles, in space.
 template <int dim>
 struct SofteningFace
@@ -53,18 +34,16 @@ struct SofteningFace
   /// On i, in N, under the pressures of both.
   Vector<dim> force(double p_i, double p_j) const
   {
-    const Vector<dim> left = motion.elastic - jump;
-    return law.shear * left +
-           Vector<dim>(law.share_i * p_i * motion.a_i - law.share_j * p_j * motion.a_j);
+    return law.force<dim>(motion.elastic - jump, p_i, motion.a_i, p_j, motion.a_j);
   }
   /// What an opening adds to V theta of i and of j, in m^3.
   double volume_i(const Vector<dim> &opening) const
   {
-    return -(law.share_i * motion.a_i.dot(opening));
+    return law.volume_i<dim>(motion.a_i, opening);
   }
   double volume_j(const Vector<dim> &opening) const
   {
-    return law.share_j * motion.a_j.dot(opening);
+    return law.volume_j<dim>(motion.a_j, opening);
   }
   /// What it adds to X of i and of j, theory.md section 1.10, in m^dim and the axes of each.
   std::array<Eigen::Matrix<double, dim, dim>, 2>
@@ -198,34 +177,28 @@ class OpeningFaces
 {
 public:
   using Face = CohesiveFace<dim>;
+  using Name = std::array<std::int64_t, 2>;
   using Particles = particles::Particles<dim>;
   using Matrix = Eigen::Matrix<double, dim, dim>;
   struct One
   {
     Face *face;
     SofteningFace<dim> now;
-    Matrix stiffness; // how much of the force an opening takes, N/m
-    int i, j;         // of particles()
+    int i, j; // of particles()
   };
 
-  template <typename Faces>
   OpeningFaces(const BondedBody<dim> &body, const InelasticStrains<dim> &strains,
-               const Particles &p, Evaluation<dim> &e, Faces &faces)
+               const Particles &p, Evaluation<dim> &e, std::map<Name, Face> &faces)
       : body_(body), p_(p), e_(e)
   {
     for (const auto &[name, face] : faces)
       particle_.insert(particle_.end(), {face.bond.i, face.bond.j});
     std::sort(particle_.begin(), particle_.end());
     particle_.erase(std::unique(particle_.begin(), particle_.end()), particle_.end());
-    const auto place = [&](int i) {
-      return int(std::lower_bound(particle_.begin(), particle_.end(), i) - particle_.begin());
-    };
-    const auto &lambda = body.lambda_per_volume();
     all_.reserve(faces.size());
     for (auto &[name, face] : faces) {
-      const SofteningFace<dim> now(face, p, strains);
-      all_.push_back({&face, now, now.stiffness(lambda[face.bond.i], lambda[face.bond.j]),
-                      place(face.bond.i), place(face.bond.j)});
+      all_.push_back({&face, {face, p, strains}, place(face.bond.i), place(face.bond.j)});
+      swept_.push_back(swept_face(name, all_.back()));
     }
   }
 
@@ -241,24 +214,47 @@ public:
   {
     flow_.emplace(body_, strains, *e_.inelastic, p_, particle_);
     pressure_.resize(particle_.size());
-    for (One &one : all_) {
-      const auto &[shear, share_i, share_j] = one.now.law;
-      one.stiffness += flow_->damping(one.i, shear, share_i, one.now.motion.a_i) +
-                       flow_->damping(one.j, shear, share_j, one.now.motion.a_j);
-    }
+    for (SweptFace<dim> &s : swept_)
+      s.stiffness += flow_->damping(s.i, s.bond.shear, s.bond.share_i, s.a_i) +
+                     flow_->damping(s.j, s.bond.shear, s.bond.share_j, s.a_j);
   }
 
-  std::vector<One> &all() { return all_; }
+  /// Of a body in parts, after find_pressures(): what faces near the seams hang together with is
+  /// told to all ranks, which sweep it all. `names`: of the particles at hand.
+  void hear_others(const core::Ranks &ranks, const core::Names &names)
+  {
+    std::vector<ToldFace<dim>> told;
+    std::map<Name, int> at_hand;
+    std::vector<SweptFace<dim>> own;
+    for (const SweptFace<dim> &s : swept_) {
+      const Face &face = *all_[s.one].face;
+      at_hand[s.name] = s.one;
+      if (face.is_told)
+        told.push_back(told_face(s, names.name(face.bond.i), names.name(face.bond.j),
+                                 pressure_[s.i], pressure_[s.j]));
+      else if (face.is_own)
+        own.push_back(s);
+    }
+    swept_ = std::move(own);
+    std::map<std::int64_t, int> elsewhere;
+    for (const ToldFace<dim> &t : ranks.gather_all(told)) {
+      double p_i = 0, p_j = 0;
+      SweptFace<dim> &s = swept_.emplace_back(heard_face(t, p_i, p_j));
+      if (const auto here = at_hand.find(s.name); here != at_hand.end())
+        s.one = here->second;
+      s.i = heard_particle(t.i, p_i, names, elsewhere);
+      s.j = heard_particle(t.j, p_j, names, elsewhere);
+    }
+    std::sort(swept_.begin(), swept_.end(),
+              [](const auto &a, const auto &b) { return a.name < b.name; });
+  }
 
   /// From where the last step left them; to the last digit if `is_exact`, in a step the next one
   /// makes up for what is left. Returns the largest change in one sweep, in units of the reach.
   double follow_law(bool is_exact)
   {
-    const double change = sweep(is_exact, [](const One &one, const Vector<dim> &shut) {
-      const Opening<dim> &stayed = one.face->stayed;
-      return one.face->law.answer(
-          {one.now.in_space(stayed.jump), stayed.largest, one.face->damage_before()}, shut,
-          one.stiffness, one.now.normal);
+    const double change = sweep(is_exact, [](const SweptFace<dim> &s, const Vector<dim> &shut) {
+      return s.law.answer(s.last, shut, s.stiffness, s.normal);
     });
     for (One &one : all_)
       one.face->force = one.now.in_own_axes(one.now.force(pressure_[one.i], pressure_[one.j]));
@@ -270,15 +266,16 @@ public:
     std::vector<Opening<dim>> about;
     for (const One &one : all_)
       about.push_back(one.face->opening);
-    return sweep(true, [&](const One &one, const Vector<dim> &shut) -> Opening<dim> {
-      const Opening<dim> &there = about[&one - all_.data()];
+    return sweep(true, [&](const SweptFace<dim> &s, const Vector<dim> &shut) -> Opening<dim> {
+      const One &one = all_[s.one];
+      const Opening<dim> &there = about[s.one];
       const Vector<dim> jump = one.now.in_space(there.jump),
                         force = one.now.in_space(one.face->force);
       if ((there.damage < 1 ? force : jump).dot(one.now.normal) <= 0)
         return {jump, there.largest, there.damage};
       const Matrix tangent =
           one.face->law.tangent({jump, there.largest, there.damage}, force, one.now.normal);
-      return {(one.stiffness + tangent).inverse() * (shut - force + tangent * jump), there.largest,
+      return {(s.stiffness + tangent).inverse() * (shut - force + tangent * jump), there.largest,
               there.damage};
     });
   }
@@ -291,6 +288,8 @@ public:
       for (const int k : {one.i, one.j})
         around[k].push_back(&one);
     for (One &one : all_) {
+      if (!one.face->is_own)
+        continue;
       const Vector<dim> &jump = one.now.jump;
       const Vector<dim> along = jump.norm() > 0 ? jump : one.now.in_space(one.face->force);
       Vector<dim> way = jump;
@@ -304,6 +303,50 @@ public:
   }
 
 private:
+  int place(int i) const
+  {
+    return int(std::lower_bound(particle_.begin(), particle_.end(), i) - particle_.begin());
+  }
+  /// Of the last one of all_.
+  SweptFace<dim> swept_face(const Name &name, const One &one) const
+  {
+    const auto &[face, now, i, j] = one;
+    const double lambda_i = body_.lambda_per_volume()[face->bond.i],
+                 lambda_j = body_.lambda_per_volume()[face->bond.j];
+    return {name,
+            int(all_.size()) - 1,
+            i,
+            j,
+            face->fall.is_on() ? face->bond.distance : face->law.reach,
+            face->law,
+            now.law,
+            lambda_i,
+            lambda_j,
+            now.motion.elastic,
+            now.motion.a_i,
+            now.motion.a_j,
+            now.normal,
+            {now.in_space(face->stayed.jump), face->stayed.largest, face->damage_before()},
+            now.stiffness(lambda_i, lambda_j),
+            {now.jump, face->opening.largest, face->opening.damage}};
+  }
+  /// Place in the sweep of a particle, which has so many Pa; `elsewhere`: of those that no face at
+  /// hand has.
+  int heard_particle(std::int64_t name, double pressure, const core::Names &names,
+                     std::map<std::int64_t, int> &elsewhere)
+  {
+    const int i = names.index(name);
+    int k = i < 0 ? int(particle_.size()) : place(i);
+    if (k == int(particle_.size()) || particle_[k] != i) {
+      const auto [found, is_new] = elsewhere.emplace(name, int(pressure_.size()));
+      k = found->second;
+      if (is_new)
+        pressure_.emplace_back();
+    }
+    pressure_[k] = pressure;
+    return k;
+  }
+
   /// Of all parts, those of the rows included.
   double whole_pressure(int i, const Particles &p) const
   {
@@ -322,62 +365,82 @@ private:
     return sum;
   }
 
+  /// What a particle of the sweep has now, wherever it is.
+  void add_pressure(int k, double by)
+  {
+    pressure_[k] += by;
+    if (k < int(particle_.size()))
+      e_.pressure[particle_[k]] += by;
+  }
+
   /// One after the other they converge as Gauss and Seidel's method does, and there and back the
-  /// answers to small changes are symmetric. answer(one, force if it were shut) is the opening in
+  /// answers to small changes are symmetric. answer(face, force if it were shut) is the opening in
   /// space.
   template <typename Answer>
   double sweep(bool is_exact, Answer &&answer)
   {
-    const auto &lambda = body_.lambda_per_volume();
-    const auto open = [&](One &one) {
-      SofteningFace<dim> &now = one.now;
-      const int i = one.face->bond.i, j = one.face->bond.j;
+    const auto open = [&](SweptFace<dim> &s) {
       if (flow_) {
-        pressure_[one.i] = flow_->answer(one.i);
-        pressure_[one.j] = flow_->answer(one.j);
-        now.stretch(p_, flow_->inelastic(one.i), flow_->inelastic(one.j));
+        pressure_[s.i] = flow_->answer(s.i);
+        pressure_[s.j] = flow_->answer(s.j);
+        SofteningFace<dim> &now = all_[s.one].now;
+        now.stretch(p_, flow_->inelastic(s.i), flow_->inelastic(s.j));
+        s.elastic = now.motion.elastic;
       }
       const Vector<dim> shut =
-          now.force(pressure_[one.i], pressure_[one.j]) + one.stiffness * now.jump;
-      const Opening<dim> next = answer(one, shut);
-      const Vector<dim> opened = next.jump - now.jump;
-      const double to_i = lambda[i] * now.volume_i(opened), to_j = lambda[j] * now.volume_j(opened);
+          s.force(pressure_[s.i], pressure_[s.j]) + s.stiffness * s.opening.jump;
+      const Opening<dim> next = answer(s, shut);
+      const Vector<dim> opened = next.jump - s.opening.jump;
       if (flow_) {
-        const auto [of_i, of_j] = now.strains_of(opened, p_);
-        flow_->add(one.i, of_i);
-        flow_->add(one.j, of_j);
+        const auto [of_i, of_j] = all_[s.one].now.strains_of(opened, p_);
+        flow_->add(s.i, of_i);
+        flow_->add(s.j, of_j);
       } else {
-        pressure_[one.i] += to_i, e_.pressure[i] += to_i;
-        pressure_[one.j] += to_j, e_.pressure[j] += to_j;
+        const double to_i = s.lambda_i * s.bond.template volume_i<dim>(s.a_i, opened),
+                     to_j = s.lambda_j * s.bond.template volume_j<dim>(s.a_j, opened);
+        add_pressure(s.i, to_i);
+        add_pressure(s.j, to_j);
       }
-      now.jump = next.jump;
-      one.face->opening = {now.in_own_axes(next.jump), next.largest, next.damage};
-      const bool falls = one.face->fall.is_on();
-      return opened.norm() / (falls ? one.face->bond.distance : one.face->law.reach);
+      s.opening = next;
+      return opened.norm() / s.unit;
     };
     constexpr int most = 100;
     constexpr double round_off = 1e-14;
     double first = 0;
     for (int round = 0; round < (is_exact ? most : 1); ++round) {
       double largest = 0;
-      for (One &one : all_)
-        largest = std::max(largest, open(one));
-      for (auto one = all_.rbegin(); one != all_.rend(); ++one)
-        largest = std::max(largest, open(*one));
+      for (SweptFace<dim> &s : swept_)
+        largest = std::max(largest, open(s));
+      for (auto s = swept_.rbegin(); s != swept_.rend(); ++s)
+        largest = std::max(largest, open(*s));
       if (round == 0)
         first = largest;
       if (largest < round_off)
         break;
     }
+    take_openings();
     return first;
+  }
+  /// Those of the sweep, by the faces at hand.
+  void take_openings()
+  {
+    for (const SweptFace<dim> &s : swept_) {
+      if (s.one < 0)
+        continue;
+      One &one = all_[s.one];
+      one.now.jump = s.opening.jump;
+      one.face->opening = {one.now.in_own_axes(s.opening.jump), s.opening.largest,
+                           s.opening.damage};
+    }
   }
 
   const BondedBody<dim> &body_;
   const Particles &p_;
   Evaluation<dim> &e_;
-  std::vector<int> particle_;    // ascending
-  std::vector<double> pressure_; // Pa, of these
+  std::vector<int> particle_;    // of the faces at hand, ascending
+  std::vector<double> pressure_; // Pa, of these and of others behind them
   std::vector<One> all_;
+  std::vector<SweptFace<dim>> swept_; // in the order of their names
   std::optional<FlowTrial<dim>> flow_;
 };
 } // namespace ligament::dem

@@ -29,18 +29,18 @@ private:
   std::vector<core::Diagnostic> found_;
 };
 
-// A strain or an opening of a face that particles of another rank answer to.
+// A strain that particles of another rank answer to.
 void look_at_material(const Scene &scene, const MaterialParameters &material,
                       const std::string &key, Refusals &refusals)
 {
   const std::string reason = "what such a material remembers stays with its rank";
   refusals.add_where(material.plasticity.has_value(), key + "/plasticity", "flow", reason);
   refusals.add_where(material.viscosity.has_value(), key + "/viscosity", "viscosity", reason);
-  refusals.add_where(material.fracture.criterion != Criterion::none &&
-                         fracture_energy(scene, material).value_or(0) > 0,
-                     key + "/fracture", "faces that soften", reason);
-  refusals.add_where(material.fracture.crack_velocity.has_value(), key + "/fracture/crack_velocity",
-                     "a limit of the velocity of cracks", reason);
+  const bool flows = material.plasticity || material.viscosity,
+             softens = material.fracture.criterion != Criterion::none &&
+                       fracture_energy(scene, material).value_or(0) > 0;
+  refusals.add_where(flows && softens, key + "/fracture", "faces that soften in what flows",
+                     "what their particles answer is tried in one process");
   refusals.add_where(material.fracture.rebonding.has_value(), key + "/fracture/rebonding",
                      "faces that are bonded again", reason);
 }

@@ -204,6 +204,53 @@ TEST_F(RanksCoupled, CutAnewBetweenEquilibria)
   expect_the_same_when_cut_anew(3, calm_until_it_breaks(), 100, 10);
 }
 
+/// Faces soften over some spacings.
+Json softening(Json scene)
+{
+  Json &fracture = scene["material"]["fracture"];
+  const double strength = fracture["strength"];
+  fracture["energy"] = 4 * strength * strength;
+  return scene;
+}
+
+Json cohesive_with_steps()
+{
+  return softening(turned_with_steps());
+}
+Json cohesive_through_the_overlap()
+{
+  return softening(crack_through_the_overlap());
+}
+Json cohesive_block()
+{
+  return softening(block_with_a_crack());
+}
+Json calm_until_it_softens()
+{
+  return softening(calm_until_it_breaks());
+}
+
+TEST_F(RanksCoupled, ACohesiveCrackWithStepsOfTheMesh)
+{
+  expect_the_same_on({4}, cohesive_with_steps(), 10);
+}
+TEST_F(RanksCoupled, ACohesiveCrackThroughTheOverlap)
+{
+  expect_the_same_on({3}, cohesive_through_the_overlap(), 10);
+}
+TEST_F(RanksCoupled, ACohesiveBlock)
+{
+  expect_the_same_on({2}, cohesive_block(), 5);
+}
+TEST_F(RanksCoupled, FromEquilibriumToEquilibriumWhereFacesSoften)
+{
+  expect_the_same_on({2, 3}, calm_until_it_softens(), 5);
+}
+TEST_F(RanksCoupled, CutAnewWhereFacesSoften)
+{
+  expect_the_same_when_cut_anew(3, cohesive_with_steps(), 20, 10);
+}
+
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 {
   expect_to_go_on(turned_with_steps(), 2);
@@ -213,7 +260,8 @@ TEST_F(RanksCoupled, SlowAllOnAnyNumber)
 {
   for (const Json &scene :
        {closed_zone(), crack_through_the_overlap(), turned_with_steps(), bent_strip(),
-        turning_strip(), two_zones(), block_with_a_crack(), bar_that_rests()})
+        turning_strip(), two_zones(), block_with_a_crack(), bar_that_rests(), cohesive_with_steps(),
+        cohesive_through_the_overlap(), cohesive_block()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 0);
@@ -223,6 +271,11 @@ TEST_F(RanksCoupled, SlowAllOnAnyNumber)
 TEST_F(RanksCoupled, SlowGoOnWhereTheStripBends)
 {
   expect_to_go_on(bent_strip(), 4);
+}
+
+TEST_F(RanksCoupled, SlowGoOnWhereFacesSoften)
+{
+  expect_to_go_on(cohesive_with_steps(), 3);
 }
 
 TEST_F(RanksCoupled, SlowGoOnInABlock)

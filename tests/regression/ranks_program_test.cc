@@ -98,6 +98,50 @@ Json bar_that_rests()
   return scene;
 }
 
+/// Faces soften over so many spacings, E G_c/f_t^2.
+Json softening(Json scene, double lengths)
+{
+  Json &fracture = scene["material"]["fracture"];
+  const double strength = fracture["strength"];
+  fracture["energy"] = lengths * strength * strength;
+  return scene;
+}
+
+Json cohesive_crack_along_the_seam()
+{
+  return softening(crack_along_the_seam(), 4);
+}
+Json cohesive_crack_across_the_seam()
+{
+  return softening(crack_across_the_seam(), 3);
+}
+
+/// From a notch, in two straight lines of softening, strengths that scatter.
+Json cohesive_random()
+{
+  Json scene = softening(scene_of(2, "random", {24, 30}), 4);
+  scene["material"]["fracture"]["softening"] = "bilinear";
+  scene["specimen"]["notches"] = {{{"lower", {-13, -1}}, {"upper", {-6, 1}}}};
+  pull(scene, 1, 1, 1e-3, 10);
+  scene["time"]["duration"] = 110;
+  return scene;
+}
+
+Json cohesive_fcc()
+{
+  Json scene = softening(fcc_with_a_crack(), 2);
+  scene["time"]["duration"] = 35;
+  return scene;
+}
+
+/// Cracks run at a tenth of the velocity of shear waves.
+Json slow_cracks()
+{
+  Json scene = crack_across_the_seam();
+  scene["material"]["fracture"]["crack_velocity"] = 0.06;
+  return scene;
+}
+
 TEST_F(RanksProgram, HexagonalWithACrackAlongTheSeam)
 {
   expect_the_same_on({2, 4}, crack_along_the_seam(), 20);
@@ -144,6 +188,31 @@ TEST_F(RanksProgram, ABarThatRests)
   EXPECT_GT(file_json("on_2/run.json")["figures"]["share_at_rest"]["value"], 0.2);
 }
 
+TEST_F(RanksProgram, ACohesiveCrackAlongTheSeam)
+{
+  expect_the_same_on({4}, cohesive_crack_along_the_seam(), 10);
+}
+TEST_F(RanksProgram, ACohesiveCrackAcrossTheSeam)
+{
+  expect_the_same_on({3}, cohesive_crack_across_the_seam(), 10);
+}
+TEST_F(RanksProgram, ACohesiveCrackFromANotchOfARandomPacking)
+{
+  expect_the_same_on({2}, cohesive_random(), 10);
+}
+TEST_F(RanksProgram, CohesiveFcc)
+{
+  expect_the_same_on({2}, cohesive_fcc(), 2);
+}
+TEST_F(RanksProgram, SlowCracks)
+{
+  expect_the_same_on({3}, slow_cracks(), 10);
+}
+
+TEST_F(RanksProgram, CutAnewWhereFacesSoften)
+{
+  expect_the_same_when_cut_anew(3, cohesive_crack_across_the_seam(), 60, 10);
+}
 TEST_F(RanksProgram, CutAnewWhereAllIsCrushed)
 {
   expect_the_same_when_cut_anew(3, random_that_is_crushed(), 60, 50);
@@ -151,9 +220,11 @@ TEST_F(RanksProgram, CutAnewWhereAllIsCrushed)
 
 TEST_F(RanksProgram, SlowAllOnAnyNumber)
 {
-  for (const Json &scene : {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
-                            random_that_is_crushed(), random_of_unequal_sizes(), fcc_with_a_crack(),
-                            random_in_space(), bar_that_rests()})
+  for (const Json &scene :
+       {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
+        random_that_is_crushed(), random_of_unequal_sizes(), fcc_with_a_crack(), random_in_space(),
+        bar_that_rests(), cohesive_crack_along_the_seam(), cohesive_crack_across_the_seam(),
+        cohesive_random(), cohesive_fcc(), slow_cracks()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 5);
@@ -234,6 +305,19 @@ TEST_F(RanksProgram, GoOnFromABarThatRests)
   Json scene = bar_that_rests();
   scene["time"]["duration"] = 60;
   expect_to_go_on(scene, 2);
+}
+
+TEST_F(RanksProgram, GoOnWhereFacesSoften)
+{
+  expect_to_go_on(cohesive_random(), 2);
+}
+
+TEST_F(RanksProgram, SlowGoOnWhereFacesSoften)
+{
+  expect_to_go_on(cohesive_crack_across_the_seam(), 4);
+  for (const auto &entry : fs::directory_iterator("."))
+    fs::remove_all(entry.path());
+  expect_to_go_on(slow_cracks(), 3);
 }
 
 TEST_F(RanksProgram, SlowGoOnOnAnyNumber)

@@ -93,6 +93,9 @@ public:
     number("fracture energy", a.fracture_energy(), b.fracture_energy());
     number("breaking step error", a.breaking_step_error(), b.breaking_step_error());
     number("frictional work", a.frictional_work(), b.frictional_work());
+    number("cohesive work", a.cohesive_work(), b.cohesive_work());
+    if (a.fracture().faces_open())
+      compare_openings();
     return differs_.empty();
   }
   bool reactions_are_same(int n_loads)
@@ -144,6 +147,18 @@ private:
     });
   }
 
+  void compare_openings()
+  {
+    const auto &p = part_.solver->state;
+    std::vector<double> share, opening, whole_share, whole_opening;
+    part_.force->softening(p, share, opening);
+    whole_.force->softening(whole_.solver->state, whole_share, whole_opening);
+    particles::for_each(p.part.owned, [&](int i) {
+      number("share that softened", share[i], whole_share[place_[i]]);
+      number("opening", opening[i], whole_opening[place_[i]]);
+    });
+  }
+
   const Solver<dim> &part_, &whole_;
   const std::vector<int> &place_;
   std::string differs_;
@@ -169,7 +184,40 @@ struct Outcome
   double friction = 0;            // J
   double at_rest = 0;             // of this rank's steps
   int n_found = 0, n_met = 0;     // contacts that no face began; between particles of two ranks
+  // Most faces that softened at one time: in the body, across a seam; and of all ranks' own those
+  // that are told to others, and not.
+  int n_soft = 0, n_soft_across = 0, n_told = 0, n_untold = 0;
+  bool has_reloaded = false; // one that had gone back opened further
+
+  /// After a step.
+  template <int dim>
+  void look_at_faces(const Solver<dim> &part, const Solver<dim> &whole,
+                     const particles::Partition &partition);
+
+private:
+  std::map<std::array<std::int64_t, 2>, bool> went_back_;
 };
+
+template <int dim>
+void Outcome::look_at_faces(const Solver<dim> &part, const Solver<dim> &whole,
+                            const particles::Partition &partition)
+{
+  int across = 0;
+  std::int64_t told = 0, untold = 0;
+  for (const auto &[name, face] : whole.force->cohesive().all()) {
+    across += partition.owner(face.bond.i) != partition.owner(face.bond.j);
+    const bool back = face.law.unloads(face.opening, face.bond.normal);
+    has_reloaded = has_reloaded || (went_back_[name] && !back && face.opening.largest > 0);
+    went_back_[name] = back;
+  }
+  for (const auto &[name, face] : part.force->cohesive().all())
+    if (face.is_own)
+      ++(face.is_told ? told : untold);
+  n_soft = std::max(n_soft, int(whole.force->cohesive().all().size()));
+  n_soft_across = std::max(n_soft_across, across);
+  n_told = std::max(n_told, int(test::ranks().sum(told)));
+  n_untold = std::max(n_untold, int(test::ranks().sum(untold)));
+}
 
 /// All ranks step the body `steps` times beside the whole one.
 template <int dim>
@@ -190,6 +238,7 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
       s->solver->let_rest();
   }
   bool same = true;
+  Outcome outcome;
   for (int s = 0; s <= steps && same; ++s) {
     if (s > 0) {
       whole.step(dt, s * dt);
@@ -200,8 +249,9 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
                          comparison.broken_bonds_are_same();
     EXPECT_TRUE(is_same) << "step " << s << ":" << comparison.differs();
     same = !test::ranks().any(!is_same);
+    if (scene.law.faces_open())
+      outcome.look_at_faces(part, whole, partition);
   }
-  Outcome outcome;
   outcome.n_broken = int(whole.force->broken_bonds().size());
   for (const auto &b : whole.force->broken_bonds())
     outcome.n_across += partition.owner(b.i) != partition.owner(b.j);
