@@ -57,18 +57,9 @@ struct InelasticStreams
   double *stream(int k) const { return first + k * stride; }
 };
 
-/// Particles of one flag; those of one that is 0 have neither strains nor memory for them.
+/// Particles of one flag; those of one that is 0 have neither strains nor memory for them. Which
+/// particles share a block depends on what a process holds, so no result may depend on it.
 inline constexpr int inelastic_block = 256;
-
-/// Flags of blocks: since how many sweeps their state is kept.
-enum InelasticAge : std::uint8_t
-{
-  untouched,
-  begun,   // in the last sweep, for some of its particles
-  stored,  // for all of them
-  lasting, // and the stress before is known
-  coming   // a neighbour has begun
-};
 
 /// What a branch does in the step that ends with a sweep, theory.md eq. (D26).
 struct BranchStep
@@ -85,7 +76,8 @@ struct ViscousStep
   const BranchStep *branches = nullptr;
   double of_branches = 0; // of the answer
   bool has_dashpot = false;
-  double rate = 0; // of the dashpot: eta / (G Dt)
+  bool follows = false; // another one, whose stresses are known
+  double rate = 0;      // of the dashpot: eta / (G Dt)
 
   double answer() const { return of_branches - rate; }
 };
@@ -123,7 +115,7 @@ template <int dim>
 struct InelasticSweep
 {
   InelasticStreams<dim> streams;
-  std::uint8_t *age; // of the blocks
+  std::uint8_t *begun; // of the blocks: 1 where the state of their particles is kept
   int n_blocks;
   const std::uint8_t *law_of;      // of the particles; null: all 0
   const FlowLaw *laws;
@@ -139,7 +131,7 @@ struct InelasticSweep
   Eigen::Matrix<double, dim, dim> strain(int i) const
   {
     Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
-    if (age[i / inelastic_block] != untouched)
+    if (begun[i / inelastic_block])
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           e(a, b) = streams.stream(streams.strain + tensor_place<dim>(a, b))[i];

@@ -212,10 +212,12 @@ private:
     for (int c = 0; c < n_tensor<dim>; ++c)
       damped.c[c] = hn::Sub(viscous.c[c], slid.c[c]);
     V square = double_dot(damped);
-    if (HWY_UNLIKELY(own_.is_open())) {
-      square = hn::Neg(double_dot(damped, still_.stress(damped, hn::Zero(d_), 1)));
+    if constexpr (Own::is_open()) {
+      V of_open = hn::Neg(double_dot(damped, still_.stress(damped, hn::Zero(d_), 1)));
       if (own_.is_plane_stress())
-        square = hn::MulAdd(damped.c[2], damped.c[2], square);
+        of_open = hn::MulAdd(damped.c[2], damped.c[2], of_open);
+      // The same in whole cells, but for the last bit: it must not depend on who lies beside them.
+      square = hn::IfThenElse(own_.is_whole(), square, of_open);
     }
     return hn::MulAdd(shear, hn::Add(sum, square), double_dot(damped, stress));
   }

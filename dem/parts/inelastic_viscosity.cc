@@ -19,6 +19,7 @@ ViscousNumbers::ViscousNumbers(const Viscosity &material, double shear_modulus)
 
 void ViscousNumbers::set_step(double dt)
 {
+  step_.follows = dt > 0;
   step_.rate = dt > 0 ? time_ / dt : 0;
   step_.of_branches = 0;
   for (std::size_t k = 0; k < branches_.size(); ++k) {
@@ -48,8 +49,8 @@ void InelasticStrains<dim>::set_viscous_step(double time) const
   if (flowed_at_)
     return;
   for (int i = 0; i < body_->n_particles(); ++i)
-    if (auto &age = age_[i / inelastic_block]; age == untouched && laws_[law_number(i)].viscous)
-      age = coming;
+    if (laws_[law_number(i)].viscous)
+      begun_[i / inelastic_block] = 1;
 }
 
 template <int dim>

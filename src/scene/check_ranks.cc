@@ -29,13 +29,11 @@ private:
   std::vector<core::Diagnostic> found_;
 };
 
-// A strain or an opening of a face that particles of another rank answer to.
+// An opening of a face that particles of another rank answer to.
 void look_at_material(const Scene &scene, const MaterialParameters &material,
                       const std::string &key, Refusals &refusals)
 {
   const std::string reason = "what such a material remembers stays with its rank";
-  refusals.add_where(material.plasticity.has_value(), key + "/plasticity", "flow", reason);
-  refusals.add_where(material.viscosity.has_value(), key + "/viscosity", "viscosity", reason);
   refusals.add_where(material.fracture.criterion != Criterion::none &&
                          fracture_energy(scene, material).value_or(0) > 0,
                      key + "/fracture", "faces that soften", reason);
