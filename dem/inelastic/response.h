@@ -267,7 +267,12 @@ private:
         increment.c[c] = hn::IfThenElseZero(flows, increment.c[c]);
         plastic.c[c] = hn::Add(plastic.c[c], increment.c[c]);
       }
-      stress = find_stress();
+      const auto first = viscous;
+      const Tensor first_stress = stress;
+      stress = either(flows, find_stress(), first_stress);
+      viscous.keep(hn::Not(flows), first); // solved for once more they are others at the last bit
+      for (int c = 0; c < n_tensor<dim>; ++c)
+        all.c[c] = hn::Add(plastic.c[c], viscous.strain.c[c]);
       book(twice_work(stress, before, known, increment), flows, own);
     }
     viscous.store(where, either(known, before, stress), stress);

@@ -65,6 +65,16 @@ public:
     }
   }
 
+  /// What another solution has, there.
+  HWY_INLINE void keep(hn::Mask<D> where, const ViscousFlow &other)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c) {
+      strain.c[c] = hn::IfThenElse(where, other.strain.c[c], strain.c[c]);
+      driving_.c[c] = hn::IfThenElse(where, other.driving_.c[c], driving_.c[c]);
+      rated_.c[c] = hn::IfThenElse(where, other.rated_.c[c], rated_.c[c]);
+    }
+  }
+
   /// The new state where `where`, and what it dissipated between the stresses before and now: what
   /// e_v took less what branches and dashpots keep, eq. (D28).
   HWY_INLINE void store(hn::Mask<D> where, const Tensor &stress_before, const Tensor &stress) const
