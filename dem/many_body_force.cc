@@ -1,6 +1,7 @@
 #include "dem/many_body_force.h"
 
 #include "particles/block_sum.h"
+#include "particles/worse_face.h"
 
 namespace ligament::dem
 {
@@ -328,7 +329,7 @@ void ManyBodyForce<dim>::stresses_out_of_plane(const Particles &p,
   Evaluation<dim> e(body_);
   find_pressures(p, e);
   stress.resize(p.size());
-  for (int i = 0; i < p.size(); ++i)
+  for (int i = 0; i < body_.n_particles(); ++i) // no guest
     stress[i] = out_of_plane(i, e);
 }
 
@@ -406,7 +407,7 @@ Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
   if (!can_flow())
     return most;
   std::vector<int> watched;
-  for (int i = 0; i < p.size(); ++i)
+  for (int i = 0; i < body_.n_particles(); ++i)
     if (watch[i] == Watch::watched)
       watched.push_back(i);
   const auto stress = stressed(p, evaluation_).stresses_of(watched);
@@ -414,8 +415,9 @@ Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
     const int i = watched[k];
     const double share =
         dem::flow_share<dim>(materials().of(i).plasticity, stress[k], out_of_plane(i, evaluation_));
-    if (share > most.share)
-      most = {share, get(p.reference, i)};
+    if (const Utilisation<dim> of_this = {share, get(p.reference, i)};
+        particles::is_worse(of_this, most))
+      most = of_this;
   }
   return most;
 }

@@ -43,9 +43,9 @@ public:
   /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;
 
-  /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: strains
-  /// of the particles' own, faces that are bonded again, several materials whose faces meet, joined
-  /// sides, pressures that follow the surface.
+  /// Of a body whose ghosts are n_rings() deep. Refuses what is known in one process only: faces
+  /// that soften or fall in what flows, faces that are bonded again, several materials whose faces
+  /// meet, joined sides, pressures that follow the surface.
   void join(const particles::Owners &owners, const Particles &particles) override;
   void invite(const core::State &state, Particles &particles) override;
   /// Rings of ghosts around the particles of a rank: forces need two, criteria that read the stress
@@ -146,9 +146,8 @@ public:
   double frictional_work() const { return ranks().sum(contacts_.frictional_work()).value(); }
   particles::ForceLosses losses() const override
   {
-    return {fracture_energy(),     frictional_work(), plastic_dissipation(),
-            breaking_step_error(), cohesive_work(),   strains_.stored_energy(),
-            viscous_dissipation(), rebonding_energy()};
+    return {fracture_energy(), frictional_work(),  plastic_dissipation(), breaking_step_error(),
+            cohesive_work(),   hardening_energy(), viscous_dissipation(), rebonding_energy()};
   }
 
   /// Those at hand.
@@ -180,9 +179,11 @@ public:
   InelasticStrains<dim> &strains() { return strains_; }
   const InelasticStrains<dim> &strains() const { return strains_; }
   /// Energy in J that flow took: with it the leap-frog's balance is closed.
-  double plastic_dissipation() const { return strains_.dissipation(); }
+  double plastic_dissipation() const { return flow_sum(strains_.dissipation()); }
+  /// And the part of it that hardening stores.
+  double hardening_energy() const { return flow_sum(strains_.stored_energy()); }
   /// Energy in J that viscosity took: what branches keep is potential energy.
-  double viscous_dissipation() const { return strains_.viscous_dissipation(); }
+  double viscous_dissipation() const { return flow_sum(strains_.viscous_dissipation()); }
 
   /// Bonds break at this tension from now on, in Pa; by maximum tension if there was no criterion.
   void set_strength(double strength) { search_.set_strength(strength, body_); }
@@ -198,13 +199,17 @@ public:
 
 private:
   const core::Ranks &ranks() const { return owners_->ranks; }
+  /// Of all ranks.
+  double flow_sum(const core::ExactSum &own) const
+  {
+    return strains_.has_law() ? ranks().sum(own).value() : 0;
+  }
   using BondName = std::array<std::int64_t, 2>;
   /// look_for_breaks() of a body in parts. All ranks call it.
   void look_for_breaks_in_parts(const StressedBody<dim> &state, Particles &particles);
   /// Of the bonds that exceed in the body those that break at once; the others soften from now on.
-  std::vector<BondName>
-  begin_softening_in_parts(const Particles &particles,
-                           const std::vector<ExceedingBond<dim>> &exceeding);
+  std::vector<BondName> begin_softening_in_parts(const Particles &particles,
+                                                 const std::vector<ExceedingBond<dim>> &exceeding);
   /// On every rank, where bonds broke on some; `places` of those at hand among all these.
   void follow_break(const Particles &particles, const std::vector<std::int64_t> &places,
                     std::size_t n_all);

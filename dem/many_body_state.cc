@@ -29,8 +29,11 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
     body_.add_other_particle(i);
     strains_.open_cell(i, p.volume[i]);
   }
-  if (!ranks().is_one())
+  if (!ranks().is_one()) {
     contacts_.agree_after_load();
+    if (strains_.is_viscous() && ranks().any(!strains_.knows_last_sweep()))
+      strains_.forget_last_sweep();
+  }
   time_ = core::load_real(state, "force", "time");
   last_time_ = core::load_real(state, "force", "last_time");
   if (core::table(state, "force").has("began_at"))

@@ -172,7 +172,7 @@ public:
     for (int r = 0; r < table_.n_records(); ++r) {
       const int i = table_.particle[r];
       double *const to = sweep_.strain_records + long(r) * record_size;
-      if (sweep_.inelastic->age[i / inelastic_block] == untouched)
+      if (!sweep_.inelastic->begun[i / inelastic_block])
         std::fill(to, to + record_size, 0.);
       else
         for (int c = 0; c < n_tensor<dim>; ++c)

@@ -59,8 +59,8 @@ namespace
 /// Whose rows are of particles, by their first name.
 bool names_particles(const std::string &table)
 {
-  static const std::set<std::string> all = {"jumps", "loaded_faces", "particles", "searched",
-                                            "walls"};
+  static const std::set<std::string> all = {"inelastic", "jumps",    "loaded_faces",
+                                            "particles", "searched", "walls"};
   return all.count(table) > 0;
 }
 

@@ -33,17 +33,17 @@ constexpr int in_plane_place(int a, int b)
 template <int dim>
 struct InelasticStreams
 {
-  static constexpr int strain = 0;               // e, in the particle's own axes
-  static constexpr int stress = n_tensor<dim>;   // after the last return, Pa
-  static constexpr int history = 2 * stress;     // the law's number, accumulated
-  static constexpr int taken = history + 1;      // J, energy that flow took
+  static constexpr int strain = 0;             // e, in the particle's own axes
+  static constexpr int stress = n_tensor<dim>; // after the last return, Pa
+  static constexpr int history = 2 * stress;   // the law's number, accumulated
+  static constexpr int taken = history + 1;    // J, energy that flow took
   static constexpr int n_streams = taken + 1;
   // Behind them where a material is viscous.
-  static constexpr int viscous = n_streams;                  // the viscous part of e
-  static constexpr int driving = viscous + n_tensor<dim>;    // deviator that drives the branches
-  static constexpr int rated = driving + n_tensor<dim>;      // strain that the dashpot resists
-  static constexpr int dissipated = rated + n_tensor<dim>;   // J, by viscosity
-  static constexpr int branches = dissipated + 1;            // elastic strains of the branches
+  static constexpr int viscous = n_streams;                // the viscous part of e
+  static constexpr int driving = viscous + n_tensor<dim>;  // deviator that drives the branches
+  static constexpr int rated = driving + n_tensor<dim>;    // strain that the dashpot resists
+  static constexpr int dissipated = rated + n_tensor<dim>; // J, by viscosity
+  static constexpr int branches = dissipated + 1;          // elastic strains of the branches
 
   /// Of bodies whose materials have up to so many branches; -1: none is viscous.
   static constexpr int count(int most_branches)
@@ -57,18 +57,9 @@ struct InelasticStreams
   double *stream(int k) const { return first + k * stride; }
 };
 
-/// Particles of one flag; those of one that is 0 have neither strains nor memory for them.
+/// Particles of one flag; those of one that is 0 have neither strains nor memory for them. Which
+/// particles share a block depends on what a process holds, so no result may depend on it.
 inline constexpr int inelastic_block = 256;
-
-/// Flags of blocks: since how many sweeps their state is kept.
-enum InelasticAge : std::uint8_t
-{
-  untouched,
-  begun,   // in the last sweep, for some of its particles
-  stored,  // for all of them
-  lasting, // and the stress before is known
-  coming   // a neighbour has begun
-};
 
 /// What a branch does in the step that ends with a sweep, theory.md eq. (D26).
 struct BranchStep
@@ -85,7 +76,8 @@ struct ViscousStep
   const BranchStep *branches = nullptr;
   double of_branches = 0; // of the answer
   bool has_dashpot = false;
-  double rate = 0; // of the dashpot: eta / (G Dt)
+  bool follows = false; // another one, whose stresses are known
+  double rate = 0;      // of the dashpot: eta / (G Dt)
 
   double answer() const { return of_branches - rate; }
 };
@@ -100,11 +92,11 @@ struct FlowLaw
     drucker_prager
   };
   Kind kind = Kind::elastic;
-  double shear = 0, bulk = 0;          // G, K in Pa
-  double yield = 0, hardening = 0;     // Pa
-  double saturation = 0, rate = 0;     // Pa, -
-  double friction = 0, dilatancy = 0;  // -
-  int n_points = 0;                    // of the yield curve's table; 0: the formula
+  double shear = 0, bulk = 0;         // G, K in Pa
+  double yield = 0, hardening = 0;    // Pa
+  double saturation = 0, rate = 0;    // Pa, -
+  double friction = 0, dilatancy = 0; // -
+  int n_points = 0;                   // of the yield curve's table; 0: the formula
   const double *strain = nullptr, *stress = nullptr;
   const ViscousStep *viscous = nullptr; // null: not viscous
 };
@@ -123,23 +115,23 @@ template <int dim>
 struct InelasticSweep
 {
   InelasticStreams<dim> streams;
-  std::uint8_t *age; // of the blocks
+  std::uint8_t *begun; // of the blocks: 1 where the state of their particles is kept
   int n_blocks;
-  const std::uint8_t *law_of;      // of the particles; null: all 0
+  const std::uint8_t *law_of; // of the particles; null: all 0
   const FlowLaw *laws;
-  const int *open;                 // of the particles: their open cell or -1
+  const int *open; // of the particles: their open cell or -1
   OpenCell<dim> *cells;
-  const double *volume;            // m^3, of the particles; null: whole_volume
+  const double *volume;                  // m^3, of the particles; null: whole_volume
   double whole_volume, per_whole_volume; // m^3 and 1/m^3
   bool is_plane_strain;
   bool may_flow;
-  double *energy = nullptr;        // J, of the particles: what strains of their own change
+  double *energy = nullptr; // J, of the particles: what strains of their own change
 
   /// e of a particle without its part out of the plane, in its own axes.
   Eigen::Matrix<double, dim, dim> strain(int i) const
   {
     Eigen::Matrix<double, dim, dim> e = Eigen::Matrix<double, dim, dim>::Zero();
-    if (age[i / inelastic_block] != untouched)
+    if (begun[i / inelastic_block])
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           e(a, b) = streams.stream(streams.strain + tensor_place<dim>(a, b))[i];

@@ -69,14 +69,13 @@ public:
       : Base{zero_tensor<dim>(hn::Zero(d)), own.elastic_pressure(), false}, d_(d), s_(s),
         streams_(s.streams), at_(at)
   {
-    std::uint8_t youngest = lasting, oldest = untouched;
+    bool all = true, any = false;
     at.for_each_block([&](long b) HWY_ATTR {
-      youngest = std::min(youngest, s.age[b]);
-      oldest = std::max(oldest, s.age[b]);
+      all = all && s.begun[b];
+      any = any || s.begun[b];
     });
-    is_strained = oldest > untouched;
-    knows_before_ = youngest == lasting;
-    if (HWY_UNLIKELY(youngest != oldest) && s.may_flow)
+    is_strained = any;
+    if (HWY_UNLIKELY(all != any) && s.may_flow)
       begin();
     if (is_strained) {
       for (int c = 0; c < n_tensor<dim>; ++c)
@@ -107,10 +106,7 @@ private:
   /// The state of all blocks is kept from now on.
   HWY_INLINE void begin() const
   {
-    at_.for_each_block([&](long b) HWY_ATTR {
-      if (s_.age[b] == untouched)
-        s_.age[b] = begun;
-    });
+    at_.for_each_block([&](long b) HWY_ATTR { s_.begun[b] = 1; });
   }
 
   /// visit(law, where) law by law of the lanes.
@@ -168,7 +164,8 @@ private:
       }
     Tensor stress = own.stress(strain, pressure, twice_shear);
     double *const history = streams_.stream(Streams::history);
-    V h = at_.load(d_, history);
+    const V h_before = at_.load(d_, history);
+    V h = h_before;
     Tensor increment;
     const auto flows = law.flow(stress, where, h, increment);
     if (!hn::AllFalse(d_, flows)) {
@@ -179,7 +176,9 @@ private:
       at_.store(d_, h, where, history);
       pressure = own.pressure(strain);
       stress = own.stress(strain, pressure, twice_shear);
-      book(twice_work(stress, increment), where, own);
+      const Tensor before = load(Streams::stress);
+      book(twice_work(stress, before, is_known(law, flows, h_before, before), increment), where,
+           own);
     }
     for (int c = 0; c < n_tensor<dim>; ++c)
       at_.store(d_, stress.c[c], where, streams_.stream(Streams::stress + c));
@@ -194,12 +193,15 @@ private:
     const Tensor s = deviator(d_, stress);
     const V square = double_dot(s);
     double *const history = streams_.stream(Streams::history);
-    V h = at_.load(d_, history), along;
-    if (!hn::AllFalse(d_, law.find_flow(square, where, h, along))) {
+    const V h_before = at_.load(d_, history);
+    V h = h_before, along;
+    if (const auto flows = law.find_flow(square, where, h, along); !hn::AllFalse(d_, flows)) {
       at_.store(d_, h, where, history);
+      const Tensor before = load(Streams::stress);
+      const auto known = is_known(law, flows, h_before, before);
       const V relaxed = hn::Mul(hn::Set(d_, twice_shear), along);
       V work = hn::NegMulAdd(relaxed, square, square); // with the stress after, and before
-      work = hn::Add(work, knows_before_ ? double_dot(s, load(Streams::stress)) : work);
+      work = hn::Add(work, hn::IfThenElse(known, double_dot(s, before), work));
       work = hn::Mul(along, work);
       for (int c = 0; c < n_tensor<dim>; ++c) {
         increment.c[c] = hn::Mul(along, s.c[c]);
@@ -211,7 +213,7 @@ private:
       if constexpr (open) {
         const auto whole = own.is_whole();
         const Tensor other = own.stress(strain, pressure, twice_shear);
-        work = hn::IfThenElse(whole, work, twice_work(other, increment));
+        work = hn::IfThenElse(whole, work, twice_work(other, before, known, increment));
         for (int c = 0; c < n_tensor<dim>; ++c)
           stress.c[c] = hn::IfThenElse(whole, stress.c[c], other.c[c]);
       }
@@ -245,6 +247,10 @@ private:
       return own.stress(all, own.pressure(all), twice_shear);
     };
     Tensor stress = find_stress();
+    const Tensor before = load(Streams::stress);
+    const auto known = law.viscous->follows
+                           ? where
+                           : hn::Gt(double_dot(before), hn::Zero(d_)); // of particles that are new
     double *const history = streams_.stream(Streams::history);
     V h = at_.load(d_, history);
     FlowLaw stiffened = law; // what flows plastically no longer drives the viscous part
@@ -261,11 +267,15 @@ private:
         increment.c[c] = hn::IfThenElseZero(flows, increment.c[c]);
         plastic.c[c] = hn::Add(plastic.c[c], increment.c[c]);
       }
-      stress = find_stress();
-      book(twice_work(stress, increment), flows, own);
+      const auto first = viscous;
+      const Tensor first_stress = stress;
+      stress = either(flows, find_stress(), first_stress);
+      viscous.keep(hn::Not(flows), first); // solved for once more they are others at the last bit
+      for (int c = 0; c < n_tensor<dim>; ++c)
+        all.c[c] = hn::Add(plastic.c[c], viscous.strain.c[c]);
+      book(twice_work(stress, before, known, increment), flows, own);
     }
-    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
-    viscous.store(where, before, stress);
+    viscous.store(where, either(known, before, stress), stress);
     for (int c = 0; c < n_tensor<dim>; ++c) {
       strain.c[c] = hn::IfThenElse(where, all.c[c], strain.c[c]);
       at_.store(d_, all.c[c], where, streams_.stream(Streams::strain + c));
@@ -282,13 +292,33 @@ private:
     at_.store(d_, hn::MulAdd(own.volume(), kept, at_.load(d_, s_.energy)), where, s_.energy);
   }
 
-  /// Of an increment with the stresses after it and before, J/m^3.
-  HWY_INLINE V twice_work(const Tensor &stress, const Tensor &increment) const
+  /// Where the stress that the step before left is known, of those that flow: particles that have
+  /// flowed by then (h_before > 0) or had half of the limit. This is theirs alone, whatever their
+  /// block keeps.
+  template <typename Law>
+  HWY_INLINE hn::Mask<D> is_known(const Law &law, hn::Mask<D> flows, V h_before,
+                                  const Tensor &before) const
   {
-    const Tensor before = knows_before_ ? load(Streams::stress) : stress;
-    Tensor sum;
+    const auto flowed = hn::Gt(h_before, hn::Zero(d_));
+    if (HWY_LIKELY(hn::AllFalse(d_, hn::AndNot(flowed, flows))))
+      return flowed;
+    return hn::Or(flowed, law.is_near(before));
+  }
+  HWY_INLINE Tensor either(hn::Mask<D> where, const Tensor &there, const Tensor &elsewhere) const
+  {
+    Tensor t;
     for (int c = 0; c < n_tensor<dim>; ++c)
-      sum.c[c] = hn::Add(stress.c[c], before.c[c]);
+      t.c[c] = hn::IfThenElse(where, there.c[c], elsewhere.c[c]);
+    return t;
+  }
+  /// Of an increment with the stresses after it and before, J/m^3; those whose stress before is not
+  /// known come with the one that they leave with.
+  HWY_INLINE V twice_work(const Tensor &stress, const Tensor &before, hn::Mask<D> known,
+                          const Tensor &increment) const
+  {
+    Tensor sum = either(known, before, stress);
+    for (int c = 0; c < n_tensor<dim>; ++c)
+      sum.c[c] = hn::Add(stress.c[c], sum.c[c]);
     return double_dot(sum, increment);
   }
   /// Eq. (D23).
@@ -312,7 +342,6 @@ private:
   const InelasticSweep<dim> &s_;
   const Streams streams_;
   At at_;
-  bool knows_before_;
 };
 
 /// The law of all particles of a vector where that is all there is to know of them, else null.
@@ -333,9 +362,9 @@ HWY_INLINE bool is_quiet(D d, const InelasticSweep<dim> &s, const At &at, V squa
   const FlowLaw *const law = plain_law(s, at);
   if (HWY_UNLIKELY(!law || at.any_open(s.open) || (dim == 2 && !s.is_plane_strain)))
     return false;
-  std::uint8_t oldest = untouched;
-  at.for_each_block([&](long b) HWY_ATTR { oldest = std::max(oldest, s.age[b]); });
-  if (oldest > untouched)
+  bool any = false;
+  at.for_each_block([&](long b) HWY_ATTR { any = any || s.begun[b]; });
+  if (any)
     return false;
   switch (law->kind) {
   case FlowLaw::Kind::elastic:

@@ -65,6 +65,16 @@ public:
     }
   }
 
+  /// What another solution has, there.
+  HWY_INLINE void keep(hn::Mask<D> where, const ViscousFlow &other)
+  {
+    for (int c = 0; c < n_tensor<dim>; ++c) {
+      strain.c[c] = hn::IfThenElse(where, other.strain.c[c], strain.c[c]);
+      driving_.c[c] = hn::IfThenElse(where, other.driving_.c[c], driving_.c[c]);
+      rated_.c[c] = hn::IfThenElse(where, other.rated_.c[c], rated_.c[c]);
+    }
+  }
+
   /// The new state where `where`, and what it dissipated between the stresses before and now: what
   /// e_v took less what branches and dashpots keep, eq. (D28).
   HWY_INLINE void store(hn::Mask<D> where, const Tensor &stress_before, const Tensor &stress) const
@@ -212,10 +222,12 @@ private:
     for (int c = 0; c < n_tensor<dim>; ++c)
       damped.c[c] = hn::Sub(viscous.c[c], slid.c[c]);
     V square = double_dot(damped);
-    if (HWY_UNLIKELY(own_.is_open())) {
-      square = hn::Neg(double_dot(damped, still_.stress(damped, hn::Zero(d_), 1)));
+    if constexpr (Own::is_open()) {
+      V of_open = hn::Neg(double_dot(damped, still_.stress(damped, hn::Zero(d_), 1)));
       if (own_.is_plane_stress())
-        square = hn::MulAdd(damped.c[2], damped.c[2], square);
+        of_open = hn::MulAdd(damped.c[2], damped.c[2], of_open);
+      // The same in whole cells, but for the last bit: it must not depend on who lies beside them.
+      square = hn::IfThenElse(own_.is_whole(), square, of_open);
     }
     return hn::MulAdd(shear, hn::Add(sum, square), double_dot(damped, stress));
   }

@@ -107,9 +107,8 @@ struct Evaluation
   /// Whether particles have strains of their own.
   bool has_strains() const
   {
-    return inelastic &&
-           std::any_of(inelastic->age, inelastic->age + inelastic->n_blocks,
-                       [](std::uint8_t age) { return age != untouched; });
+    return inelastic && std::any_of(inelastic->begun, inelastic->begun + inelastic->n_blocks,
+                                    [](std::uint8_t begun) { return begun != 0; });
   }
   const InelasticSweep<dim> *sweep() const { return inelastic ? &*inelastic : nullptr; }
 

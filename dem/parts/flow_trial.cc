@@ -60,7 +60,7 @@ auto InelasticStrains<dim>::try_response(const InelasticSweep<dim> &sweep, int i
   std::vector<double> before(n_streams());
   for (int k = 0; k < n_streams(); ++k)
     before[k] = streams_.stream(k)[i];
-  const std::uint8_t age = age_[i / inelastic_block];
+  const std::uint8_t begun = begun_[i / inelastic_block];
   const Matrix in_cell = open_[i] < 0 ? Matrix(Matrix::Zero()) : cell_strain(sweep, i);
   HWY_NAMESPACE::hn::Vec<D> of_bonds[dim][dim];
   for (int a = 0; a < dim; ++a)
@@ -77,12 +77,36 @@ auto InelasticStrains<dim>::try_response(const InelasticSweep<dim> &sweep, int i
       e(a, b) = HWY_NAMESPACE::hn::GetLane(response.strain(a, b));
   for (int k = 0; k < n_streams(); ++k)
     streams_.stream(k)[i] = before[k];
-  age_[i / inelastic_block] = age;
+  begun_[i / inelastic_block] = begun;
   return {e, HWY_NAMESPACE::hn::GetLane(response.pressure)};
+}
+
+template <int dim>
+bool InelasticStrains<dim>::is_near(int i) const
+{
+  namespace hn = HWY_NAMESPACE::hn;
+  using D = hn::CappedTag<double, 1>;
+  const D d;
+  const Tensor kept = stress(i);
+  HWY_NAMESPACE::SymmetricTensor<dim, hn::Vec<D>> t;
+  for (int c = 0; c < n_tensor<dim>; ++c)
+    t.c[c] = hn::Set(d, kept[c]);
+  const FlowLaw &law = laws_[law_number(i)];
+  switch (law.kind) {
+  case FlowLaw::Kind::elastic:
+    return false;
+  case FlowLaw::Kind::von_mises:
+    return hn::AllTrue(d, HWY_NAMESPACE::VonMisesReturn<dim, D>(d, law).is_near(t));
+  case FlowLaw::Kind::drucker_prager:
+    return hn::AllTrue(d, HWY_NAMESPACE::DruckerPragerReturn<dim, D>(d, law).is_near(t));
+  }
+  return false;
 }
 
 template class FlowTrial<2>;
 template class FlowTrial<3>;
+template bool InelasticStrains<2>::is_near(int) const;
+template bool InelasticStrains<3>::is_near(int) const;
 template std::pair<Eigen::Matrix2d, double>
 InelasticStrains<2>::try_response(const InelasticSweep<2> &, int, const Eigen::Matrix2d &,
                                   double) const;

@@ -2,8 +2,8 @@
 
 #include "dem/bond_law.h"
 
-#include <algorithm>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 #include <cmath>
 
@@ -64,7 +64,7 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
                                         const BondedBody<dim> &body,
                                         std::vector<WallFace<dim>> walls,
                                         const std::vector<int> &loaded)
-    : body_(&body), walls_(std::move(walls))
+    : body_(&body), part_(particles::Part::whole(body.n_particles())), walls_(std::move(walls))
 {
   const auto &materials = body.materials().all();
   if (std::none_of(materials.begin(), materials.end(),
@@ -100,7 +100,7 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
   const long stride = (long(n) + most_lanes + 63) / 64 * 64 + 24;
   numbers_ = core::LargeArray(Streams::count(most_branches_) * stride, false);
   streams_ = {numbers_.data(), stride};
-  age_.assign((n + inelastic_block - 1) / inelastic_block, untouched);
+  begun_.assign((n + inelastic_block - 1) / inelastic_block, 0);
   if (body.bonds().n_directions() > 0) {
     const auto &d = body.bonds().directions()[0];
     whole_volume_ = body.bonds().n_directions() * d.area * d.distance / dim;
@@ -123,29 +123,6 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
     if (open_[i] >= 0 && !is_held(i, packing.volume[i]))
       loose.push_back(i);
   keep_elastic(loose);
-  find_neighbours();
-}
-
-template <int dim>
-void InelasticStrains<dim>::find_neighbours()
-{
-  neighbours_.resize(age_.size());
-  const auto join = [&](int i, int j) {
-    const int a = i / inelastic_block, b = j / inelastic_block;
-    for (const auto &[of, other] : {std::pair(a, b), std::pair(b, a)})
-      if (a != b && std::find(neighbours_[of].begin(), neighbours_[of].end(), other) ==
-                        neighbours_[of].end())
-        neighbours_[of].push_back(other);
-  };
-  const auto &bonds = body_->bonds();
-  for (const RowSegment &s : bonds.segments())
-    for (int k = 0; k < bonds.n_directions(); ++k)
-      for (int i = s.begin; i < s.end; ++i)
-        if (bonds.mask()[i] >> k & 1)
-          join(i, i + s.forward[k]);
-  const auto join_bond = [&](BondId, const Bond<dim> &b) { join(b.i, b.j); };
-  bonds.for_each_irregular(join_bond);
-  bonds.for_each_interface(join_bond);
 }
 
 template <int dim>
@@ -252,7 +229,7 @@ void InelasticStrains<dim>::open_cell(int i, double volume)
 template <int dim>
 bool InelasticStrains<dim>::has_begun() const
 {
-  return std::any_of(age_.begin(), age_.end(), [](std::uint8_t a) { return a != untouched; });
+  return std::any_of(begun_.begin(), begun_.end(), [](std::uint8_t b) { return b != 0; });
 }
 
 template <int dim>
@@ -284,25 +261,10 @@ InelasticSweep<dim> InelasticStrains<dim>::begin(bool may_flow, double time) con
   if (may_flow) {
     set_viscous_step(time);
     flowed_at_ = time;
-    // Neighbours begin, too, so that a front finds them with what their stress was before.
-    for (std::size_t b = 0; b < age_.size(); ++b)
-      if (age_[b] == begun)
-        for (const int other : neighbours_[b])
-          if (age_[other] == untouched)
-            age_[other] = coming;
-    for (const auto &[a, b] : joined_)
-      for (const auto &[one, other] : {std::pair(a, b), std::pair(b, a)})
-        if (age_[one] == begun && age_[other] == untouched)
-          age_[other] = coming;
-    for (auto &age : age_)
-      if (age == coming)
-        age = stored;
-      else if (age != untouched && age != lasting)
-        ++age;
   }
   return {streams_,
-          age_.data(),
-          int(age_.size()),
+          begun_.data(),
+          int(begun_.size()),
           law_of_.empty() ? nullptr : law_of_.data(),
           laws_.data(),
           open_.data(),
@@ -374,8 +336,7 @@ void InelasticStrains<dim>::set_strain(int i, const Tensor &strain)
 {
   for (int c = 0; c < n_tensor<dim>; ++c)
     streams_.stream(Streams::strain + c)[i] = strain[c];
-  std::uint8_t &age = age_[i / inelastic_block];
-  age = std::max(age, std::uint8_t(begun));
+  begun_[i / inelastic_block] = 1;
 }
 
 namespace

@@ -2,6 +2,7 @@
 // force, beside the kernels in which they grow.
 #pragma once
 
+#include "core/exact_sum.h"
 #include "core/large_array.h"
 #include "dem/parts/force_part.h"
 
@@ -59,6 +60,9 @@ public:
   /// Whether any particle has had half of the stress under which it flows.
   bool has_begun() const;
 
+  /// Of a body in parts: sums go over what is owned.
+  void join(const particles::Part &part) { part_ = part; }
+
   /// These never flow, whatever their material.
   void keep_elastic(const std::vector<int> &particles);
   /// Of a particle with so many m^3 whose strain is not that of its bonds alone.
@@ -77,7 +81,10 @@ public:
   /// e of a particle, in its own axes: all of it, and of the axes of the body.
   Tensor tensor(int i) const;
   Matrix strain(int i) const;
-  bool is_strained(int i) const { return has_law() && age_[i / inelastic_block] != untouched; }
+  bool is_strained(int i) const
+  {
+    return has_law() && i < body_->n_particles() && begun_[i / inelastic_block]; // no guest
+  }
   /// The law's number of a particle: accumulated plastic strain.
   double history(int i) const;
   void set_strain(int i, const Tensor &strain);
@@ -144,20 +151,23 @@ public:
   /// Of a particle whose stress jumped so as a face near it broke. Returns what forget_face does.
   double jump(int i, const Tensor &change, double pressure);
 
-  /// Energy in J that flow took, and the part of it that hardening stores.
-  double dissipation() const;
-  double viscous_dissipation() const; // J
-  double stored_energy() const;
+  /// Energy in J that flow took of one's own particles, and the part of it that hardening stores.
+  core::ExactSum dissipation() const;
+  core::ExactSum viscous_dissipation() const; // J
+  core::ExactSum stored_energy() const;
 
   void save(core::State &state, const core::Names &names) const override;
   void load(const core::State &state, const core::Names &names,
             const Particles &particles) override;
+  /// Of a viscous body: whether a step ends with the next sweep. Else that takes no time.
+  bool knows_last_sweep() const { return flowed_at_.has_value(); }
+  void forget_last_sweep() { flowed_at_.reset(); }
 
 private:
   using Streams = InelasticStreams<dim>;
 
   int n_streams() const { return Streams::count(most_branches_); }
-  double sum_of(int stream) const;
+  core::ExactSum sum_of(int stream) const;
   /// For the step that ends at this time.
   void set_viscous_step(double time) const;
   Tensor viscous_tensor(int i, int stream) const;
@@ -166,6 +176,12 @@ private:
   Tensor damped_strain(int i) const;
   /// Whether its law reads the stress that the step before left.
   bool keeps_stress(int i) const;
+  /// And the next sweep will: it is viscous, has flowed, or had half of the limit. Whatever else
+  /// its block keeps.
+  bool knows_stress(int i) const;
+  bool is_near(int i) const;
+  /// Whether any of its numbers is one that the next sweep reads.
+  bool has_state(int i) const;
   /// sym(e M) of a particle, and M.
   Tensor moved(int i, const Tensor &e) const;
   Tensor pressed(int i) const;
@@ -180,26 +196,23 @@ private:
   void set_cell(int i, double volume);
   /// Whether the faces of a particle hold it so that flow gives way to the stress, eq. (D22b).
   bool is_held(int i, double volume) const;
-  /// Blocks that share a bond.
-  void find_neighbours();
   /// S a (x) n of a bond as its particle i sees it, symmetric, m^dim.
   static Matrix moment(const Bond<dim> &bond, int i);
 
   const BondedBody<dim> *body_;
+  particles::Part part_;
   std::vector<WallFace<dim>> walls_;
   std::vector<FlowLaw> laws_;
-  std::vector<Plasticity> parameters_;   // of the laws, whose tables they hold
+  std::vector<Plasticity> parameters_;          // of the laws, whose tables they hold
   mutable std::vector<ViscousNumbers> viscous_; // of the materials, twice
-  int most_branches_ = -1; // of a viscous material; -1: there is none
+  int most_branches_ = -1;                      // of a viscous material; -1: there is none
   bool has_plasticity_ = false;
-  std::vector<std::uint8_t> law_of_;     // of the particles; empty: all 0
+  std::vector<std::uint8_t> law_of_; // of the particles; empty: all 0
   mutable core::LargeArray numbers_;
   Streams streams_;
-  mutable std::vector<std::uint8_t> age_; // of the blocks
-  std::vector<std::vector<int>> neighbours_; // of the blocks
-  std::map<int, Matrix> other_moment_;       // of particles with bonds beside the network's
-  std::vector<std::array<int, 2>> joined_;   // blocks, by such bonds
-  std::vector<int> open_;                 // of the particles
+  mutable std::vector<std::uint8_t> begun_; // of the blocks
+  std::map<int, Matrix> other_moment_;      // of particles with bonds beside the network's
+  std::vector<int> open_;                   // of the particles
   mutable std::vector<OpenCell<dim>> cells_;
   double whole_volume_ = 0;
   mutable std::optional<double> flowed_at_; // s

@@ -44,7 +44,7 @@ auto InelasticStrains<dim>::pressed(int i) const -> Tensor
 template <int dim>
 double InelasticStrains<dim>::volume(int i) const
 {
-  return open_[i] >= 0            ? cells_[open_[i]].number[OpenCell<dim>::volume]
+  return open_[i] >= 0              ? cells_[open_[i]].number[OpenCell<dim>::volume]
          : body_->volumes().empty() ? whole_volume_
                                     : body_->volumes()[i];
 }
@@ -107,6 +107,12 @@ bool InelasticStrains<dim>::keeps_stress(int i) const
 }
 
 template <int dim>
+bool InelasticStrains<dim>::knows_stress(int i) const
+{
+  return keeps_stress(i) && (laws_[law_number(i)].viscous || history(i) > 0 || is_near(i));
+}
+
+template <int dim>
 void InelasticStrains<dim>::follow_stress(int i, const Tensor &change, const Tensor &strain_before,
                                           const Tensor &viscous_before) const
 {
@@ -125,26 +131,24 @@ void InelasticStrains<dim>::follow_stress(int i, const Tensor &change, const Ten
 template <int dim>
 double InelasticStrains<dim>::jump(int i, const Tensor &change, double pressure)
 {
-  if (!keeps_stress(i))
+  if (!knows_stress(i))
     return 0;
   for (int c = 0; c < n_tensor<dim>; ++c)
     streams_.stream(Streams::stress + c)[i] += change[c];
-  return laws_[law_number(i)].viscous
-             ? lose_face(i, volume(i), change, Matrix::Zero(), pressure)
-             : 0;
+  return laws_[law_number(i)].viscous ? lose_face(i, volume(i), change, Matrix::Zero(), pressure)
+                                      : 0;
 }
 
 template <int dim>
 double InelasticStrains<dim>::forget_face(const Bond<dim> &b, int i, const Particles &p,
                                           const Vector<dim> &opening, double before, double after)
 {
-  if (!keeps_stress(i))
+  if (!knows_stress(i))
     return 0;
   const double twice_shear = 2 * laws_[law_number(i)].shear;
   const Matrix lost = moment(b, i) / volume(i);
-  const Tensor change =
-      stress_change(i, -face_strain(b, i, p, opening), after - before) +
-      symmetric((twice_shear * strain(i) - before * Matrix::Identity()) * lost);
+  const Tensor change = stress_change(i, -face_strain(b, i, p, opening), after - before) +
+                        symmetric((twice_shear * strain(i) - before * Matrix::Identity()) * lost);
   for (int c = 0; c < n_tensor<dim>; ++c)
     streams_.stream(Streams::stress + c)[i] += change[c];
   return laws_[law_number(i)].viscous ? lose_face(i, volume(i), change, lost, after) : 0;
@@ -163,12 +167,9 @@ void InelasticStrains<dim>::set_other_faces(const std::vector<OtherFace<dim>> &f
   };
   note();
   other_moment_.clear();
-  joined_.clear();
-  for (const auto &face : faces) {
+  for (const auto &face : faces)
     for (const auto &[i, m] : {std::pair(face.i, face.moment_i), std::pair(face.j, face.moment_j)})
       other_moment_.try_emplace(i, Matrix::Zero()).first->second += m;
-    joined_.push_back({face.i / inelastic_block, face.j / inelastic_block});
-  }
   note();
   for (const int i : changed)
     set_cell(i, p.volume[i]);
@@ -178,11 +179,12 @@ template <int dim>
 void InelasticStrains<dim>::forget(int i, const Matrix &moment, const Matrix &x, double before,
                                    double after)
 {
-  if (!keeps_stress(i))
+  if (!knows_stress(i))
     return;
   const Matrix flowed = strain(i) * moment;
-  jump(i, Tensor(stress_change(i, Matrix(flowed - x), after - before) -
-                 symmetric(before / volume(i) * moment)),
+  jump(i,
+       Tensor(stress_change(i, Matrix(flowed - x), after - before) -
+              symmetric(before / volume(i) * moment)),
        after);
 }
 

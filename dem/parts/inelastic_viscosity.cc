@@ -19,6 +19,7 @@ ViscousNumbers::ViscousNumbers(const Viscosity &material, double shear_modulus)
 
 void ViscousNumbers::set_step(double dt)
 {
+  step_.follows = dt > 0;
   step_.rate = dt > 0 ? time_ / dt : 0;
   step_.of_branches = 0;
   for (std::size_t k = 0; k < branches_.size(); ++k) {
@@ -48,8 +49,8 @@ void InelasticStrains<dim>::set_viscous_step(double time) const
   if (flowed_at_)
     return;
   for (int i = 0; i < body_->n_particles(); ++i)
-    if (auto &age = age_[i / inelastic_block]; age == untouched && laws_[law_number(i)].viscous)
-      age = coming;
+    if (laws_[law_number(i)].viscous)
+      begun_[i / inelastic_block] = 1;
 }
 
 template <int dim>
@@ -82,8 +83,8 @@ auto InelasticStrains<dim>::damped_strain(int i) const -> Tensor
 // The springs of the branches stretch with the whole, their dashpots don't follow at once; what the
 // dashpot beside them resists begins anew, lest it takes the face that is missing for a rate.
 template <int dim>
-double InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump, const Matrix &lost,
-                                      double pressure)
+double InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump,
+                                        const Matrix &lost, double pressure)
 {
   const FlowLaw &law = laws_[law_number(i)];
   Tensor deviator = jump;

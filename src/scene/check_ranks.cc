@@ -29,13 +29,10 @@ private:
   std::vector<core::Diagnostic> found_;
 };
 
-// A strain that particles of another rank answer to.
 void look_at_material(const Scene &scene, const MaterialParameters &material,
                       const std::string &key, Refusals &refusals)
 {
   const std::string reason = "what such a material remembers stays with its rank";
-  refusals.add_where(material.plasticity.has_value(), key + "/plasticity", "flow", reason);
-  refusals.add_where(material.viscosity.has_value(), key + "/viscosity", "viscosity", reason);
   const bool flows = material.plasticity || material.viscosity,
              softens = material.fracture.criterion != Criterion::none &&
                        fracture_energy(scene, material).value_or(0) > 0;

@@ -103,23 +103,32 @@ Vector<dim> OverlapGuard<dim>::first_broken(const CoupledBody<dim> &body) const
   return Vector<dim>::Zero();
 }
 
+namespace
+{
+/// The worst of what the ranks found; nothing where all stay below the limit.
+template <int dim>
+std::optional<particles::Utilisation<dim>> worst_of_all(const particles::Utilisation<dim> &here,
+                                                        double limit, const core::Ranks &ranks)
+{
+  if (!ranks.any(here.share >= limit))
+    return {};
+  std::vector<double> told = {here.share};
+  told.insert(told.end(), here.place.begin(), here.place.end());
+  particles::Utilisation<dim> most;
+  for (const auto &of : ranks.gather(told)) {
+    const particles::Utilisation<dim> found = {of[0], Eigen::Map<const Vector<dim>>(of.data() + 1)};
+    if (particles::is_worse(found, most))
+      most = found;
+  }
+  return most;
+}
+} // namespace
+
 template <int dim>
 std::optional<particles::Utilisation<dim>>
 OverlapGuard<dim>::worst_face(const CoupledBody<dim> &body) const
 {
-  using Face = particles::Utilisation<dim>;
-  const Face here = body.force()->utilisation(body.zone->state, asked_);
-  if (!body.ranks.any(here.share >= limit))
-    return {};
-  std::vector<double> told = {here.share};
-  told.insert(told.end(), here.place.begin(), here.place.end());
-  Face most;
-  for (const auto &of : body.ranks.gather(told)) {
-    const Face face = {of[0], Eigen::Map<const Vector<dim>>(of.data() + 1)};
-    if (particles::is_worse(face, most))
-      most = face;
-  }
-  return most;
+  return worst_of_all(body.force()->utilisation(body.zone->state, asked_), limit, body.ranks);
 }
 
 template <int dim>
@@ -191,7 +200,9 @@ template <int dim>
 auto OverlapGuard<dim>::find_flow(const CoupledBody<dim> &body) const -> Flow
 {
   Flow flow;
-  flow.most = body.force()->flow_utilisation(body.zone->state, watch_);
+  flow.most = worst_of_all(body.force()->flow_utilisation(body.zone->state, asked_),
+                           near_flow_limit, body.ranks)
+                  .value_or(particles::Utilisation<dim>());
   flow.lower.setConstant(std::numeric_limits<double>::infinity());
   flow.upper = -flow.lower;
   if (flow.most.share >= near_flow_limit)

@@ -128,6 +128,51 @@ Json bar_that_rests()
   return scene;
 }
 
+/// A bar whose waist flows: the zone goes on into its wide ends.
+Json waist_that_flows()
+{
+  Json scene = coupled(2, "hexagonal", {40, 130}, {0, 74}, 3.9);
+  scene["plane"] = "stress";
+  scene["specimen"]["notches"] = {{{"lower", {-21, -9}}, {"upper", {-9, 9}}},
+                                  {{"lower", {9, -9}}, {"upper", {21, 9}}}};
+  let_flow(scene, 2e-3);
+  scene["material"]["fracture"]["strength"] = 0.01;
+  scene["coupling"]["step_ratio"] = 2;
+  scene["damping"] = {{"mass", 1e-2}};
+  scene["gauges"] = {{{"name", "length"}, {"kind", "opening"}, {"points", {{0, -8}, {0, 8}}}},
+                     {{"name", "s"}, {"kind", "stress"}, {"lower", {-6, -8}}, {"upper", {6, 8}}}};
+  pull(scene, 1, 1, 6e-4, 60);
+  scene["time"]["duration"] = 300;
+  return scene;
+}
+
+/// The guard ends it: flow comes into the overlap.
+Json flow_into_the_overlap()
+{
+  Json scene = waist_that_flows();
+  scene["specimen"].erase("notches");
+  return scene;
+}
+
+/// A crack that flows and creeps while it grows, closed in by mesh.
+Json crack_that_flows_and_creeps()
+{
+  Json scene = closed_zone();
+  let_flow(scene, 8e-4);
+  let_creep(scene);
+  return scene;
+}
+
+Json block_that_flows()
+{
+  Json scene = block_with_a_crack();
+  scene["material"]["plasticity"] = {{"law", "drucker_prager"},
+                                     {"cohesion", 1.5e-3},
+                                     {"friction_angle", "25 deg"},
+                                     {"dilatancy_angle", "10 deg"}};
+  return scene;
+}
+
 TEST_F(RanksCoupled, AZoneClosedByMesh)
 {
   expect_the_same_on({2, 3}, closed_zone(), 10);
@@ -165,6 +210,26 @@ TEST_F(RanksCoupled, ABarThatRests)
   expect_the_same_on({2}, bar_that_rests(), 0);
   for (const char *share : {"share_at_rest", "overlap_at_rest"})
     EXPECT_GT(file_json("on_2/run.json")["figures"][share]["value"], 0.02) << share;
+}
+TEST_F(RanksCoupled, AWaistThatFlows)
+{
+  expect_the_same_on({2, 3}, waist_that_flows(), 0);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
+}
+TEST_F(RanksCoupled, TheGuardOfFlowEndsAll)
+{
+  expect_the_same_on({2, 3}, flow_into_the_overlap(), 0, 3);
+}
+TEST_F(RanksCoupled, ACrackThatFlowsAndCreeps)
+{
+  expect_the_same_on({2}, crack_that_flows_and_creeps(), 5);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
+  EXPECT_GT(last_in_history("on_1", "viscous"), 0);
+}
+TEST_F(RanksCoupled, ABlockThatFlows)
+{
+  expect_the_same_on({2}, block_that_flows(), 5);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
 }
 TEST_F(RanksCoupled, CutAnewWhileFacesOfTheOverlapBreak)
 {
@@ -251,6 +316,11 @@ TEST_F(RanksCoupled, CutAnewWhereFacesSoften)
   expect_the_same_when_cut_anew(3, cohesive_with_steps(), 20, 10);
 }
 
+TEST_F(RanksCoupled, GoOnWhereItFlowsAndCreeps)
+{
+  expect_to_go_on(crack_that_flows_and_creeps(), 2);
+}
+
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 {
   expect_to_go_on(turned_with_steps(), 2);
@@ -261,7 +331,8 @@ TEST_F(RanksCoupled, SlowAllOnAnyNumber)
   for (const Json &scene :
        {closed_zone(), crack_through_the_overlap(), turned_with_steps(), bent_strip(),
         turning_strip(), two_zones(), block_with_a_crack(), bar_that_rests(), cohesive_with_steps(),
-        cohesive_through_the_overlap(), cohesive_block()})
+        cohesive_through_the_overlap(), cohesive_block(), waist_that_flows(),
+        crack_that_flows_and_creeps(), block_that_flows()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 0);
@@ -276,6 +347,11 @@ TEST_F(RanksCoupled, SlowGoOnWhereTheStripBends)
 TEST_F(RanksCoupled, SlowGoOnWhereFacesSoften)
 {
   expect_to_go_on(cohesive_with_steps(), 3);
+}
+
+TEST_F(RanksCoupled, SlowGoOnWhereItFlows)
+{
+  expect_to_go_on(waist_that_flows(), 4);
 }
 
 TEST_F(RanksCoupled, SlowGoOnInABlock)

@@ -142,6 +142,39 @@ Json slow_cracks()
   return scene;
 }
 
+/// Flows around the crack, and breaks there.
+Json crack_that_flows()
+{
+  Json scene = crack_across_the_seam();
+  let_flow(scene, 2e-3);
+  scene["material"]["fracture"]["strength"] = 4e-3;
+  scene["plane"] = "stress";
+  scene["gauges"] = {{{"name", "e"}, {"kind", "strain"}, {"lower", {-6, -8}}, {"upper", {6, 8}}},
+                     {{"name", "s"}, {"kind", "stress"}, {"lower", {-6, -8}}, {"upper", {6, 8}}}};
+  return scene;
+}
+
+/// A granular cone that softens, and creeps below it; bonds break by the stresses of both
+/// particles.
+Json fcc_that_flows_and_creeps()
+{
+  Json scene = fcc_with_a_crack();
+  scene["material"]["plasticity"] = {{"law", "drucker_prager"},
+                                     {"cohesion", 2e-3},
+                                     {"friction_angle", "25 deg"},
+                                     {"dilatancy_angle", "10 deg"}};
+  let_creep(scene);
+  scene["material"]["fracture"] = {{"criterion", "principal_stress"}, {"strength", 2e-3}};
+  return scene;
+}
+
+Json random_that_flows()
+{
+  Json scene = random_that_is_crushed();
+  let_flow(scene, 2e-3);
+  return scene;
+}
+
 TEST_F(RanksProgram, HexagonalWithACrackAlongTheSeam)
 {
   expect_the_same_on({2, 4}, crack_along_the_seam(), 20);
@@ -213,6 +246,27 @@ TEST_F(RanksProgram, CutAnewWhereFacesSoften)
 {
   expect_the_same_when_cut_anew(3, cohesive_crack_across_the_seam(), 60, 10);
 }
+TEST_F(RanksProgram, ACrackThatFlows)
+{
+  expect_the_same_on({2, 3}, crack_that_flows(), 10);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
+}
+TEST_F(RanksProgram, FccThatFlowsAndCreeps)
+{
+  expect_the_same_on({2}, fcc_that_flows_and_creeps(), 10);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
+  EXPECT_GT(last_in_history("on_1", "viscous"), 0);
+}
+TEST_F(RanksProgram, RandomThatFlows)
+{
+  expect_the_same_on({3}, random_that_flows(), 20);
+  EXPECT_GT(last_in_history("on_1", "plastic_heat"), 0);
+}
+
+TEST_F(RanksProgram, CutAnewWhereItFlows)
+{
+  expect_the_same_when_cut_anew(3, crack_that_flows(), 60, 10);
+}
 TEST_F(RanksProgram, CutAnewWhereAllIsCrushed)
 {
   expect_the_same_when_cut_anew(3, random_that_is_crushed(), 60, 50);
@@ -224,7 +278,8 @@ TEST_F(RanksProgram, SlowAllOnAnyNumber)
        {crack_along_the_seam(), crack_across_the_seam(), square_with_a_hole(),
         random_that_is_crushed(), random_of_unequal_sizes(), fcc_with_a_crack(), random_in_space(),
         bar_that_rests(), cohesive_crack_along_the_seam(), cohesive_crack_across_the_seam(),
-        cohesive_random(), cohesive_fcc(), slow_cracks()})
+        cohesive_random(), cohesive_fcc(), slow_cracks(), crack_that_flows(),
+        fcc_that_flows_and_creeps(), random_that_flows()})
   {
     fs::remove_all("on_1");
     expect_the_same_on({2, 3, 4}, scene, 5);
@@ -246,6 +301,14 @@ TEST_F(RanksProgram, GoOnOnAnotherNumber)
   Json scene = halves_that_slide();
   scene["time"]["duration"] = 80;
   expect_to_go_on(scene, 3);
+}
+
+TEST_F(RanksProgram, GoOnWhereItFlowsAndCreeps)
+{
+  Json scene = crack_that_flows();
+  let_creep(scene);
+  scene["time"]["duration"] = 80;
+  expect_to_go_on(scene, 2);
 }
 
 // States of parts don't say what rests: whoever goes on wakes all.
@@ -323,6 +386,15 @@ TEST_F(RanksProgram, SlowGoOnWhereFacesSoften)
 TEST_F(RanksProgram, SlowGoOnOnAnyNumber)
 {
   expect_to_go_on(halves_that_slide(), 4);
+}
+
+TEST_F(RanksProgram, SlowGoOnWhereItFlows)
+{
+  expect_to_go_on(crack_that_flows(), 4);
+}
+TEST_F(RanksProgram, SlowGoOnWhereItFlowsInSpace)
+{
+  expect_to_go_on(fcc_that_flows_and_creeps(), 4);
 }
 
 TEST_F(RanksProgram, SlowGoOnWhereAllIsCrushed)

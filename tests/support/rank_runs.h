@@ -47,6 +47,40 @@ inline void pull(Json &scene, int axis, int component, double velocity, double r
   }
 }
 
+/// Von Mises' law, whose yield stress doubles.
+inline void let_flow(Json &scene, double yield)
+{
+  scene["material"]["plasticity"] = {{"law", "von_mises"},
+                                     {"yield_stress", yield},
+                                     {"saturation", yield},
+                                     {"saturation_rate", 200}};
+}
+
+/// Branches and a dashpot, of times near those of the steps.
+inline void let_creep(Json &scene)
+{
+  scene["material"]["viscosity"] = {
+      {"branches",
+       {{{"share", 0.3}, {"relaxation_time", 8}}, {{"share", 0.2}, {"relaxation_time", 60}}}},
+      {"shear_viscosity", 0.05}};
+}
+
+/// In the last row of the history.
+inline double last_in_history(const std::string &run, const std::string &column)
+{
+  std::istringstream rows(file_text(run + "/history.csv"));
+  std::string header, row, last;
+  std::getline(rows, header);
+  while (std::getline(rows, row))
+    last = row;
+  std::istringstream names(header), values(last);
+  for (std::string name, value; std::getline(names, name, ',') && std::getline(values, value, ',');)
+    if (name.substr(0, name.find('[')).find(column) != name.npos)
+      return std::stod(value);
+  ADD_FAILURE() << "no column " << column << " in " << header;
+  return 0;
+}
+
 inline std::string written(const Json &scene, const std::string &name)
 {
   std::ofstream(name) << scene.dump(2);

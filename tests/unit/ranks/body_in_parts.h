@@ -96,6 +96,9 @@ public:
     number("cohesive work", a.cohesive_work(), b.cohesive_work());
     if (a.fracture().faces_open())
       compare_openings();
+    number("plastic dissipation", a.plastic_dissipation(), b.plastic_dissipation());
+    number("hardening energy", a.hardening_energy(), b.hardening_energy());
+    number("viscous dissipation", a.viscous_dissipation(), b.viscous_dissipation());
     return differs_.empty();
   }
   bool reactions_are_same(int n_loads)
@@ -145,6 +148,19 @@ private:
       const std::vector<double> &other = *of_whole[a++];
       particles::for_each(p.part.owned, [&](int i) { number(name, array[i], other[place_[i]]); });
     });
+    const auto &of_part = part_.force->strains();
+    const auto &strains = whole_.force->strains();
+    if (of_part.has_law())
+      particles::for_each(p.part.owned, [&](int i) {
+        const int j = place_[i];
+        number("history", of_part.history(i), strains.history(j));
+        const auto e = of_part.tensor(i), f = strains.tensor(j),
+                   viscous = of_part.viscous_strain(i), expected = strains.viscous_strain(j);
+        for (int c = 0; c < e.size(); ++c) {
+          number("inelastic strain", e[c], f[c]);
+          number("viscous strain", viscous[c], expected[c]);
+        }
+      });
   }
 
   void compare_openings()
@@ -180,10 +196,12 @@ inline particles::Partition some_partition(int n, unsigned number, int n_busy = 
 
 struct Outcome
 {
-  int n_broken = 0, n_across = 0; // bonds; between particles of different ranks
-  double friction = 0;            // J
-  double at_rest = 0;             // of this rank's steps
-  int n_found = 0, n_met = 0;     // contacts that no face began; between particles of two ranks
+  int n_broken = 0, n_across = 0;  // bonds; between particles of different ranks
+  double friction = 0;             // J
+  double at_rest = 0;              // of this rank's steps
+  int n_found = 0, n_met = 0;      // contacts that no face began; between particles of two ranks
+  double share_flowed = 0;         // of the particles
+  double plastic = 0, viscous = 0; // J
   // Most faces that softened at one time: in the body, across a seam; and of all ranks' own those
   // that are told to others, and not.
   int n_soft = 0, n_soft_across = 0, n_told = 0, n_untold = 0;
@@ -261,6 +279,11 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
       ++outcome.n_found;
       outcome.n_met += partition.owner(c.face.i) != partition.owner(c.face.j);
     }
+  const int n = scene.packing.size();
+  for (int i = 0; i < n; ++i)
+    outcome.share_flowed += (whole.force->strains().history(i) > 0) / double(n);
+  outcome.plastic = whole.force->plastic_dissipation();
+  outcome.viscous = whole.force->viscous_dissipation();
   if (part.solver->rest())
     outcome.at_rest = part.solver->rest()->share_at_rest();
   return outcome;

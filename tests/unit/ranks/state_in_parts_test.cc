@@ -122,6 +122,10 @@ void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
   }
   EXPECT_GE(whole.force->broken_bonds().size(), least_broken); // else the test would say little
   EXPECT_EQ(n_soft > 20, scene.law.faces_open());
+  if (flows(scene.material.plasticity))
+    EXPECT_GT(whole.force->plastic_dissipation(), 0);
+  if (is_viscous(scene.material.viscosity))
+    EXPECT_GT(whole.force->viscous_dissipation(), 0);
 }
 
 TEST(StateInParts, GoesOnInOtherParts2D)
@@ -149,6 +153,48 @@ TEST(StateInParts, GoesOnInOtherParts3D)
   scene.random_velocity = 0.05;
   scene.law = {Criterion::maximum_tension, 0.02};
   expect_the_state_to_go_on(scene, 40, 8);
+}
+
+DemMaterial flowing_material(double yield)
+{
+  DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0.4};
+  YieldCurve curve;
+  curve.initial = yield, curve.hardening = 0.05, curve.saturation = yield, curve.rate = 60;
+  material.plasticity = VonMisesFlow{curve};
+  return material;
+}
+
+// While bonds break some particles flow, some have had half of what makes them flow, some nothing.
+TEST(StateInParts, GoesOnWhileItFlows2D)
+{
+  for (const bool viscous : {false, true}) {
+    Scene<2> scene;
+    auto lattice = box<Case<2, Kind::hexagonal, true>>(20);
+    const double half = lattice.upper[0];
+    lattice.cracks = {{{-0.5 * half, 0.1 * half}, {0.4 * half, -0.1 * half}}};
+    scene.packing = packings::make_lattice_packing(lattice);
+    scene.material = flowing_material(0.015);
+    if (viscous)
+      scene.material.viscosity = {{{0.4, 0.1}, {0.2, 0.02}}, 1e-4};
+    scene.random_velocity = 0.025;
+    scene.law = {Criterion::maximum_tension, 0.02};
+    scene.loads.resize(1);
+    scene.loads[0].boundary = 3;
+    scene.loads[0].kind = core::BoundaryLoad<2>::Kind::velocity;
+    scene.loads[0].value[1] = 0.03;
+    expect_the_state_to_go_on(scene, 80, 10, 10);
+  }
+}
+
+TEST(StateInParts, GoesOnWhileItFlows3D)
+{
+  Scene<3> scene;
+  scene.packing = packings::make_lattice_packing(box<Case<3, Kind::fcc, false>>(7));
+  scene.material = flowing_material(0.02);
+  scene.material.plasticity = DruckerPragerFlow{0.015, -0.05, 0.4, 0.2};
+  scene.random_velocity = 0.04;
+  scene.law = {Criterion::principal_stress, 0.02};
+  expect_the_state_to_go_on(scene, 40, 8, 10);
 }
 
 // Flanks of a crack slide along each other by some spacings, and strangers meet.
