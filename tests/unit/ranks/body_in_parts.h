@@ -219,6 +219,7 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
     EXPECT_TRUE(is_same) << "step " << s << ":" << comparison.differs();
     same = !test::ranks().any(!is_same);
   }
+  EXPECT_TRUE(std::isfinite(whole.solver->kinetic_energy(dt)));
   Outcome outcome;
   outcome.n_broken = int(whole.force->broken_bonds().size());
   for (const auto &b : whole.force->broken_bonds())
