@@ -101,7 +101,8 @@ double InelasticStrains<dim>::lose_face(int i, double volume, const Tensor &jump
                 moved(i, viscous);
   if (dim == 2 && !body_->is_plane_strain())
     seen[2] = 0;
-  seen -= dot(seen, moment) / dot(moment, moment) * moment;
+  if (const double square = dot(moment, moment); square > 0) // 0: that was its last face
+    seen -= dot(seen, moment) / square * moment;
   for (int c = 0; c < n_tensor<dim>; ++c) {
     for (int k = 0; k < law.viscous->n_branches; ++k)
       streams_.stream(Streams::branches + k * n_tensor<dim> + c)[i] +=

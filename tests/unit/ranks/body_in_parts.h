@@ -270,6 +270,7 @@ Outcome expect_parts_to_move_like_the_whole(const Scene<dim> &scene, int steps, 
     if (scene.law.faces_open())
       outcome.look_at_faces(part, whole, partition);
   }
+  EXPECT_TRUE(std::isfinite(whole.solver->kinetic_energy(dt)));
   outcome.n_broken = int(whole.force->broken_bonds().size());
   for (const auto &b : whole.force->broken_bonds())
     outcome.n_across += partition.owner(b.i) != partition.owner(b.j);
