@@ -147,8 +147,8 @@ void CohesiveFaces<dim>::open(const Particles &p, double time, Evaluation<dim> &
     return;
   OpeningFaces<dim> opening(body_, strains_, p, e, faces_);
   opening.find_pressures();
-  if (tells_)
-    opening.hear_others(owners_->ranks, *names_);
+  if (is_in_parts())
+    opening.hear_others(owners_->ranks, *names_, tells_);
   opening.follow_law(has_jumped_);
   has_jumped_ = false;
   book(p);

@@ -46,6 +46,7 @@ void CohesiveFaces<dim>::save(core::State &state, const core::Names &) const
   table.add("material", materials);
   state["cohesive"] = std::move(table);
   core::save_value(state, "cohesive_clock", "opened_at", opened_at_.value_or(std::nan("")));
+  core::save_value(state, "cohesive_clock", "has_jumped", std::int64_t(has_jumped_));
   core::save_sum(state, "cohesive_work", work_);
 }
 
@@ -80,6 +81,8 @@ void CohesiveFaces<dim>::load(const core::State &state, const core::Names &names
   find_told();
   const double time = core::load_real(state, "cohesive_clock", "opened_at");
   opened_at_ = std::isnan(time) ? std::nullopt : std::optional(time);
+  const core::Table &clock = core::table(state, "cohesive_clock");
+  has_jumped_ = clock.has("has_jumped") && clock.integers("has_jumped")[0] != 0;
   work_ = core::load_sum(state, "cohesive_work");
 }
 

@@ -7,6 +7,7 @@
 #include "dem/parts/swept_face.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <vector>
 
@@ -220,9 +221,13 @@ public:
   }
 
   /// Of a body in parts, after find_pressures(): what faces near the seams hang together with is
-  /// told to all ranks, which sweep it all. `names`: of the particles at hand.
-  void hear_others(const core::Ranks &ranks, const core::Names &names)
+  /// told to all ranks, which sweep it all; `are_some` says whether there is any. `names`: of the
+  /// particles at hand.
+  void hear_others(const core::Ranks &ranks, const core::Names &names, bool are_some)
   {
+    ranks_ = ranks;
+    if (!are_some)
+      return;
     std::vector<ToldFace<dim>> told;
     std::map<Name, int> at_hand;
     std::vector<SweptFace<dim>> own;
@@ -413,6 +418,8 @@ private:
         largest = std::max(largest, open(s));
       for (auto s = swept_.rbegin(); s != swept_.rend(); ++s)
         largest = std::max(largest, open(*s));
+      if (is_exact)
+        largest = largest_of_all(largest);
       if (round == 0)
         first = largest;
       if (largest < round_off)
@@ -420,6 +427,17 @@ private:
     }
     take_openings();
     return first;
+  }
+  /// Not below 0.
+  double largest_of_all(double here) const
+  {
+    if (ranks_.is_one())
+      return here;
+    std::int64_t bits; // in the order of such numbers
+    std::memcpy(&bits, &here, sizeof(bits));
+    bits = ranks_.max(bits);
+    std::memcpy(&here, &bits, sizeof(bits));
+    return here;
   }
   /// Those of the sweep, by the faces at hand.
   void take_openings()
@@ -442,5 +460,6 @@ private:
   std::vector<One> all_;
   std::vector<SweptFace<dim>> swept_; // in the order of their names
   std::optional<FlowTrial<dim>> flow_;
+  core::Ranks ranks_; // of a body in parts
 };
 } // namespace ligament::dem

@@ -78,7 +78,7 @@ struct SweptFace
 template <int dim>
 struct ToldFace
 {
-  static constexpr int n_numbers = 17 + 5 * dim + dim * dim;
+  static constexpr int n_numbers = 18 + 5 * dim + dim * dim;
 
   std::array<std::int64_t, 2> name;
   std::int64_t i, j;
@@ -92,7 +92,7 @@ void for_each_told_number(Face &f, Pressure &p_i, Pressure &p_j, Visit &&visit)
   for (auto *of : {&f.law.strength, &f.law.reach, &f.law.shape.corner_share,
                    &f.law.shape.corner_opening, &f.law.mode_ratio, &f.law.friction, &f.law.excess,
                    &f.law.excess_reach, &f.bond.shear, &f.bond.share_i, &f.bond.share_j,
-                   &f.lambda_i, &f.lambda_j, &f.last.largest, &f.last.damage, &p_i, &p_j})
+                   &f.lambda_i, &f.lambda_j, &f.unit, &f.last.largest, &f.last.damage, &p_i, &p_j})
     visit(*of);
   for (auto *of : {&f.elastic, &f.a_i, &f.a_j, &f.normal, &f.last.jump})
     for (int c = 0; c < int(of->size()); ++c)
@@ -122,7 +122,6 @@ SweptFace<dim> heard_face(const ToldFace<dim> &t, double &p_i, double &p_j)
   face.one = -1;
   auto place = t.numbers.begin();
   for_each_told_number(face, p_i, p_j, [&](double &number) { number = *place++; });
-  face.unit = face.law.reach;
   face.opening = {face.last.jump, face.last.largest, face.last.damage};
   return face;
 }
