@@ -30,7 +30,7 @@ public:
   const core::State &tables() const { return tables_; }
 
 private:
-  // Not "seeds": those were healed, and thinned out.
+  // The table "seeds" of checkpoints of before had healed radii, and not all of them.
   static constexpr const char *packed_seeds = "packed_seeds";
 
   core::State tables_;

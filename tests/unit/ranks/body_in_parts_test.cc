@@ -112,6 +112,9 @@ TEST(BodyInParts, RefusesWhatNeedsOneProcess)
   scene.packing = packings::make_lattice_packing(box<Case<2, Kind::hexagonal, false>>(20));
   scene.law = {FractureLaw::Criterion::maximum_tension, 1e-3};
   scene.law.energy = 1e-6;
+  YieldCurve curve;
+  curve.initial = 1e-3;
+  scene.material.plasticity = VonMisesFlow{curve};
   const auto partition = some_partition(scene.packing.size(), 0);
   const auto held = packings::part_of(scene.packing, partition, test::ranks().rank(), 3);
   if (test::ranks().is_one())
