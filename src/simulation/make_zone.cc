@@ -153,7 +153,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   state.part = held.part;
   const auto constants = elastic_constants_of<dim>(scene);
   auto dashpots = packings::absorbing_dashpots(packing, state, body.loads, scene.material.density,
-                                               constants.wave_speed_p, constants.wave_speed_s);
+                                               constants.wave_speed_p, constants.wave_speed_s, body.ranks);
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};
   std::optional<packings::Packing<dim>> faces; // the force keeps the packing
