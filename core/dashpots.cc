@@ -15,14 +15,14 @@ double Dashpot::memory(double dt) const
 }
 
 template <int dim>
-Dashpots<dim>::Dashpots(const Places &places)
+Dashpots<dim>::Dashpots(const Places &places, const std::function<bool(int)> &owns)
 {
   for (const auto &[place, dashpots] : places) {
     for (const Dashpot &d : dashpots)
       if (d.coefficient > 0)
         dashpots_.push_back(d);
     if (dashpots_.size() > (places_.empty() ? 0 : places_.back().end))
-      places_.push_back({place[0], place[1], dashpots_.size()});
+      places_.push_back({place[0], place[1], dashpots_.size(), !owns || owns(place[0])});
   }
   memory_.assign(dashpots_.size(), 0.);
 }

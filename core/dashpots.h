@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "core/types.h"
 
+#include <functional>
 #include <map>
 
 namespace ligament::core
@@ -40,7 +41,9 @@ public:
   using Places = std::map<std::array<int, 2>, std::vector<Dashpot>>;
 
   Dashpots() = default;
-  explicit Dashpots(const Places &places);
+  /// Of a part of a body those of what it steps; `owns` says of which of them it books the energy,
+  /// without it of all.
+  explicit Dashpots(const Places &places, const std::function<bool(int)> &owns = {});
 
   bool is_empty() const { return places_.empty(); }
 
@@ -51,8 +54,9 @@ public:
            Components<dim> &velocity);
 
   /// Taken so far, what their memories keep included, in J: one exact sum over places and steps,
-  /// which has no order. Parts of a body keep sums of their own places.
+  /// which has no order. Those of parts are summed to that of the body.
   double energy() const { return energy_.value(); }
+  const core::ExactSum &energy_sum() const { return energy_; }
 
   /// Memories and energy as tables <name> and <name>_energy; rows are called by the name of the
   /// particle or node, the component and the number of the dashpot there.
@@ -64,6 +68,7 @@ private:
   {
     int index, component;
     std::size_t end; // of its dashpots, which begin where those before it end
+    bool is_own;
   };
 
   void prepare(double dt);
@@ -108,7 +113,8 @@ void Dashpots<dim>::act(double dt, const InverseMass &inverse_mass, const Compon
                         (1 + mass * w + dt * resistance * w / 2);
     const double after = 2 * mean - before;
     if (w > 0) {
-      energy_.add((v - after) / w * mean);
+      if (place.is_own)
+        energy_.add((v - after) / w * mean);
       v = after;
     }
     for (; begin < place.end; ++begin)

@@ -20,7 +20,6 @@ void ManyBodyForce<dim>::join(const particles::Owners &owners, const Particles &
   refuse_where(!interfaces_.empty(), "a body whose particles of several materials meet");
   refuse_where(rebonded_.is_on(), "a body whose faces are bonded again");
   refuse_where(body_.images().is_any(), "a body whose sides are joined");
-  refuse_where(surface_.presses(), "a pressure that follows the surface");
   refuse_where(!body_.energy_weights().empty(), "a body with weighted energy");
   core::require(broken_.all().empty(), "parts are joined before anything breaks");
   owners_ = std::make_shared<particles::Owners>(owners);

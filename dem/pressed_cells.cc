@@ -95,17 +95,13 @@ void PressedCells<dim>::add_pressures(const Particles &, Evaluation<dim> &e) con
 template <int dim>
 void PressedCells<dim>::add_reactions(const Particles &p, Evaluation<dim> &e) const
 {
-  if (faces_.empty())
-    return;
-  std::vector<std::array<core::ExactSum, dim>> sums(e.reactions.size());
   for (const Face &face : faces_) {
+    if (!p.part.owns(face.i))
+      continue;
     const Vector<dim> f = force(face, p, e);
     for (int c = 0; c < dim; ++c)
-      sums[face.load][c].add(f[c]);
+      e.reaction_sums[dim * face.load + c].add(f[c]);
   }
-  for (std::size_t l = 0; l < sums.size(); ++l)
-    for (int c = 0; c < dim; ++c)
-      e.reactions[l][c] += sums[l][c].value();
 }
 
 template <int dim>
@@ -155,6 +151,8 @@ void PressedCells<dim>::book_work(const Particles &p, const Evaluation<dim> &e,
   }
   if (!booked_.empty())
     for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (!p.part.owns(faces_[f].i))
+        continue;
       const Booked &old = booked_[f];
       work.add(0.5 * (now[f].force + old.force).dot(now[f].place - old.place));
       work.add(0.5 * (now[f].slope + old.slope) * (now[f].pressure - old.pressure));
@@ -177,8 +175,8 @@ PressedCells<dim>::names_of_faces(const core::Names &names) const
 template <int dim>
 void PressedCells<dim>::save(core::State &state, const core::Names &names) const
 {
-  if (booked_.empty())
-    return;
+  if (booked_.size() != faces_.size())
+    return; // nothing yet
   const auto rows = names_of_faces(names);
   std::vector<std::int64_t> keys;
   for (const auto &row : rows)

@@ -30,6 +30,7 @@ public:
   void set_time(const std::vector<core::BoundaryLoad<dim>> &loads, double t);
 
   void add_pressures(const Particles &particles, Evaluation<dim> &evaluation) const;
+  /// To the sums of reactions, of one's own particles.
   void add_reactions(const Particles &particles, Evaluation<dim> &evaluation) const;
   void add_forces(Particles &particles, const Evaluation<dim> &evaluation) const;
   void add_force_on(int i, const Particles &particles, const Evaluation<dim> &evaluation,
@@ -39,7 +40,7 @@ public:
       const Particles &particles, const Evaluation<dim> &evaluation,
       const std::function<void(int, const Vector<dim> &, const Vector<dim> &)> &visit) const;
 
-  /// What the pressures did on every face since the last call: trapezoidal rule.
+  /// What the pressures did on every face of one's own since the last call: trapezoidal rule.
   void book_work(const Particles &particles, const Evaluation<dim> &evaluation,
                  core::ExactSum &work);
   void save(core::State &state, const core::Names &names) const;

@@ -229,11 +229,11 @@ void SurfaceLoads<dim>::find_reactions(const Particles &p, Evaluation<dim> &e) c
   for (const auto &wall : walls_)
     e.wall_forces.push_back(force(wall, p, e));
   e.reaction_sums = reaction_sums(p, e);
+  pressed_.add_reactions(p, e);
   e.reactions.resize(loads_.size());
   for (std::size_t l = 0; l < loads_.size(); ++l)
     for (int c = 0; c < dim; ++c)
       e.reactions[l][c] = e.reaction_sums[dim * l + c].value();
-  pressed_.add_reactions(p, e);
 }
 
 template <int dim>
@@ -278,8 +278,7 @@ void SurfaceLoads<dim>::add_energies(const Particles &p, Evaluation<dim> &e,
   // What the strains of particles have of it is the work of the load.
   if (e.inelastic)
     for (const auto &face : tractions_)
-      energy[face.i] +=
-          law_of(face).force(traction(face, e.has_loads)).dot(stretch(face, p, e));
+      energy[face.i] += law_of(face).force(traction(face, e.has_loads)).dot(stretch(face, p, e));
 }
 
 template <int dim>
@@ -425,7 +424,8 @@ void SurfaceLoads<dim>::save(core::State &state, const core::Names &names) const
   state["walls"] = table_of<dim>(walls_, names, {{"force", &booked_->wall_force}});
   state["loaded_faces"] = table_of<dim>(
       tractions_, names, {{"place", &booked_->place}, {"gradient", &booked_->gradient}});
-  pressed_.save(state, names);
+  if (presses())
+    pressed_.save(state, names);
 }
 
 template <int dim>

@@ -8,6 +8,7 @@
 #include "dem/pressed_cells.h"
 #include "packings/outer_face.h"
 
+#include <algorithm>
 #include <map>
 
 namespace ligament::dem
@@ -54,8 +55,11 @@ public:
 
   const std::vector<WallFace<dim>> &walls() const { return walls_; }
   int n_loads() const { return int(loads_.size()); }
-  /// Whether pressures that follow the surface act.
-  bool presses() const { return !pressed_.empty(); }
+  /// Whether pressures that follow the surface act, here or on other ranks.
+  bool presses() const
+  {
+    return std::any_of(loads_.begin(), loads_.end(), [](const auto &l) { return l.pressure; });
+  }
 
 private:
   /// What the loads make of it.

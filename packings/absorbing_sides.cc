@@ -1,50 +1,68 @@
 #include "packings/absorbing_sides.h"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace ligament::packings
 {
-template <int dim>
-core::Dashpots<dim> absorbing_dashpots(const Packing<dim> &packing,
-                                       const particles::Particles<dim> &particles,
-                                       const std::vector<core::BoundaryLoad<dim>> &loads,
-                                       double density, double wave_speed_p, double wave_speed_s)
+namespace
 {
+/// Where a side lies along its axis, by its face of the last particle; none: no particle has one.
+/// Whatever the number of ranks, which all ask, to the last bit.
+template <int dim>
+std::optional<double> place_of(const Packing<dim> &packing, int boundary,
+                               const particles::Part &part, const core::Ranks &ranks)
+{
+  const int axis = boundary / 2;
+  const BoundaryFace<dim> *last = nullptr;
+  for (const auto &face : packing.boundary_faces)
+    if (face.boundary == boundary && part.owns(face.i) && (!last || face.i >= last->i))
+      last = &face;
+  std::vector<double> place;
+  if (last)
+    place = {packing.centre[axis][last->i] + last->lever[axis]};
+  place = ranks.gather_all(place); // ranks follow each other in the order of the particles
+  return place.empty() ? std::nullopt : std::optional(place.back());
+}
+} // namespace
+
+template <int dim>
+core::Dashpots<dim>
+absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> &particles,
+                   const std::vector<core::BoundaryLoad<dim>> &loads, double density,
+                   double wave_speed_p, double wave_speed_s, const core::Ranks &ranks)
+{
+  const particles::Part &part = particles.part;
   typename core::Dashpots<dim>::Places dashpots;
   for (const auto &load : loads) {
     if (!load.absorbing)
       continue;
     const int axis = load.boundary / 2;
-    bool is_reached = false;
-    double place = 0;
+    const auto place = place_of(packing, load.boundary, part, ranks);
+    if (!place)
+      continue;
     for (const auto &face : packing.boundary_faces)
-      if (face.boundary == load.boundary) {
-        is_reached = true;
-        place = packing.centre[axis][face.i] + face.lever[axis];
+      if (face.boundary == load.boundary && particles::contains(part.stepped, face.i))
         for (int c = 0; c < dim; ++c) {
           const double speed = c == axis ? wave_speed_p : wave_speed_s;
           dashpots[{face.i, c}].push_back(
               {core::Dashpot::Kind::face, face.area * density * speed, face.q / speed});
         }
-      }
-    if (!is_reached)
-      continue;
-    for (int i = 0; i < packing.size(); ++i) {
-      const double depth = load.absorbing_layer - std::abs(packing.centre[axis][i] - place);
+    particles::for_each(part.stepped, [&](int i) {
+      const double depth = load.absorbing_layer - std::abs(packing.centre[axis][i] - *place);
       if (depth > 0)
         for (int c = 0; c < dim; ++c)
           dashpots[{i, c}].push_back(
               core::layer_dashpot(particles.mass[i], depth, load.absorbing_layer, wave_speed_p));
-    }
+    });
   }
-  return core::Dashpots<dim>(dashpots);
+  return core::Dashpots<dim>(dashpots, [&](int i) { return part.owns(i); });
 }
 
 template core::Dashpots<2> absorbing_dashpots(const Packing<2> &, const particles::Particles<2> &,
                                               const std::vector<core::BoundaryLoad<2>> &, double,
-                                              double, double);
+                                              double, double, const core::Ranks &);
 template core::Dashpots<3> absorbing_dashpots(const Packing<3> &, const particles::Particles<3> &,
                                               const std::vector<core::BoundaryLoad<3>> &, double,
-                                              double, double);
+                                              double, double, const core::Ranks &);
 } // namespace ligament::packings

@@ -25,12 +25,6 @@ template <int dim>
 void ParticleSolver<dim>::join(const Owners &owners)
 {
   core::require(!rest_, "parts are joined before anything rests");
-  const auto refuse_where = [&](bool here, const std::string &what) {
-    core::require(owners.ranks.is_one() || !owners.ranks.any(here),
-                  what + " act in one process only; use one rank");
-  };
-  refuse_where(!dashpots.is_empty(), "absorbing sides");
-  refuse_where(!body_force.is_empty(), "accelerations of the whole body");
   ranks_ = owners.ranks;
   halo_ = Halo<dim>(owners, state);
   force->join(owners, state);
@@ -59,8 +53,9 @@ namespace
 /// Whose rows are of particles, by their first name.
 bool names_particles(const std::string &table)
 {
-  static const std::set<std::string> all = {"inelastic", "jumps",    "loaded_faces",
-                                            "particles", "searched", "walls"};
+  static const std::set<std::string> all = {"body_force_blocks", "inelastic",         "jumps",
+                                            "loaded_faces",      "particle_dashpots", "particles",
+                                            "pressed_cells",     "searched",          "walls"};
   return all.count(table) > 0;
 }
 
@@ -105,7 +100,7 @@ void ParticleSolver<dim>::save(core::State &all) const
   force->save(all, names, state);
   dashpots.save(all, "particle_dashpots", names);
   if (!body_force.is_empty())
-    body_force.save(all);
+    body_force.save(all, state);
   if (rest_ && ranks_.is_one()) // ranks cut other blocks
     rest_->save(all, names);
   if (ranks_.is_one())
@@ -129,7 +124,7 @@ void ParticleSolver<dim>::load(const core::State &all)
   force->load(share, names, state);
   dashpots.load(share, "particle_dashpots", names);
   if (!body_force.is_empty())
-    body_force.load(share);
+    body_force.load(share, state);
   if (!rest_)
     return;
   if (ranks_.is_one() && share.count("blocks"))

@@ -24,9 +24,8 @@ public:
   void drift(double dt);
 
   /// The particles at hand are a part of a body from now on, the others are on other ranks: forces
-  /// see the motion of ghosts, sums are those of the body. To be called once, by all ranks, when
-  /// absorbing sides and accelerations are set, which it refuses, as the force what it can't part
-  /// (core::InputError on all ranks).
+  /// see the motion of ghosts, sums are those of the body. To be called once, by all ranks; the
+  /// force refuses what it can't part (core::InputError on all ranks).
   void join(const Owners &owners);
 
   /// After drift: the motion of particles that are seen, but not stepped; what that reaches wakes.
@@ -47,6 +46,13 @@ public:
     force->compute_trial(state, time, noted_share);
     if (!body_force.is_empty())
       body_force.add_forces(state, time);
+  }
+
+  /// In J, that dashpots took and that accelerations did; of the body, whose ranks all ask.
+  double absorbed_energy() const { return ranks_.sum(dashpots.energy_sum()).value(); }
+  double body_force_work() const
+  {
+    return body_force.is_empty() ? 0 : ranks_.sum(body_force.work()).value();
   }
 
   double potential_energy() const { return force->potential_energy(state); }
@@ -86,7 +92,7 @@ public:
 
   Particles<dim> state;
   std::unique_ptr<ParticleForce<dim>> force;
-  core::Dashpots<dim> dashpots; // of absorbing sides
+  core::Dashpots<dim> dashpots; // of absorbing sides, at the particles that are stepped
   BodyForce<dim> body_force;
 
 private:

@@ -1,5 +1,7 @@
 #include "src/simulation/body_state.h"
 
+#include "core/ranks_state.h"
+
 namespace ligament::program
 {
 namespace
@@ -8,6 +10,18 @@ template <int dim>
 core::Names node_names(const CoupledBody<dim> &body)
 {
   return fem::node_names<dim>(body.far->mesh(), body.lower, body.upper);
+}
+
+/// Every rank has the whole mesh; one of them gives its sums, which are merged.
+template <int dim>
+void save_far(const CoupledBody<dim> &body, core::State &state)
+{
+  core::State far;
+  body.far->save(far, node_names(body));
+  for (auto &[name, table] : far)
+    if (core::is_sum(table) && !body.ranks.is_first())
+      core::save_sum(far, name, core::ExactSum());
+  state.merge(far);
 }
 } // namespace
 
@@ -18,7 +32,7 @@ core::State take_state(const CoupledBody<dim> &body)
   if (body.zone)
     body.zone->save(state);
   if (body.far)
-    body.far->save(state, node_names(body));
+    save_far(body, state);
   body.coupler->save(state, body.bodies());
   if (body.tools)
     body.tools->save(state);

@@ -361,8 +361,10 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   check_loaded_parts(scene, body, log);
   if (body.zone)
     body.zone->body_force = particles::BodyForce<dim>(body.loads);
-  if (const auto *overlap = body.coupler->overlap(); overlap && scene.body_force.is_any())
-    body.far->set_weights(overlap->near_nodes, body.coupler->near_weight(body.zone->state));
+  if (const auto *overlap = body.coupler->overlap(); overlap && scene.body_force.is_any()) {
+    const auto &members = body.whole_overlap ? body.whole_overlap->state : body.zone->state;
+    body.far->set_weights(overlap->near_nodes, body.coupler->near_weight(members));
+  }
   if (!scene.tools.empty()) {
     if (coupled)
       add_cells(scene, body, surface);

@@ -48,9 +48,9 @@ EnergyLedger read_ledger(const CoupledBody<dim> &body, const coupling::StepTime 
     ledger.external_work += ledger.tools.work;
   }
   if (body.zone)
-    ledger.absorbed += body.zone->dashpots.energy();
+    ledger.absorbed += body.zone->absorbed_energy();
   if (body.zone)
-    ledger.external_work += body.zone->body_force.work();
+    ledger.external_work += body.zone->body_force_work();
   if (body.far)
     ledger.absorbed += body.far->absorbed_energy();
   if (const auto *force = body.force()) {

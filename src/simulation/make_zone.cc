@@ -181,7 +181,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   state.part = held.part;
   auto dashpots =
       packings::absorbing_dashpots(of_particles, state, body.loads, scene.material.density,
-                                   constants.wave_speed_p, constants.wave_speed_s);
+                                   constants.wave_speed_p, constants.wave_speed_s, body.ranks);
   of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);

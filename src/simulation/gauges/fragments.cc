@@ -4,7 +4,7 @@
 #include "core/files.h"
 #include "fem/cell_map.h"
 #include "src/output/format.h"
-#include "src/simulation/disjoint_sets.h"
+#include "src/simulation/gauges/pieces.h"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -33,7 +33,12 @@ struct VectorSum
     for (int c = 0; c < 3; ++c)
       sums[c].add(v[c]);
   }
-  Vector<3> value() const { return {sums[0].value(), sums[1].value(), sums[2].value()}; }
+  /// Of all ranks.
+  Vector<3> value(const core::Ranks &ranks) const
+  {
+    const auto all = ranks.sum(std::vector<core::ExactSum>(sums.begin(), sums.end()));
+    return {all[0].value(), all[1].value(), all[2].value()};
+  }
 };
 template <int dim, typename Carrier>
 Vector<3> velocity_of(const CoupledBody<dim> &body, const Carrier &c)
@@ -50,76 +55,45 @@ FragmentGauge<dim>::FragmentGauge(const GaugeParameters &gauge, const Scene &sce
 }
 
 template <int dim>
-void FragmentGauge<dim>::find_pieces(const CoupledBody<dim> &body)
+void FragmentGauge<dim>::follow(const CoupledBody<dim> &body)
 {
-  is_known_ = true;
-  n_broken_ = body.force() ? body.force()->broken_bonds().size() : 0;
-  const int n_particles = body.zone ? body.zone->state.size() : 0,
-            n_nodes = body.far ? body.far->mesh().n_nodes() : 0;
+  const std::int64_t n = body.force() ? body.force()->n_broken() : 0;
+  if (n == n_broken_)
+    return;
+  n_broken_ = n;
+  std::vector<double> particle_mass(body.zone ? body.zone->state.size() : 0, 0.),
+      node_mass(body.far && body.ranks.is_first() ? body.far->mesh().n_nodes() : 0, 0.);
   const auto *overlap = body.coupler->overlap();
-  DisjointSets sets(n_particles + n_nodes);
-  std::vector<double> mass(n_particles + n_nodes, 0.);
   if (body.zone) {
     const auto &state = body.zone->state;
-    body.force()->for_each_face(state, [&](const particles::FaceView<dim> &face) {
-      if (face.j > face.i && face.bonded)
-        sets.join(face.i, face.j);
-    });
-    for (int i = 0; i < n_particles; ++i)
+    particles::for_each(state.part.owned, [&](int i) {
       if (!overlap || overlap->member_of_particle[i] < 0)
-        mass[i] = state.volume[i] * density_.at(body.force()->material(i));
+        particle_mass[i] = state.volume[i] * density_.at(body.force()->material(i));
+    });
   }
-  if (overlap)
-    for (const auto &m : overlap->members)
-      sets.join(m.particle, n_particles + overlap->near_nodes[m.nodes[0]]);
-  if (body.far) {
+  if (!node_mass.empty()) {
     const auto &mesh = body.far->mesh();
     for (int cell = 0; cell < mesh.n_cells(); ++cell) {
       const auto shares = fem::volume_shares(mesh, cell);
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a) {
-        const int node = mesh.cells[cell][a];
-        sets.join(n_particles + node, n_particles + mesh.cells[cell][0]);
-        mass[n_particles + node] += density_[0] * body.thickness * shares[a];
-      }
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        node_mass[mesh.cells[cell][a]] += density_[0] * body.thickness * shares[a];
     }
-    for (const auto &hanging : mesh.hanging)
-      for (const auto &master : hanging.masters)
-        sets.join(n_particles + hanging.node, n_particles + master.first);
   }
-
-  // Pieces by the number of their first item, then by mass.
-  std::vector<int> piece_of(mass.size(), -1), members;
-  std::vector<core::ExactSum> sums;
-  for (int i = 0; i < int(mass.size()); ++i) {
-    const int root = sets.find(i);
-    if (piece_of[root] < 0) {
-      piece_of[root] = int(sums.size());
-      sums.emplace_back();
-    }
-    piece_of[i] = piece_of[root];
-    sums[piece_of[i]].add(mass[i]);
-  }
-  std::vector<int> order(sums.size()), place(sums.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<double> masses;
-  for (const core::ExactSum &sum : sums)
-    masses.push_back(sum.value());
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return masses[a] > masses[b]; });
-  mass_.clear();
-  for (int k = 0; k < int(order.size()); ++k) {
-    place[order[k]] = k;
-    mass_.push_back(masses[order[k]]);
-  }
+  BodyPieces pieces = find_pieces(body, particle_mass, node_mass);
+  mass_ = std::move(pieces.mass);
   carriers_.clear();
-  for (int i = 0; i < int(mass.size()); ++i)
-    if (mass[i] > 0)
-      carriers_.push_back(
-          {i < n_particles ? i : i - n_particles, place[piece_of[i]], i >= n_particles, mass[i]});
+  for (int i = 0; i < int(particle_mass.size()); ++i)
+    if (particle_mass[i] > 0)
+      carriers_.push_back({i, pieces.of_particle[i], false, particle_mass[i]});
+  for (int i = 0; i < int(node_mass.size()); ++i)
+    if (node_mass[i] > 0)
+      carriers_.push_back({i, pieces.of_node[i], true, node_mass[i]});
   std::stable_sort(carriers_.begin(), carriers_.end(),
                    [](const Carrier &a, const Carrier &b) { return a.piece < b.piece; });
-  first_.assign(mass_.size() + 1, carriers_.size());
-  for (std::size_t k = carriers_.size(); k-- > 0;)
-    first_[carriers_[k].piece] = k;
+  first_.assign(mass_.size() + 1, 0);
+  for (const Carrier &c : carriers_)
+    ++first_[c.piece + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
 }
 
 // Angular momentum is that of the carriers and of the particles' own spins; the spin is that of the
@@ -144,9 +118,12 @@ Fragment FragmentGauge<dim>::motion(const CoupledBody<dim> &body, int piece) con
     f.has_mesh = f.has_mesh || c.is_node;
     f.particles += !c.is_node;
   }
-  f.centre = centre.value() / f.mass;
-  f.velocity = momentum.value() / f.mass;
-  std::array<core::ExactSum, 9> inertia;
+  const core::Ranks &ranks = body.ranks;
+  f.particles = ranks.sum(f.particles);
+  f.has_mesh = ranks.any(f.has_mesh);
+  f.centre = centre.value(ranks) / f.mass;
+  f.velocity = momentum.value(ranks) / f.mass;
+  std::vector<core::ExactSum> inertia(9);
   for (auto k = begin; k < end; ++k) {
     const Carrier &c = carriers_[k];
     const Vector<3> r = place(c) - f.centre;
@@ -166,21 +143,22 @@ Fragment FragmentGauge<dim>::motion(const CoupledBody<dim> &body, int piece) con
     for (int a = 0; a < 9; ++a)
       inertia[a].add(own(a / 3, a % 3));
   }
+  inertia = ranks.sum(inertia);
+  const Vector<3> momentum_about = angular.value(ranks);
   Eigen::Matrix3d total;
   for (int a = 0; a < 9; ++a)
     total(a / 3, a % 3) = inertia[a].value();
   if (dim == 2 && total(2, 2) > 0)
-    f.spin[2] = angular.value()[2] / total(2, 2);
+    f.spin[2] = momentum_about[2] / total(2, 2);
   if (dim == 3)
-    f.spin = total.completeOrthogonalDecomposition().solve(angular.value());
+    f.spin = total.completeOrthogonalDecomposition().solve(momentum_about);
   return f;
 }
 
 template <int dim>
 std::vector<Fragment> FragmentGauge<dim>::fragments(const CoupledBody<dim> &body)
 {
-  if (!is_known_ || body.force()->broken_bonds().size() != n_broken_)
-    find_pieces(body);
+  follow(body);
   std::vector<Fragment> list;
   for (int k = 0; k < int(mass_.size()) && mass_[k] > 0 && mass_[k] >= least_mass_; ++k)
     list.push_back(motion(body, k));
@@ -199,15 +177,14 @@ std::vector<Column> FragmentGauge<dim>::columns() const
 template <int dim>
 void FragmentGauge<dim>::read(GaugeLook<dim> &look, double *values)
 {
-  if (!is_known_ || look.body.force()->broken_bonds().size() != n_broken_)
-    find_pieces(look.body);
+  follow(look.body);
   values[0] = double(std::count_if(mass_.begin(), mass_.end(),
                                    [&](double m) { return m > 0 && m >= least_mass_; }));
   values[1] = mass_[0];
   VectorSum momentum;
   for (auto k = first_[0]; k < first_[1]; ++k)
     momentum.add(carriers_[k].mass * velocity_of(look.body, carriers_[k]));
-  const Vector<3> velocity = momentum.value() / mass_[0];
+  const Vector<3> velocity = momentum.value(look.body.ranks) / mass_[0];
   for (int c = 0; c < dim; ++c)
     values[2 + c] = velocity[c];
 }
@@ -225,10 +202,13 @@ std::string FragmentGauge<dim>::description() const
 template <int dim>
 void FragmentGauge<dim>::write(const CoupledBody<dim> &body, const RunFolder &folder)
 {
+  const std::vector<Fragment> list = fragments(body);
+  if (!body.ranks.is_first())
+    return;
   core::OutputFile file(folder.fragments());
   file.write("mass,x,y,z,vx,vy,vz,wx,wy,wz,particles,mesh\n"
              "kg,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1,1\n");
-  for (const Fragment &f : fragments(body))
+  for (const Fragment &f : list)
     file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", f.mass, f.centre[0],
                            f.centre[1], f.centre[2], f.velocity[0], f.velocity[1], f.velocity[2],
                            f.spin[0], f.spin[1], f.spin[2], f.particles, int(f.has_mesh)));

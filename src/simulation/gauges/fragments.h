@@ -15,8 +15,7 @@ struct Fragment
   bool has_mesh = false;
 };
 
-/// Particles that bonds join are one piece; the mesh does not break, and holds the particles in it.
-/// Pieces are sought again when bonds have broken: that is a look at all faces.
+/// Pieces (find_pieces) are sought again when bonds have broken: that is a look at all faces.
 template <int dim>
 class FragmentGauge : public Gauge<dim>
 {
@@ -31,6 +30,7 @@ public:
   void write(const CoupledBody<dim> &body, const RunFolder &folder) override;
 
   /// Those at least as heavy as the scene asks for, the heaviest first; of velocities before kick.
+  /// All ranks ask.
   std::vector<Fragment> fragments(const CoupledBody<dim> &body);
 
 private:
@@ -41,15 +41,15 @@ private:
     bool is_node;
     double mass;
   };
-  void find_pieces(const CoupledBody<dim> &body);
+  /// Seeks the pieces where bonds have broken since the last look.
+  void follow(const CoupledBody<dim> &body);
   Fragment motion(const CoupledBody<dim> &body, int piece) const;
 
   std::string name_;
-  double least_mass_;           // kg
-  std::vector<double> density_; // kg/m^3, by material
-  std::size_t n_broken_ = 0;
-  bool is_known_ = false;
-  std::vector<Carrier> carriers_;  // by pieces
+  double least_mass_;              // kg
+  std::vector<double> density_;    // kg/m^3, by material
+  std::int64_t n_broken_ = -1;     // in the body, of which these are the pieces; -1: not sought yet
+  std::vector<Carrier> carriers_;  // of this rank, by pieces
   std::vector<std::size_t> first_; // carrier of each piece, and the end
   std::vector<double> mass_;       // kg, of the pieces; the heaviest first
 };

@@ -75,21 +75,23 @@ JIntegral<dim>::JIntegral(const GaugeParameters &gauge, const GaugePlaces<dim> &
   const auto *overlap = body.coupler->overlap();
   if (body.zone) {
     const auto &state = body.zone->state;
-    for (int i = 0; i < state.size(); ++i) {
+    particles::for_each(state.part.owned, [&](int i) {
       const Vector<dim> x = get(state.reference, i);
       const double share = overlap ? overlap->weight(x) : 1;
       if (share == 0 || slope(x).isZero(0))
-        continue;
+        return;
       core::require(body.force()->material(i) == 0,
                     "an inclusion lies between its rectangles: J is no longer that of the tip "
                     "alone; move the rectangles");
       add_sample(x, share * state.volume[i], around(body, i), i);
-    }
+    });
   }
   n_particles_ = samples_.size();
+  n_of_body_ = body.ranks.sum(std::int64_t(n_particles_));
   if (body.far)
     add_cells(body);
-  core::require(!samples_.empty(), "nothing lies between its rectangles; move them apart");
+  core::require(n_of_body_ > 0 || !samples_.empty(),
+                "nothing lies between its rectangles; move them apart");
 }
 
 // The share of the mesh falls within a cell or two: cells of the overlap are looked at in parts.
@@ -196,7 +198,9 @@ void JIntegral<dim>::read(GaugeLook<dim> &look, double *values)
 {
   follow(look.body);
   core::ExactSum sum;
-  for (const Sample &s : samples_) {
+  const auto end = look.body.ranks.is_first() ? samples_.size() : n_particles_;
+  for (std::size_t n = 0; n < end; ++n) {
+    const Sample &s = samples_[n];
     const auto &u =
         s.particle >= 0 ? look.body.zone->state.displacement : look.body.far->displacement;
     Eigen::Matrix<double, dim, dim> h = Eigen::Matrix<double, dim, dim>::Zero();
@@ -207,7 +211,7 @@ void JIntegral<dim>::read(GaugeLook<dim> &look, double *values)
     sum.add(s.volume * (traction<dim>(stress, s.dq).dot(along) -
                         stress.dot(strain) / 2 * sign_ * s.dq[along_]));
   }
-  values[0] = sum.value() / depth_;
+  values[0] = look.body.ranks.sum(sum).value() / depth_;
   values[1] = std::copysign(std::sqrt(modulus_ * std::abs(values[0])), values[0]);
 }
 
@@ -216,7 +220,7 @@ std::string JIntegral<dim>::description() const
 {
   return fmt::format("domain integral over {} particles and {} points of cells, without terms of "
                      "inertia; rectangles of other sizes tell its error",
-                     n_particles_, samples_.size() - n_particles_);
+                     n_of_body_, samples_.size() - n_particles_);
 }
 
 template class JIntegral<2>;

@@ -53,8 +53,10 @@ private:
   Stiffness<dim> stiffness_;                              // Pa
   double modulus_;                                        // E', Pa
   double depth_;                                          // m, along the front
-  std::vector<Sample> samples_;                           // those of particles first, ascending
+  std::vector<Sample> samples_; // those of one's own particles first, ascending; then cells, which
+                                // all ranks have
   std::vector<Term> terms_;
-  std::size_t n_broken_ = 0, n_particles_ = 0;
+  std::size_t n_broken_ = 0, n_particles_ = 0; // at hand
+  std::int64_t n_of_body_ = 0;                 // particles
 };
 } // namespace ligament::program

@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "dem/many_body_force.h"
+#include "packings/absorbing_sides.h"
 #include "packings/lattice_packing.h"
 #include "packings/packing_part.h"
 #include "packings/random_packing.h"
@@ -55,6 +56,11 @@ struct Solver
     auto f = std::make_unique<ManyBodyForce<dim>>(packing, scene.material, scene.loads, scene.law);
     force = f.get();
     solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
+    solver->body_force = particles::BodyForce<dim>(scene.loads);
+    const auto constants = force->elastic_constants();
+    solver->dashpots = packings::absorbing_dashpots(
+        packing, solver->state, scene.loads, scene.material.density, constants.wave_speed_p,
+        constants.wave_speed_s, held ? test::ranks() : core::Ranks());
     if (held)
       solver->join({test::ranks(), held->owner});
   }
@@ -99,6 +105,9 @@ public:
     number("plastic dissipation", a.plastic_dissipation(), b.plastic_dissipation());
     number("hardening energy", a.hardening_energy(), b.hardening_energy());
     number("viscous dissipation", a.viscous_dissipation(), b.viscous_dissipation());
+    number("absorbed energy", part_.solver->absorbed_energy(), whole_.solver->absorbed_energy());
+    number("work of accelerations", part_.solver->body_force_work(),
+           whole_.solver->body_force_work());
     return differs_.empty();
   }
   bool reactions_are_same(int n_loads)
@@ -235,6 +244,25 @@ void Outcome::look_at_faces(const Solver<dim> &part, const Solver<dim> &whole,
   n_soft_across = std::max(n_soft_across, across);
   n_told = std::max(n_told, int(test::ranks().sum(told)));
   n_untold = std::max(n_untold, int(test::ranks().sum(untold)));
+}
+
+/// An acceleration that comes and goes, a side that absorbs under a traction, with a layer, and
+/// another one under a pressure that follows it.
+template <int dim>
+std::vector<core::BoundaryLoad<dim>> fall_absorb_and_press(int axis, double layer, double duration)
+{
+  using Kind = typename core::BoundaryLoad<dim>::Kind;
+  std::vector<core::BoundaryLoad<dim>> loads(3);
+  loads[0].boundary = core::BoundaryLoad<dim>::whole_body, loads[0].kind = Kind::acceleration;
+  loads[0].value[0] = 0.02, loads[0].value[dim - 1] = -0.05;
+  loads[0].history = core::Pulse{core::Pulse::Shape::half_sine, 0, duration};
+  loads[1].boundary = 2 * axis + 1, loads[1].kind = Kind::traction;
+  loads[1].value[axis] = 3e-4;
+  loads[1].absorbing = true, loads[1].absorbing_layer = layer;
+  loads[2].boundary = 2 * ((axis + 1) % dim), loads[2].kind = Kind::traction;
+  loads[2].pressure = 4e-4;
+  loads[2].history = core::Ramp{duration / 2};
+  return loads;
 }
 
 /// All ranks step the body `steps` times beside the whole one.

@@ -48,6 +48,21 @@ TYPED_TEST(BodyInParts, MovesLikeTheWholeLattice)
   }
 }
 
+// What acts on all masses, lets waves out and turns with the surface.
+TYPED_TEST(BodyInParts, FallsAndAbsorbsLikeTheWholeLattice)
+{
+  constexpr int dim = TypeParam::dim;
+  Scene<dim> scene;
+  const auto lattice = box<TypeParam>(dim == 2 ? 22 : 8);
+  scene.packing = packings::make_lattice_packing(lattice);
+  scene.random_velocity = 1e-2;
+  for (const int axis : {0, dim - 1})
+    for (const double layer : {0., 3 * lattice.spacing}) {
+      scene.loads = fall_absorb_and_press<dim>(axis, layer, 0.2);
+      expect_parts_to_move_like_the_whole(scene, dim == 2 ? 100 : 40, axis + 1);
+    }
+}
+
 TYPED_TEST(BodyInParts, MovesLikeTheWholeWithoutDilatation)
 {
   constexpr int dim = TypeParam::dim;
@@ -83,6 +98,15 @@ TEST(BodyInParts, MovesLikeTheWholeRandom3D)
 {
   for (const unsigned cut : {0u, 1u})
     expect_parts_to_move_like_the_whole(random_scene<3>(8), 100, cut);
+}
+TEST(BodyInParts, FallsAndAbsorbsLikeTheWholeRandom)
+{
+  Scene<2> flat = random_scene<2>(25);
+  flat.loads = fall_absorb_and_press<2>(1, 0.04, 0.2);
+  expect_parts_to_move_like_the_whole(flat, 100, 1);
+  Scene<3> solid = random_scene<3>(8);
+  solid.loads = fall_absorb_and_press<3>(0, 0.02, 0.2);
+  expect_parts_to_move_like_the_whole(solid, 40, 1);
 }
 
 // A side is pushed; the wave comes through the seams to particles that rest.

@@ -258,6 +258,23 @@ TEST(StateInParts, GoesOnWhereFacesFall)
   expect_the_state_to_go_on(scene, 120, 15, 10);
 }
 
+// With what dashpots remember, and what the work of accelerations and pressures is booked against.
+TEST(StateInParts, GoesOnWhereSidesAbsorbAndPressuresFollow)
+{
+  Scene<2> flat;
+  flat.packing = packings::make_lattice_packing(box<Case<2, Kind::hexagonal, true>>(20));
+  flat.random_velocity = 0.04;
+  flat.law = {Criterion::maximum_tension, 0.02};
+  flat.loads = fall_absorb_and_press<2>(1, 0.03, 0.3);
+  expect_the_state_to_go_on(flat, 80, 10);
+  Scene<3> solid;
+  solid.packing = packings::make_lattice_packing(box<Case<3, Kind::fcc, false>>(7));
+  solid.random_velocity = 0.05;
+  solid.law = flat.law;
+  solid.loads = fall_absorb_and_press<3>(0, 0.02, 0.1);
+  expect_the_state_to_go_on(solid, 30, 6);
+}
+
 // A part goes on from a state in which blocks rested.
 TEST(StateInParts, GoesOnWhereBlocksRested)
 {
