@@ -93,7 +93,7 @@ TYPED_TEST(FlowInParts, FlowsLikeTheWholeLattice)
       scene.material.plasticity = law;
       scene.loads = drawn_and_pressed<dim>(cut % dim, 1e-2);
       const Outcome outcome =
-          expect_parts_to_move_like_the_whole(scene, dim == 2 ? 80 : 30, cut++ % 4);
+          expect_parts_to_move_like_the_whole(scene, dim == 2 ? 60 : 20, cut++ % 4);
       EXPECT_GT(outcome.share_flowed, 0.1); // else the test would say nothing
       EXPECT_LT(outcome.share_flowed, 1);
       EXPECT_GT(outcome.plastic, 0);
@@ -118,7 +118,7 @@ TYPED_TEST(FlowInParts, CreepsLikeTheWholeLattice)
             flows ? Plasticity(VonMisesFlow{straight(0.006)}) : Plasticity();
         scene.loads = drawn_and_pressed<dim>(cut % dim, 1e-2);
         const Outcome outcome =
-            expect_parts_to_move_like_the_whole(scene, dim == 2 ? 40 : 20, cut++ % 4);
+            expect_parts_to_move_like_the_whole(scene, dim == 2 ? 30 : 15, cut++ % 4);
         EXPECT_GT(outcome.viscous, 0);
         EXPECT_EQ(outcome.plastic > 0, flows);
       }
