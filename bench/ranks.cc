@@ -130,8 +130,8 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, const std:
   const double bytes = double(ranks.sum(std::int64_t(solver.halo().bytes(solver.state)))),
                ghosts = double(ranks.sum(std::int64_t(solver.halo().n_ghosts())));
   std::int64_t n_soft = 0, n_told = 0;
-  const auto &force = static_cast<const dem::ManyBodyForce<dim> &>(*solver.force);
-  for (const auto &[name, face] : force.cohesive().all()) {
+  const auto &many_body = static_cast<const dem::ManyBodyForce<dim> &>(*solver.force);
+  for (const auto &[name, face] : many_body.cohesive().all()) {
     n_soft += face.is_own;
     n_told += face.is_told;
   }
