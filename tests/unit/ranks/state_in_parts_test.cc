@@ -186,6 +186,24 @@ TEST(StateInParts, GoesOnWhileItFlows2D)
   }
 }
 
+// A wave comes from one end, behind it all flows: which blocks keep a state differs between parts,
+// what they save does not. A blow lets the first particles flow that had less than half of it.
+TEST(StateInParts, GoesOnWhereAWaveFlows)
+{
+  Scene<2> scene;
+  auto lattice = box<Case<2, Kind::hexagonal, false>>(16);
+  lattice.upper[1] *= 4;
+  lattice.lower[1] *= 4;
+  scene.packing = packings::make_lattice_packing(lattice);
+  scene.material = flowing_material(0.004);
+  scene.material.friction = 0;
+  scene.loads.resize(1);
+  scene.loads[0].boundary = 2;
+  scene.loads[0].kind = core::BoundaryLoad<2>::Kind::velocity;
+  scene.loads[0].value[1] = 0.04;
+  expect_the_state_to_go_on(scene, 40, 10, -1);
+}
+
 TEST(StateInParts, GoesOnWhileItFlows3D)
 {
   Scene<3> scene;
