@@ -147,10 +147,14 @@ int check(const CommandLine &line, const ReadResult &input)
     if (advice)
       json["advice"] = to_json(*advice);
     if (on_ranks)
-      json["on_ranks"] = {
-          {"ranks", on_ranks->ranks},         {"particles", on_ranks->largest_part},
-          {"ghosts", on_ranks->ghosts},       {"seconds_per_step", on_ranks->seconds_per_step},
-          {"memory_bytes", on_ranks->memory}, {"other_memory_bytes", on_ranks->other_memory}};
+      json["on_ranks"] = {{"ranks", on_ranks->ranks},
+                          {"particles", on_ranks->largest_part},
+                          {"ghosts", on_ranks->ghosts},
+                          {"seconds_per_step", on_ranks->seconds_per_step},
+                          {"mesh_seconds", on_ranks->mesh_seconds},
+                          {"memory_bytes", on_ranks->memory},
+                          {"other_memory_bytes", on_ranks->other_memory},
+                          {"whole_body_at_first", on_ranks->whole_at_first}};
     fmt::print("{}\n", json_text(json));
   }
   return int(ExitCode::done);

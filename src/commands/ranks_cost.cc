@@ -25,12 +25,30 @@ constexpr double gathered_bytes = 2 * 24 * sizeof(double);
 // Of a process before it has particles.
 constexpr double empty_process = 100e6; // bytes
 
-/// Particles that each rank sees and doesn't own, rings of faces around its own.
+// Of a particle at the peak of the set-up (docs/scaling.md): what is left of a coupled body is
+// mesh.
+template <int dim>
+constexpr double particle_bytes = dim == 2 ? 620 : 1180;
+
+/// Of the cells of the overlap, which are stepped together.
+template <int dim>
+std::vector<std::vector<int>> groups_of(const CoupledBody<dim> &body)
+{
+  const auto *overlap = body.coupler->overlap();
+  std::vector<std::vector<int>> groups(overlap ? overlap->cells.size() : 0);
+  if (overlap)
+    for (const auto &member : overlap->members)
+      groups[member.cell].push_back(member.particle);
+  return groups;
+}
+
+/// Particles that each rank sees and doesn't own, rings of faces around what it steps.
 template <int dim>
 std::vector<std::int64_t> ghosts_of(const CoupledBody<dim> &body,
                                     const particles::Partition &partition, int rings)
 {
   const int n = body.zone->state.size();
+  const auto groups = groups_of(body);
   std::vector<std::int64_t> ghosts;
   for (int rank = 0; rank < partition.n_ranks(); ++rank) {
     std::vector<char> seen(n, 0);
@@ -40,6 +58,15 @@ std::vector<std::int64_t> ghosts_of(const CoupledBody<dim> &body,
       rim.push_back(int(i));
     }
     ghosts.push_back(0);
+    for (const std::vector<int> &group : groups)
+      if (std::any_of(group.begin(), group.end(),
+                      [&](int i) { return i >= partition.begin(rank) && i < partition.end(rank); }))
+        for (const int i : group)
+          if (!seen[i]) {
+            seen[i] = 1;
+            rim.push_back(i);
+            ++ghosts.back();
+          }
     for (int r = 0; r < rings; ++r, rim = ring) {
       ring.clear();
       body.force()->for_each_neighbour(
@@ -74,14 +101,24 @@ RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks
     c.ghosts = std::max(c.ghosts, ghosts[rank]);
   }
   const int n_sides = std::min(ranks - 1, 2);
-  const double bytes = double(c.ghosts) * (dim == 2 ? 3 : 7) * sizeof(double),
-               agreed = body.force()->can_break() ? 2 * std::ceil(std::log2(ranks)) : 0;
-  c.seconds_per_step =
-      cost.seconds_per_step * (double(c.largest_part) + ghost_share * double(c.ghosts)) / n +
-      (n_sides + agreed) * latency + bytes / bandwidth;
-  const double share = (double(c.largest_part) + double(c.ghosts)) / n;
-  c.other_memory = empty_process + share * std::max(memory - empty_process, 0.);
-  c.memory = c.other_memory + n * gathered_bytes;
+  const auto *overlap = body.coupler->overlap();
+  // What nodes sum, told to all: forces and what the carrier takes.
+  const double nodal = overlap ? 2. * overlap->n_nodes() * dim * sizeof(double) : 0;
+  const double bytes = double(c.ghosts) * (dim == 2 ? 3 : 7) * sizeof(double) + nodal,
+               agreed = (body.force()->can_break() + (overlap ? 1 : 0)) * 2 *
+                        std::ceil(std::log2(ranks));
+  c.mesh_seconds = body.far ? cost.mesh_share * cost.seconds_per_step : 0;
+  c.seconds_per_step = (cost.seconds_per_step - c.mesh_seconds) *
+                           (double(c.largest_part) + ghost_share * double(c.ghosts)) / n +
+                       c.mesh_seconds + (n_sides + agreed) * latency + bytes / bandwidth;
+  const double whole = std::max(memory - empty_process, 0.),
+               of_particles = body.far ? std::min(whole, n * particle_bytes<dim>) : whole;
+  // The overlap's particles are there once more on each rank, whole.
+  const double members = overlap ? double(overlap->members.size()) : 0,
+               share = (double(c.largest_part) + double(c.ghosts) + members) / n;
+  c.other_memory = empty_process + whole - of_particles + share * of_particles;
+  c.whole_at_first = scene.time.has_phases();
+  c.memory = c.other_memory + n * gathered_bytes + (c.whole_at_first ? whole : 0);
   return c;
 }
 
@@ -92,6 +129,14 @@ std::string to_text(const RanksCost &cost, double seconds_per_step)
       "{:.0f} MiB on the first one, {:.0f} MiB on others\n",
       cost.ranks, cost.largest_part, cost.ghosts, 1e3 * cost.seconds_per_step,
       seconds_per_step / cost.seconds_per_step, cost.memory / 1048576, cost.other_memory / 1048576);
+  if (cost.mesh_seconds > 0)
+    text +=
+        fmt::format("                       {:.3g} ms of it for the mesh and its overlap, which "
+                    "every rank has whole\n",
+                    1e3 * cost.mesh_seconds);
+  if (cost.whole_at_first)
+    text += "                       the first one has the whole body besides where it seeks "
+            "equilibria\n";
   const unsigned cores = std::thread::hardware_concurrency();
   if (cost.ranks > int(cores))
     text += fmt::format("  this machine has {} cores: more ranks wait for each other\n", cores);

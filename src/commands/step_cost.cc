@@ -24,16 +24,18 @@ StepCost measure_step_cost(const Scene &scene, CoupledBody<dim> &body, core::Tim
       body.coupler->drift(bodies, step);
     }
   };
-  const auto discrete_seconds = [&] {
+  const auto seconds_of = [&](const std::string &one, const std::string &other) {
     double sum = 0;
     for (const auto &row : timers.rows())
-      if (row.name == "discrete forces" || row.name == "discrete motion")
+      if (row.name == one || row.name == other)
         sum += row.seconds;
     return sum;
   };
+  const auto discrete_seconds = [&] { return seconds_of("discrete forces", "discrete motion"); };
+  const auto mesh_seconds = [&] { return seconds_of("far field", "coupling"); };
   const int block = 4 * body.coupler->step_ratio();
   advance(block); // caches
-  const double discrete_before = discrete_seconds();
+  const double discrete_before = discrete_seconds(), mesh_before = mesh_seconds();
   const auto start = Clock::now();
   long n = 0;
   double passed = 0;
@@ -42,7 +44,8 @@ StepCost measure_step_cost(const Scene &scene, CoupledBody<dim> &body, core::Tim
     n += block;
     passed = std::chrono::duration<double>(Clock::now() - start).count();
   }
-  return {passed / n, (discrete_seconds() - discrete_before) / passed};
+  return {passed / n, (discrete_seconds() - discrete_before) / passed,
+          (mesh_seconds() - mesh_before) / passed};
 }
 
 template StepCost measure_step_cost(const Scene &, CoupledBody<2> &, core::Timers &, double);

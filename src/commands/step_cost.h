@@ -9,6 +9,7 @@ struct StepCost
 {
   double seconds_per_step = 0; // of the whole body
   double discrete_share = 0;   // of it, particles alone
+  double mesh_share = 0;       // of it, far field and overlap
 
   /// Time of pure discrete elements over that of this body, at the same cost per particle.
   double saving(std::int64_t equivalent_particles, std::int64_t particles) const

@@ -41,38 +41,6 @@ void look_at_material(const Scene &scene, const MaterialParameters &material,
   refusals.add_where(material.fracture.rebonding.has_value(), key + "/fracture/rebonding",
                      "faces that are bonded again", reason);
 }
-
-void look_at_loads(const Scene &scene, Refusals &refusals)
-{
-  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    const LoadParameters &load = scene.loads[k];
-    const std::string key = fmt::format("/loads/{}", k);
-    refusals.add_where(load.servo.has_value(), key + "/servo", "a servo",
-                       "what it follows is read in one process");
-    refusals.add_where(load.pressure.has_value(), key + "/pressure", "a pressure",
-                       "it follows the turns of neighbours on other ranks");
-    refusals.add_where(load.absorbing, key + "/absorbing", "absorbing sides",
-                       "their work is booked in one process");
-  }
-  refusals.add_where(scene.body_force.is_any(), "/body_force", "an acceleration of the body",
-                     "its work is booked in one process");
-}
-void look_at_gauges(const Scene &scene, Refusals &refusals)
-{
-  for (std::size_t k = 0; k < scene.gauges.size(); ++k)
-    switch (scene.gauges[k].kind) {
-    case GaugeKind::distance:
-    case GaugeKind::opening:
-    case GaugeKind::strain:
-    case GaugeKind::stress:
-    case GaugeKind::force:
-    case GaugeKind::crack_tip:
-      break;
-    default:
-      refusals.add_where(true, fmt::format("/gauges/{}/kind", k), "such a gauge",
-                         "what it measures is read in one process");
-    }
-}
 } // namespace
 
 std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
@@ -91,10 +59,8 @@ std::vector<core::Diagnostic> refused_on_ranks(const ReadResult &input)
                      "pressures where materials meet are solved for in one process");
   refusals.add_where(!scene.specimen.periodic.empty(), "/specimen/periodic", "joined sides",
                      "images of particles are looked for in one process");
-  look_at_loads(scene, refusals);
   refusals.add_where(!scene.tools.empty(), "/tools", "tools",
                      "the surface that they touch is known in one process");
-  look_at_gauges(scene, refusals);
   refusals.add_where(scene.time.loading == Loading::sequential, "/time/loading",
                      "loading bond by bond", "its equilibria are solved for in one process");
   refusals.add_where(scene.time.rest_threshold > 0, "/time/rest_threshold",

@@ -77,7 +77,10 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
                            const HistoryRow &row)
 {
   const std::vector<double> values = gauges_.read(body, step.time);
-  if (!writer_)
+  std::vector<double> errors;
+  for (const auto &servo : servos_)
+    errors.push_back(servo.measured(body, values) - servo.wanted(step.time));
+  if (!writer_) // all ranks have read by now
     return;
   writer_->set("time", step.time);
   writer_->set("step", double(step.step));
@@ -107,8 +110,8 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
   writer_->set("crack_length", row.crack_length);
   for (std::size_t k = 0; k < values.size(); ++k)
     writer_->set(gauges_.columns()[k].name, values[k]);
-  for (const auto &servo : servos_)
-    writer_->set(servo.column().name, servo.measured(body, values) - servo.wanted(step.time));
+  for (std::size_t k = 0; k < servos_.size(); ++k)
+    writer_->set(servos_[k].column().name, errors[k]);
   writer_->end_row();
 }
 

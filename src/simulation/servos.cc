@@ -47,7 +47,7 @@ Servos<dim>::Servos(const Scene &scene, const CoupledBody<dim> &body, core::Log 
     log.info("servo of load {}: answers within {:.3g} s, gain {:.3g} {}/m, at most {:.3g} m/s",
              target.load(), response, target.gain(), target.column().unit, fastest);
   }
-  watch(body);
+  take_courses(body);
 }
 
 template <int dim>
@@ -69,8 +69,18 @@ void Servos<dim>::steer(const CoupledBody<dim> &body, double time, double far_st
   }
 }
 
+// Gauges know particles by their numbers, which other parts change.
 template <int dim>
-void Servos<dim>::watch(const CoupledBody<dim> &body)
+void Servos<dim>::watch(const Scene &scene, const CoupledBody<dim> &body)
+{
+  if (empty())
+    return;
+  gauges_.emplace(with_followed_gauges(scene), body);
+  take_courses(body);
+}
+
+template <int dim>
+void Servos<dim>::take_courses(const CoupledBody<dim> &body)
 {
   for (Machine &m : machines_) {
     m.followed = body.loads[m.target.load()].history.steered();

@@ -20,7 +20,7 @@ public:
   void steer(const CoupledBody<dim> &body, double time, double far_step);
 
   /// A new body takes the place of the one before.
-  void watch(const CoupledBody<dim> &body);
+  void watch(const Scene &scene, const CoupledBody<dim> &body);
   void save(core::State &state) const;
   void load(const core::State &state);
 
@@ -28,6 +28,9 @@ public:
   void put_into(RunRecord &record, core::Log &log) const;
 
 private:
+  /// Their loads follow the courses that are kept here.
+  void take_courses(const CoupledBody<dim> &body);
+
   struct Machine
   {
     ServoTarget<dim> target;

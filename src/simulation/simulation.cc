@@ -138,7 +138,7 @@ void Simulation<dim>::take_over(CoupledBody<dim> body, const core::State &of_bod
   regime_ = RegimeControl<dim>(scene_.coupling.regime, body_, scene_.is_warm());
   give(of_body, run);
   recorder_.watch(body_);
-  servos_.watch(body_);
+  servos_.watch(scene_, body_);
 }
 
 template <int dim>
