@@ -270,11 +270,6 @@ TEST_F(RanksCoupled, CutAnewBetweenEquilibria)
   expect_the_same_when_cut_anew(3, calm_until_it_breaks(), 100, 10);
 }
 
-TEST_F(RanksCoupled, GoOnWhereItFlowsAndCreeps)
-{
-  expect_to_go_on(crack_that_flows_and_creeps(), 2);
-}
-
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 {
   expect_to_go_on(turned_with_steps(), 2);
