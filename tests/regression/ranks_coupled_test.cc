@@ -270,6 +270,16 @@ TEST_F(RanksCoupled, CutAnewBetweenEquilibria)
   expect_the_same_when_cut_anew(3, calm_until_it_breaks(), 100, 10);
 }
 
+// `check` warns of branches and ramps by the duration.
+TEST_F(RanksCoupled, GoOnWhereItFlowsAndCreeps)
+{
+  Json scene = crack_that_flows_and_creeps();
+  scene["material"]["viscosity"].erase("branches");
+  for (Json &load : scene["loads"])
+    load["ramp"] = 30;
+  expect_to_go_on(scene, 2);
+}
+
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
 {
   expect_to_go_on(turned_with_steps(), 2);
