@@ -319,9 +319,14 @@ TEST_F(RanksCoupled, CutAnewWhereFacesSoften)
   expect_the_same_when_cut_anew(3, cohesive_with_steps(), 20, 10);
 }
 
+// `check` warns of branches and ramps by the duration.
 TEST_F(RanksCoupled, GoOnWhereItFlowsAndCreeps)
 {
-  expect_to_go_on(crack_that_flows_and_creeps(), 2);
+  Json scene = crack_that_flows_and_creeps();
+  scene["material"]["viscosity"].erase("branches");
+  for (Json &load : scene["loads"])
+    load["ramp"] = 30;
+  expect_to_go_on(scene, 2);
 }
 
 TEST_F(RanksCoupled, GoOnOnAnotherNumber)
