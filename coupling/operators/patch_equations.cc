@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 
 namespace ligament::coupling
@@ -40,8 +41,8 @@ constexpr int most_unknowns_exact = dim == 2 ? 200000 : 0;
 constexpr int most_unknowns_of_hats = 20000;
 
 // Added to the diagonal, of it. Much smaller, and the modes that do nothing to any block, in which
-// the right side is round-off, grow until the conjugate gradients lose the others; much larger, and
-// the slow modes are left to the conjugate gradients.
+// the right side is round-off, grow until the conjugate residuals lose the others; much larger,
+// and the slow modes are left to the conjugate residuals.
 template <int dim>
 constexpr double coarse_shift = dim == 2 ? 1e-9 : 1e-6;
 
@@ -304,33 +305,44 @@ typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::precondition(co
   return z;
 }
 
+// Generalised conjugate residuals (Eisenstat, Elman and Schultz 1983), whose residuals only fall.
+// Conjugate gradients need far more steps here: of the modes that do nothing to any block the right
+// side holds round-off, which makes their residuals jump by orders, and their directions lose each
+// other.
 template <int dim, int ns>
 typename PatchEquations<dim, ns>::Field
-PatchEquations<dim, ns>::conjugate_gradients(const Field &right, double tolerance) const
+PatchEquations<dim, ns>::conjugate_residuals(const Field &right, double tolerance) const
 {
-  constexpr int patience = 50; // iterations without progress: round-off reached
+  constexpr int patience = 10;          // steps without progress: round-off reached
+  constexpr std::size_t most_kept = 50; // directions
   Field y = Field::Zero(ns, right.cols()), r = right;
-  Field z = precondition(r), p = z;
-  double rz = dot(r, z);
-  Field best_y = y;
-  double best = r.norm();
-  const double goal = tolerance * best;
-  for (int i = 0, best_i = 0; best > goal && i < best_i + patience; ++i) {
-    const Field ap = apply(p);
-    const double step = rz / dot(p, ap);
+  std::deque<std::pair<Field, Field>> kept; // directions and what they make
+  const double goal = tolerance * r.norm();
+  double mark = r.norm();
+  for (int steps_without = 0; r.norm() > goal && steps_without < patience; ++steps_without) {
+    Field p = precondition(r), ap = apply(p);
+    for (const auto &[q, aq] : kept) {
+      const double share = dot(ap, aq);
+      p -= share * q;
+      ap -= share * aq;
+    }
+    const double length = ap.norm();
+    if (length == 0)
+      break;
+    p /= length;
+    ap /= length;
+    const double step = dot(r, ap);
     y += step * p;
     r -= step * ap;
-    z = precondition(r);
-    const double next = dot(r, z);
-    p = z + next / rz * p;
-    rz = next;
-    if (const double norm = r.norm(); norm < 0.9 * best) {
-      best = norm;
-      best_i = i;
-      best_y = y;
+    if (r.norm() < 0.9 * mark) {
+      mark = r.norm();
+      steps_without = 0;
     }
+    kept.emplace_back(std::move(p), std::move(ap));
+    if (kept.size() > most_kept)
+      kept.pop_front();
   }
-  return best_y;
+  return y;
 }
 
 template <int dim, int ns>
@@ -342,13 +354,15 @@ typename PatchEquations<dim, ns>::Field PatchEquations<dim, ns>::solve(const Fie
   const double goal = 1e-13 * right.norm();
   while (rest.norm() > goal) {
     const std::vector<PatchBlock<dim, ns>> before = blocks_;
-    add_transposed(conjugate_gradients(rest, 1e-6));
+    add_transposed(conjugate_residuals(rest, 1e-6));
     const Field next = right - forces();
-    if (next.norm() > 0.5 * rest.norm()) {
+    const double gain = next.norm() / rest.norm();
+    if (gain < 1)
+      rest = next;
+    else
       blocks_ = before;
-      return rest;
-    }
-    rest = next;
+    if (gain > 0.5)
+      break;
   }
   return rest;
 }

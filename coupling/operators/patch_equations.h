@@ -1,5 +1,5 @@
 // The equations of the patch fit, never assembled: blocks of cells with their symmetric
-// corrections, and the least-norm solution by conjugate gradients on two levels.
+// corrections, and the least-norm solution by conjugate residuals on two levels.
 #pragma once
 
 #include "coupling/operators/coarse_matrix.h"
@@ -84,7 +84,7 @@ private:
   Field forces() const;
   Field apply(const Field &y) const;
   Field precondition(const Field &r) const;
-  Field conjugate_gradients(const Field &right, double tolerance) const;
+  Field conjugate_residuals(const Field &right, double tolerance) const;
 
   std::vector<PatchBlock<dim, ns>> &blocks_;
   std::vector<StateMatrix<ns>> projectors_; // per near node, on its states
