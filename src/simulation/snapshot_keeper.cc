@@ -10,11 +10,16 @@ namespace ligament::program
 {
 namespace
 {
+/// Into `m`, whose memory is used again.
 template <int dim>
-Motion<dim> motion(const CoupledBody<dim> &body, double time)
+void copy_motion(const CoupledBody<dim> &body, double time, Motion<dim> &m)
 {
   const auto &state = body.zone->state;
-  return {time, owned(*body.zone, state.displacement), owned(*body.zone, state.velocity)};
+  m.time = time;
+  for (int k = 0; k < dim; ++k) {
+    copy_owned(*body.zone, state.displacement[k], m.displacement[k]);
+    copy_owned(*body.zone, state.velocity[k], m.velocity[k]);
+  }
 }
 
 /// All of it on the first rank.
@@ -59,16 +64,16 @@ Motion<dim> motion_of(const core::State &state, double time, BodyNames<dim> &nam
 // With tau from 0 to 1 between the looks and h the half step: u(0), u(1), u'(-h), u'(1 - h) are
 // known of u = a + b tau + c tau^2 + e tau^3.
 template <int dim>
-Motion<dim> between(const Motion<dim> &before, const Motion<dim> &after, double dt, double time)
+Motion<dim> between(Motion<dim> before, const Motion<dim> &after, double dt, double time)
 {
   const double interval = after.time - before.time, h = dt / (2 * interval),
                tau = (time - before.time) / interval;
-  Motion<dim> m = before;
+  Motion<dim> m = std::move(before); // large, and changed in place
   m.time = time;
   for (int k = 0; k < dim; ++k)
     for (std::size_t i = 0; i < m.displacement[k].size(); ++i) {
-      const double rise = after.displacement[k][i] - before.displacement[k][i],
-                   v0 = interval * before.velocity[k][i],
+      const double rise = after.displacement[k][i] - m.displacement[k][i],
+                   v0 = interval * m.velocity[k][i],
                    change = interval * after.velocity[k][i] - v0;
       const double e = (v0 - rise + (0.5 + h) * change) / (0.5 - 3 * h * h),
                    c = 0.5 * change - 1.5 * e * (1 - 2 * h), b = rise - c - e;
@@ -104,16 +109,17 @@ void SnapshotKeeper<dim>::look(const CoupledBody<dim> &body, const coupling::Ste
   if (next_ == 0 || (!before_ && next_ < step.time - slack))
     next_ = common_time(common_time_index(step.time) + 1);
   if (before_ && (next_ > step.time + slack || step.time - before_->time < slack))
-    before_.reset();
+    drop_before();
   if (before_) {
-    keep(between(*before_, motion(body, step.time), step.dt, next_));
+    copy_motion(body, step.time, now_);
+    keep(between(std::move(*before_), now_, step.dt, next_));
     before_.reset();
     next_ = common_time(common_time_index(step.time) + 1);
   }
   if (step.time + interval <= next_)
     return;
   if (wanted)
-    before_ = motion(body, step.time);
+    take_before(body, step.time);
   else
     next_ = common_time(common_time_index(step.time + interval) + 1);
 }
@@ -125,25 +131,45 @@ void SnapshotKeeper<dim>::look_at_equilibrium(const CoupledBody<dim> &body,
   if (!body.zone)
     return;
   if (step.time == 0) { // no common time lies before it, and all do after
-    before_ = motion(body, 0);
+    take_before(body, 0);
     return;
   }
   const int last = common_time_index(step.time);
-  if (before_ && before_->time < step.time)
+  if (before_ && before_->time < step.time) {
+    copy_motion(body, step.time, now_);
     for (int k = last - int(kept_.size()) + 1; k <= last; ++k) // no more would be kept
       if (const double time = common_time(k); time > before_->time && time >= next_)
-        keep(in_proportion(*before_, motion(body, step.time), time));
+        keep(in_proportion(*before_, now_, time));
+  }
   next_ = common_time(last + 1);
-  before_.reset();
+  drop_before();
   if (wanted)
-    before_ = motion(body, step.time);
+    take_before(body, step.time);
 }
 
 template <int dim>
-void SnapshotKeeper<dim>::keep(const Motion<dim> &motion)
+void SnapshotKeeper<dim>::take_before(const CoupledBody<dim> &body, double time)
+{
+  drop_before();
+  before_ = std::move(spare_);
+  copy_motion(body, time, *before_);
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::drop_before()
+{
+  if (before_)
+    spare_ = std::move(*before_);
+  before_.reset();
+}
+
+template <int dim>
+void SnapshotKeeper<dim>::keep(Motion<dim> motion)
 {
   std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
-  kept_[0] = motion;
+  if (kept_[0])
+    spare_ = std::move(*kept_[0]);
+  kept_[0] = std::move(motion);
 }
 
 template <int dim>
@@ -218,8 +244,8 @@ void SnapshotKeeper<dim>::load(const core::State &state,
   next_ = core::load_real(state, "recorder", "next_snapshot");
 }
 
-template Motion<2> between(const Motion<2> &, const Motion<2> &, double, double);
-template Motion<3> between(const Motion<3> &, const Motion<3> &, double, double);
+template Motion<2> between(Motion<2>, const Motion<2> &, double, double);
+template Motion<3> between(Motion<3>, const Motion<3> &, double, double);
 template Motion<2> in_proportion(const Motion<2> &, const Motion<2> &, double);
 template Motion<3> in_proportion(const Motion<3> &, const Motion<3> &, double);
 template class SnapshotKeeper<2>;

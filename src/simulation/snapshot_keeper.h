@@ -17,7 +17,7 @@ namespace ligament::program
 template <int dim>
 struct Motion
 {
-  double time;                  // s
+  double time = 0;              // s
   Components<dim> displacement; // m
   Components<dim> velocity;     // m/s
 };
@@ -25,7 +25,7 @@ struct Motion
 /// The motion at `time` between two looks: positions of the times of both, velocities half a step
 /// `dt` before them, in s.
 template <int dim>
-Motion<dim> between(const Motion<dim> &before, const Motion<dim> &after, double dt, double time);
+Motion<dim> between(Motion<dim> before, const Motion<dim> &after, double dt, double time);
 
 /// The same between two equilibria, where displacements grow at constant rates.
 template <int dim>
@@ -62,10 +62,15 @@ public:
             BodyNames<dim> &names);
 
 private:
-  void keep(const Motion<dim> &motion);
+  void take_before(const CoupledBody<dim> &body, double time);
+  void drop_before();
+  void keep(Motion<dim> motion);
 
   std::array<std::optional<Motion<dim>>, 3> kept_; // the later one first
   std::optional<Motion<dim>> before_; // at the last look, when a common time follows it
   double next_ = 0;                   // s, common time; 0 before the first look
+  // Memory for the next copies, of which short runs make one every few steps: pages that are taken
+  // anew each time cost as much as the step.
+  Motion<dim> now_, spare_;
 };
 } // namespace ligament::program

@@ -6,17 +6,29 @@
 
 namespace ligament::program
 {
-/// From values of the particles at hand, n of each, those of what the rank owns. One process owns
-/// all.
+/// From values of the particles at hand, n of each, those of what the rank owns, into `own`, whose
+/// memory is used again. One process owns all.
+template <int dim, typename T>
+void copy_owned(const particles::ParticleSolver<dim> &zone, const std::vector<T> &values,
+                std::vector<T> &own, int n = 1)
+{
+  own.clear();
+  if (zone.ranks().is_one())
+    own = values;
+  else
+    for (const auto &[begin, end] : zone.state.part.owned)
+      own.insert(own.end(), values.begin() + std::ptrdiff_t(n) * begin,
+                 values.begin() + std::ptrdiff_t(n) * end);
+}
+
+/// The same, returned.
 template <int dim, typename T>
 std::vector<T> owned(const particles::ParticleSolver<dim> &zone, std::vector<T> values, int n = 1)
 {
   if (zone.ranks().is_one())
     return values;
   std::vector<T> own;
-  for (const auto &[begin, end] : zone.state.part.owned)
-    own.insert(own.end(), values.begin() + std::ptrdiff_t(n) * begin,
-               values.begin() + std::ptrdiff_t(n) * end);
+  copy_owned(zone, values, own, n);
   return own;
 }
 
