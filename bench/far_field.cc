@@ -51,7 +51,7 @@ void measure(const std::string &name, const fem::MeshParameters<dim> &parameters
   const double n = double(dim) * mesh.n_nodes(), n_cells = mesh.n_cells();
   const std::string label =
       fmt::format("{}, {:.3g} unknowns, {} hanging nodes", name, n, mesh.hanging.size());
-  const fem::CellKernel<dim> kernel(mesh, body.stiffness, 1, std::vector<char>(mesh.n_cells(), 1));
+  const fem::CellKernel<dim> kernel(mesh, body, std::vector<char>(mesh.n_cells(), 1));
   const double product = n * bench::rate([&] { kernel.subtract_forces(u, f); });
 
   // A multiply-add per entry of a cell's matrix; u is read, f read and written.
@@ -83,8 +83,7 @@ double cell_rate(const fem::Mesh<dim> &mesh)
     for (const auto &x : mesh.nodes)
       u[c].push_back(1e-3 * std::sin(0.1 * x[(c + 1) % dim]));
   }
-  const fem::CellKernel<dim> kernel(mesh, make_body<dim>().stiffness, 1,
-                                    std::vector<char>(mesh.n_cells(), 1));
+  const fem::CellKernel<dim> kernel(mesh, make_body<dim>(), std::vector<char>(mesh.n_cells(), 1));
   return 1e-6 * mesh.n_cells() * bench::rate([&] { kernel.subtract_forces(u, f); });
 }
 

@@ -29,14 +29,18 @@ double now()
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+template <int dim>
+double width_of(double n_particles)
+{
+  return std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)), 1. / dim);
+}
+
 template <int dim, typename Parameters>
 Parameters specimen_of(double n_particles)
 {
   Parameters p;
   p.spacing = 1;
-  const double width =
-      std::pow(n_particles / 2 * (dim == 2 ? std::sqrt(0.75) : std::sqrt(0.5)), 1. / dim);
-  p.upper.setConstant(width);
+  p.upper.setConstant(width_of<dim>(n_particles));
   p.upper[dim - 1] *= 2;
   return p;
 }
@@ -91,7 +95,7 @@ void measure(const core::Ranks &ranks, double n_particles, int steps, const std:
 
   const auto draw_apart = [&](double by) {
     particles::for_each(solver.state.part.owned, [&](int i) {
-      const bool right = solver.state.reference[0][i] > width / 2;
+      const bool right = solver.state.reference[0][i] > width_of<dim>(n_particles) / 2;
       solver.state.displacement[0][i] = right ? by / 2 : -by / 2;
     });
   };
