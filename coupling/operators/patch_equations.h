@@ -1,5 +1,5 @@
 // The equations of the patch fit, never assembled: blocks of cells with their symmetric
-// corrections, and the least-norm solution by conjugate residuals on two levels.
+// corrections, and the least-norm solution by Krylov methods on two levels.
 #pragma once
 
 #include "coupling/operators/coarse_matrix.h"
@@ -72,6 +72,9 @@ public:
   Field solve(const Field &right);
 
 private:
+  using Method = Field (PatchEquations::*)(const Field &right, double tolerance) const;
+
+  Field refine(const Field &right, Method method);
   void make_coarse_space(const Overlap<dim> &overlap);
   void make_hats(const Overlap<dim> &overlap);
   void factorize_coarse_space();
@@ -85,6 +88,7 @@ private:
   Field apply(const Field &y) const;
   Field precondition(const Field &r) const;
   Field conjugate_residuals(const Field &right, double tolerance) const;
+  Field conjugate_gradients(const Field &right, double tolerance) const;
 
   std::vector<PatchBlock<dim, ns>> &blocks_;
   std::vector<StateMatrix<ns>> projectors_; // per near node, on its states
