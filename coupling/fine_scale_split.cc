@@ -101,6 +101,7 @@ void FineScaleSplit<dim>::set_regime(Regime regime, Bodies<dim> &bodies)
   make_coarse_energy(regime, bodies);
   fine_.turn_pads(near_.displacement(), bodies.zone->state);
   fine_.write_velocities(near_.velocity(), bodies.zone->state);
+  bodies.zone->update_ghosts(); // among them pads that have turned
 }
 
 template <int dim>

@@ -73,6 +73,19 @@ Json turning_strip()
   return scene;
 }
 
+/// Pads at the seam turn when the regime changes, between two steps.
+Json zone_that_turns()
+{
+  Json scene = closed_zone();
+  scene["discrete_zone"]["packing"] = "random";
+  scene["material"]["fracture"]["strength"] = 0.03;
+  scene["coupling"]["regime"] = "automatic";
+  scene["loads"] = Json::array();
+  pull(scene, 1, 0, 6e-3, 20);
+  scene["time"]["duration"] = 110;
+  return scene;
+}
+
 /// The guard ends it: the crack runs into the overlap.
 Json crack_into_the_overlap()
 {
@@ -197,6 +210,12 @@ TEST_F(RanksCoupled, AStripThatBends)
 TEST_F(RanksCoupled, AStripThatTurns)
 {
   expect_the_same_on({2}, turning_strip(), 0);
+}
+TEST_F(RanksCoupled, AZoneThatTurns)
+{
+  expect_the_same_on({2, 3}, zone_that_turns(), 0);
+  const std::string regimes = file_json("on_1/run.json")["regime"];
+  EXPECT_NE(regimes.find(" from "), std::string::npos) << regimes;
 }
 TEST_F(RanksCoupled, TwoZonesOfRandomParticles)
 {
