@@ -18,17 +18,18 @@ constexpr double ghost_share = 0.5; // of the cost of a particle that is stepped
 constexpr double latency = 5e-6;  // s, of a message
 constexpr double bandwidth = 3e9; // bytes/s
 
-// Values per particle of the fields that the first rank gathers to write them: place, motion,
-// stress, names, and what follows from them; as many again in the copy near the peak.
-constexpr double gathered_bytes = 2 * 24 * sizeof(double);
+// Of a particle: the copy near the peak, place, motion, stress, names and what follows from them,
+// which each rank keeps of its own; and the same of the whole body where the first rank gathers and
+// packs it to write it.
+constexpr double kept_bytes = 24 * sizeof(double), written_bytes = 300;
 
-// Of a process before it has particles.
-constexpr double empty_process = 100e6; // bytes
+// Of a process before it has particles: of `check`, of a rank, and what pictures take besides.
+constexpr double empty_check = 155e6, empty_rank = 175e6, drawing = 38e6; // bytes
 
 // Of a particle at the peak of the set-up (docs/scaling.md): what is left of a coupled body is
 // mesh.
 template <int dim>
-constexpr double particle_bytes = dim == 2 ? 620 : 1180;
+constexpr double particle_bytes = dim == 2 ? 516 : 1034;
 
 /// Of the cells of the overlap, which are stepped together.
 template <int dim>
@@ -111,14 +112,15 @@ RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks
   c.seconds_per_step = (cost.seconds_per_step - c.mesh_seconds) *
                            (double(c.largest_part) + ghost_share * double(c.ghosts)) / n +
                        c.mesh_seconds + (n_sides + agreed) * latency + bytes / bandwidth;
-  const double whole = std::max(memory - empty_process, 0.),
+  const double whole = std::max(memory - empty_check, 0.),
                of_particles = body.far ? std::min(whole, n * particle_bytes<dim>) : whole;
   // The overlap's particles are there once more on each rank, whole.
   const double members = overlap ? double(overlap->members.size()) : 0,
                share = (double(c.largest_part) + double(c.ghosts) + members) / n;
-  c.other_memory = empty_process + whole - of_particles + share * of_particles;
+  c.other_memory = empty_rank + whole - of_particles + share * of_particles +
+                   double(c.largest_part) * kept_bytes;
   c.whole_at_first = scene.time.has_phases();
-  c.memory = c.other_memory + n * gathered_bytes + (c.whole_at_first ? whole : 0);
+  c.memory = c.other_memory + drawing + n * written_bytes + (c.whole_at_first ? whole : 0);
   return c;
 }
 
