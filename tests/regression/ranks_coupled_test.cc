@@ -211,6 +211,11 @@ TEST_F(RanksCoupled, AStripThatTurns)
 {
   expect_the_same_on({2}, turning_strip(), 0);
 }
+TEST_F(RanksCoupled, CheckKnowsPartsAndGhosts)
+{
+  for (const Json &scene : {closed_zone(), block_with_a_crack(), two_zones()})
+    expect_check_to_know(scene);
+}
 TEST_F(RanksCoupled, AZoneThatTurns)
 {
   expect_the_same_on({2, 3}, zone_that_turns(), 0);

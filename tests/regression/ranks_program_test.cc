@@ -441,22 +441,10 @@ void wait_for_rows(const std::string &run)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-// What `check` says of ranks is what they then have.
 TEST_F(RanksProgram, CheckKnowsPartsAndGhosts)
 {
-  for (Json scene : {crack_along_the_seam(), fcc_with_a_crack()}) {
-    scene["time"]["duration"] = 2;
-    written(scene, "scene.json");
-    const Outcome check = run_ligament("check scene.json -n 2 --json");
-    ASSERT_EQ(check.code, 0) << check.errors;
-    const auto ranks = check.json()["on_ranks"];
-    ASSERT_EQ(run_ligament("run scene.json -n 2 -o out").code, 0);
-    std::ostringstream had;
-    had << "on 2 ranks up to " << ranks["particles"] << " and " << ranks["ghosts"] << " ghosts";
-    EXPECT_NE(file_text("out/run.log").find(had.str()), std::string::npos) << had.str();
-    EXPECT_GT(ranks["seconds_per_step"], 0);
-    EXPECT_GT(ranks["memory_bytes"], ranks["other_memory_bytes"]);
-  }
+  for (const Json &scene : {crack_along_the_seam(), fcc_with_a_crack()})
+    expect_check_to_know(scene);
 }
 
 // A signal to the program that users started ends all ranks in good order; they can go on.

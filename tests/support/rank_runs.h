@@ -151,6 +151,23 @@ protected:
     }
   }
 
+  /// What `check` says of two ranks is what they then have.
+  static void expect_check_to_know(Json scene)
+  {
+    scene["time"]["duration"] = 2;
+    written(scene, "scene.json");
+    const Outcome check = run_ligament("check scene.json -n 2 --json");
+    ASSERT_EQ(check.code, 0) << check.errors;
+    const auto ranks = check.json()["on_ranks"];
+    ASSERT_EQ(run_ligament("run scene.json -n 2 -o out").code, 0);
+    const std::string had = fmt::format("on 2 ranks up to {} and {} ghosts",
+                                        ranks["particles"].dump(), ranks["ghosts"].dump());
+    EXPECT_NE(file_text("out/run.log").find(had), std::string::npos) << had;
+    EXPECT_GT(ranks["seconds_per_step"], 0);
+    EXPECT_GT(ranks["memory_bytes"], ranks["other_memory_bytes"]);
+    fs::remove_all("out");
+  }
+
   /// And where they are cut anew every so many steps of the far field, elsewhere each time.
   static void expect_the_same_when_cut_anew(int n, const Json &scene, int interval,
                                             int least_broken)
