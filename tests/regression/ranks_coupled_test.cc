@@ -10,22 +10,6 @@ class RanksCoupled : public OnRanks
 {
 };
 
-/// A zone in the middle of a plate or block, in units of d = 1, E = 1, rho = 1.
-Json coupled(int dim, const std::string &packing, std::vector<double> size,
-             std::vector<double> zone, double cell)
-{
-  Json scene = scene_of(dim, packing, size), lower = Json::array(), upper = lower;
-  for (const double width : zone) { // 0: through the body
-    lower.push_back(width > 0 ? Json(-width / 2) : Json());
-    upper.push_back(width > 0 ? Json(width / 2) : Json());
-  }
-  scene["discrete_zone"].erase("extent");
-  scene["discrete_zone"]["region"] = {{"lower", lower}, {"upper", upper}};
-  scene["far_field"]["cell_size"] = cell;
-  scene["coupling"] = {{"overlap_cells", 2}, {"transition_cells", 2}};
-  return scene;
-}
-
 /// The zone closed by mesh all around, its cells cut by the seams.
 Json closed_zone()
 {

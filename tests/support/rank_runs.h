@@ -47,6 +47,22 @@ inline void pull(Json &scene, int axis, int component, double velocity, double r
   }
 }
 
+/// A zone in the middle of a plate or block, in units of d = 1, E = 1, rho = 1.
+inline Json coupled(int dim, const std::string &packing, std::vector<double> size,
+                    std::vector<double> zone, double cell)
+{
+  Json scene = scene_of(dim, packing, size), lower = Json::array(), upper = lower;
+  for (const double width : zone) { // 0: through the body
+    lower.push_back(width > 0 ? Json(-width / 2) : Json());
+    upper.push_back(width > 0 ? Json(width / 2) : Json());
+  }
+  scene["discrete_zone"].erase("extent");
+  scene["discrete_zone"]["region"] = {{"lower", lower}, {"upper", upper}};
+  scene["far_field"]["cell_size"] = cell;
+  scene["coupling"] = {{"overlap_cells", 2}, {"transition_cells", 2}};
+  return scene;
+}
+
 /// Von Mises' law, whose yield stress doubles.
 inline void let_flow(Json &scene, double yield)
 {
