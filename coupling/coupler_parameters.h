@@ -16,6 +16,9 @@ struct FineScaleSplitParameters
   double gap_filter = 4;  // c_g
   bool patch_fit = true;
   Solver solver = Solver::eigen;
+  /// The regime may become nonlinear after bonds have broken: what its energy needs of the body is
+  /// kept from the beginning, as all other terms of the overlap are those of the body as it was made.
+  bool may_become_nonlinear = false;
   /// Factor on the particles' share of M_c; the far field's density carries it already.
   double coarse_mass = 1;
   /// kT in J; above 0 the fine damper is the friction of a heat bath for w, and no damper.

@@ -81,6 +81,9 @@ FineScaleSplit<dim>::FineScaleSplit(Bodies<dim> &bodies, const OverlapParameters
     is_periodic_ = is_periodic_ || period > 0;
   if (parameters.thermal_energy > 0)
     join_bath(bodies, dt);
+  // Of a body in parts the whole overlap is a copy in which nothing breaks.
+  if (parameters.may_become_nonlinear && can_strain_ && whole_ == bodies.zone)
+    strained_ = strained_energy(bodies);
   take_velocities(bodies);
 }
 
@@ -116,8 +119,7 @@ void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &b
         can_strain(),
         "/coupling/regime: bonds bear a stress in the reference, which cells under finite "
         "strain don't know; choose \"linear\" or \"corotated\"");
-    coarse_ = std::make_unique<NonlinearCoarseEnergy<dim>>(
-        overlap_, parts_, whole_->state, force, bodies.far->body(), correction_, dead_load_);
+    coarse_ = strained_ ? std::move(strained_) : strained_energy(bodies);
     if (const auto law = force.finite_strain_law())
       bodies.far->set_strain_law(law);
   }
@@ -127,6 +129,15 @@ void FineScaleSplit<dim>::make_coarse_energy(Regime regime, const Bodies<dim> &b
     slow_force_ = slow_force_at(near_.displacement());
   }
   regime_ = regime;
+}
+
+template <int dim>
+std::unique_ptr<CoarseEnergy<dim>>
+FineScaleSplit<dim>::strained_energy(const Bodies<dim> &bodies) const
+{
+  return std::make_unique<NonlinearCoarseEnergy<dim>>(overlap_, parts_, whole_->state,
+                                                      *whole_->force, bodies.far->body(),
+                                                      correction_, dead_load_);
 }
 
 template <int dim>

@@ -153,6 +153,7 @@ private:
   /// (E5), in J: eq. (E5b). After the kick.
   double damped_impulse_energy(const Bodies<dim> &bodies, double dt, double factor) const;
   void make_coarse_energy(Regime regime, const Bodies<dim> &bodies);
+  std::unique_ptr<CoarseEnergy<dim>> strained_energy(const Bodies<dim> &bodies) const;
   /// force += factor times what acts once per m steps: the far field's forces, and what the
   /// nonlinear energy has beyond the corotated one. That is a small part of the stiffness and most
   /// of the work, and as slow as the mesh.
@@ -198,6 +199,7 @@ private:
   Regime regime_ = Regime::linear;
   std::unique_ptr<CoarseEnergy<dim>> coarse_, linear_; // at present, and about the reference
   std::unique_ptr<CoarseEnergy<dim>> fast_; // of coarse_ what acts in every step; null: all
+  std::unique_ptr<CoarseEnergy<dim>> strained_; // of the nonlinear regime until then, if kept
   Nodal<dim> slow_force_;                   // the rest of it, in N
   Eigen::SparseMatrix<double, Eigen::RowMajor> mass_; // M_c
   ScalarMatrix<dim> filter_;                          // D

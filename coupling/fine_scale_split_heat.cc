@@ -266,6 +266,7 @@ template <int dim>
 void FineScaleSplit<dim>::set_dead_load(const Nodal<dim> &load, const Bodies<dim> &bodies)
 {
   dead_load_ = load;
+  strained_.reset(); // it has the load of before
   if (regime_ == Regime::linear)
     coarse_ = std::make_unique<LinearCoarseEnergy<dim>>(stiffness_, dead_load_);
   else

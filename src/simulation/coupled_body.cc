@@ -224,6 +224,8 @@ void make_fine_scale_split(const Scene &scene, CoupledBody<dim> &body, core::Log
   p.patch_fit = scene.coupling.patch_fit;
   p.solver = scene.coupling.solver;
   p.coarse_mass = scene.coupling.coarse_mass;
+  p.may_become_nonlinear =
+      scene.coupling.regime == RegimeChoice::automatic && body.force()->can_break();
   fem::Body<dim> still = body.far->body(); // as atoms would be without heat
   if (scene.is_warm()) {
     p.thermal_energy = thermal_energy_of(scene);
