@@ -313,7 +313,7 @@ template <int dim, int ns>
 typename PatchEquations<dim, ns>::Field
 PatchEquations<dim, ns>::conjugate_residuals(const Field &right, double tolerance) const
 {
-  constexpr int patience = 10;          // steps without progress: round-off reached
+  constexpr int patience = 10;         // steps without progress: round-off reached
   constexpr std::size_t most_kept = 5; // directions: one would do without rounding
   Field y = Field::Zero(ns, right.cols()), r = right;
   std::deque<std::pair<Field, Field>> kept; // directions and what they make
