@@ -1,8 +1,12 @@
 #include "src/commands/rank_process.h"
 
+#include "core/check.h"
 #include "core/interruption.h"
 #include "core/mpi_job.h"
 #include "src/launcher/program.h"
+#include "src/output/open_run.h"
+
+#include <fmt/format.h>
 
 #include <chrono>
 #include <csignal>
@@ -46,8 +50,19 @@ void RankProcess::end_all(const std::string &message, int exit_code)
   if (ranks_.is_first())
     ranks_.abort("", exit_code);
   std::this_thread::sleep_for(patience);
+  if (folder_)
+    end_for_another(*folder_, exit_code == int(ExitCode::stopped_by_guard) ? "stopped" : "failed",
+                    fmt::format("rank {}: {}", ranks_.rank(), message));
   ::dup2(error_, STDERR_FILENO);
   ranks_.abort(message, exit_code);
+}
+
+void require_one_mind(bool accepts, const core::Ranks &ranks)
+{
+  const bool is_refused = ranks.any(!accepts);
+  core::require<core::EnvironmentError>(
+      !accepts || !is_refused,
+      "another rank cannot read the scene, or what it names, as this one does");
 }
 
 int run_rank(int argc, char **argv,

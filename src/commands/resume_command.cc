@@ -4,6 +4,7 @@
 #include "core/version.h"
 #include "particles/instruction_set.h"
 #include "src/commands/commands.h"
+#include "src/commands/rank_process.h"
 #include "src/commands/run_end.h"
 #include "src/commands/simulate.h"
 #include "src/launcher/program.h"
@@ -118,11 +119,12 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (ranks.is_first())
     run.emplace(folder);
   ranks.any(false);
-  const Checkpoint checkpoint = newest_checkpoint(folder);
+  Checkpoint checkpoint = newest_checkpoint(folder);
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
   const ReadResult input = scene_of(line, folder, manifest);
   const std::string name = line.scene.empty() ? folder.resolved_scene() : line.scene;
+  require_one_mind(bool(input.scene), ranks);
   if (!input.scene)
     return refuse(line, name, input.errors, input.warnings);
   if (!ranks.is_one())

@@ -16,7 +16,7 @@ RunRecord first_record(const Scene &scene, const core::Ranks &ranks);
 struct RunOptions
 {
   EndRequest end_request;
-  const Checkpoint *from = nullptr; // where it goes on
+  Checkpoint *from = nullptr;       // where it goes on; its states are used up
   int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
   core::Ranks ranks = {};           // that compute it together
   bool in_pieces = false;           // each writes the fields of its particles

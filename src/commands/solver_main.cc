@@ -25,6 +25,10 @@ ReadResult read_again(const CommandLine &line)
 int dispatch(const CommandLine &line, RankProcess *process)
 {
   const core::Ranks ranks = process ? process->ranks() : core::Ranks();
+  core::require(ranks.is_one() || line.scene.empty() || core::is_named_file(line.scene),
+                "standard input and pipes reach the first rank alone; give a file");
+  if (process)
+    process->is_of({line.command == "resume" ? line.run : output_folder(line)});
   if (line.command == "resume")
     return resume_command(line, ranks);
   if (line.command != "run")
@@ -32,6 +36,7 @@ int dispatch(const CommandLine &line, RankProcess *process)
   if (line.command == "verify")
     return verify_command(line);
   const ReadResult input = read_again(line);
+  require_one_mind(bool(input.scene), ranks);
   if (!input.scene)
     return refuse(line, line.scene, input.errors, input.warnings);
   try {

@@ -107,4 +107,19 @@ void OpenRun::end(const std::string &status, const std::string &reason) noexcept
   }
   reserve_.reset();
 }
+
+void end_for_another(const RunFolder &folder, const std::string &status,
+                     const std::string &reason) noexcept
+{
+  try {
+    RunRecord record = read_run_record(folder.record());
+    if (record.status != "running")
+      return;
+    record.status = status;
+    record.reason = reason;
+    write_run_record(folder.record(), record);
+  } catch (const std::exception &) {
+    // Nobody has begun one.
+  }
+}
 } // namespace ligament::program

@@ -35,4 +35,8 @@ private:
   std::optional<core::FolderLock> lock_;
   std::optional<core::DiskReserve> reserve_; // of the record, see write_run_record
 };
+/// The same for a run that another process has open and doesn't come to end: nothing where its
+/// record doesn't say that it runs.
+void end_for_another(const RunFolder &folder, const std::string &status,
+                     const std::string &reason) noexcept;
 } // namespace ligament::program

@@ -21,11 +21,12 @@ class Simulation
 public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
   /// scenes take less time than their pictures, which may be left out. With a checkpoint the run
-  /// goes on from it: the files that grow have been cut back to its positions. Several ranks, which
+  /// goes on from it, and uses its states up, which are as large as the body: the files that grow
+  /// have been cut back to its positions. Several ranks, which
   /// all make the same calls, run one body together; only the first one writes. What goes wrong on
   /// one of them is thrown there: it has to end the others.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
-             bool draws_pictures = true, const Checkpoint *from = nullptr,
+             bool draws_pictures = true, Checkpoint *from = nullptr,
              const ForceMaker<dim> &make_force = make_zone_force<dim>,
              const core::Ranks &ranks = {});
 
@@ -57,7 +58,7 @@ private:
   /// What was left out of the steps, for log and record.
   void report_rest(RunRecord &record);
   /// Takes what a checkpoint has, before the first step.
-  void go_on_from(const Checkpoint &checkpoint);
+  void go_on_from(Checkpoint &checkpoint);
   /// To a body that no step has moved.
   void give(const core::State &body, const core::State &run);
   core::State run_state() const;

@@ -61,7 +61,7 @@ ReadResult slab()
 
 /// A run by these ranks, which share the folder; from a checkpoint in it where that is given.
 RunRecord run(const core::Ranks &by, const std::string &folder, const Corruption &corruption,
-              const Checkpoint *from = nullptr)
+              Checkpoint *from = nullptr)
 {
   const RunFolder place{folder};
   if (!from && by.is_first()) {
@@ -108,7 +108,7 @@ void expect_one_end(const std::string &words, long at_step,
   EXPECT_LT(record.steps, 140);
 
   ranks().any(false); // the first one has written all of it
-  const auto found = Checkpoints(RunFolder{together}.checkpoints()).newest_good();
+  auto found = Checkpoints(RunFolder{together}.checkpoints()).newest_good();
   ASSERT_TRUE(found.checkpoint);
   EXPECT_LE(found.checkpoint->manifest.step, at_step);
   const RunRecord more = run(ranks(), together, {name, never, corrupt}, &*found.checkpoint);
