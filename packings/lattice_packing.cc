@@ -36,13 +36,16 @@ public:
   Packing<dim> pack() { return pack(0, n_rows()); }
   /// The particles of rows [first, last), with the faces between them.
   Packing<dim> pack(int first, int last);
+  /// The particles of the rows that rows_for(reach) says, a pair of first and one past the last,
+  /// where no face is between particles farther apart than `reach` rows, but for those so small
+  /// that only one of the two cells has them.
+  template <typename RowsFor>
+  Packing<dim> pack_window(RowsFor &&rows_for);
   /// Of those packed last, how many lie in rows before this one.
   int n_before(int row) const { return n_before_[row - first_packed_]; }
 
   int n_rows() const { return int(layout_->rows().size()); }
   std::int64_t n_particles(int row) const;
-  /// Rows between two particles that may have a common face.
-  int reach() const;
   /// At most so many rows lie between two particles that are no farther apart along any axis.
   int rows_within(double distance) const;
 
@@ -58,6 +61,11 @@ private:
   /// Of a point with a particle of the specimen, so far from its surface.
   Cell cell_at(const Index &k, double distance) const;
   bool has_particle(const Index &k) const;
+  /// Most rows between lattice points that are no farther apart than this.
+  int rows_between(double distance) const;
+  /// Most rows between two of the particles packed last, or one and those beyond, with a common
+  /// face.
+  int rows_between_joined() const;
   void join_faces();
 
   bool has_all_neighbours(const Index &k) const;
@@ -78,6 +86,7 @@ private:
   std::optional<RowLayout<dim>> layout_;
   std::vector<std::vector<int>> particle_in_; // row, at its points; -1: no particle
   int first_packed_ = 0;
+  int reach_ = 0;             // rows between the particles of a face, those packed till now
   std::vector<int> n_before_; // from that row on
   std::vector<int> irregular_of_;
   std::vector<ClippedCell<dim>> irregular_;
@@ -98,6 +107,7 @@ Packer<dim>::Packer(const LatticeParameters<dim> &p)
                   "the discrete zone holds no particles: move it into the specimen or widen it");
   }
   layout_.emplace(lattice_, zone_lower_, zone_upper_, p.small_layer);
+  reach_ = rows_between(2 * p.spacing); // seldom surpassed
 }
 
 template <int dim>
@@ -133,11 +143,26 @@ std::int64_t Packer<dim>::n_particles(int row) const
 }
 
 template <int dim>
-int Packer<dim>::reach() const
+int Packer<dim>::rows_between(double distance) const
 {
   int most = 0;
   for (const LatticeNeighbour<dim> &n : lattice_.reachable)
-    most = std::max(most, std::abs(layout_->row_step(n.offset)));
+    if (n.distance <= distance)
+      most = std::max(most, std::abs(layout_->row_step(n.offset)));
+  return most;
+}
+
+template <int dim>
+int Packer<dim>::rows_between_joined() const
+{
+  int most = 0;
+  for (const LatticeNeighbour<dim> &n : layout_->forward())
+    most = std::max(most, layout_->row_step(n.offset));
+  for (const ClippedCell<dim> &cell : irregular_)
+    for (const auto &part : cell.parts)
+      if (part.neighbour >= 0)
+        most =
+            std::max(most, std::abs(layout_->row_step(lattice_.reachable[part.neighbour].offset)));
   return most;
 }
 
@@ -307,11 +332,25 @@ Packing<dim> Packer<dim>::pack(int first, int last)
   core::require(packing_.size() > 0 || last - first < n_rows(),
                 "the discrete zone holds no whole particle: widen it or make the spacing smaller");
   join_faces();
+  reach_ = std::max(reach_, rows_between_joined());
   cut_faces(packing_, shape_.cracks);
   particle_in_.clear();
   irregular_of_ = {};
   irregular_ = {};
   return std::move(packing_);
+}
+
+template <int dim>
+template <typename RowsFor>
+Packing<dim> Packer<dim>::pack_window(RowsFor &&rows_for)
+{
+  for (;;) {
+    const int reach = reach_;
+    const auto [first, last] = rows_for(reach);
+    Packing<dim> packing = pack(first, last);
+    if (reach_ == reach)
+      return packing;
+  }
 }
 
 /// Adds particles [begin, end) of a piece of the same lattice, with the faces whose first particle
@@ -402,11 +441,15 @@ PackingPart<dim> make_lattice_part(const LatticeParameters<dim> &parameters,
     return int(std::upper_bound(begin.begin(), begin.end(), place) - begin.begin()) - 1;
   };
   const std::int64_t own = partition.begin(ranks.rank()), end = partition.end(ranks.rank());
-  // Groups of its own particles, and rings around these.
-  const int margin = (groups.of ? packer.rows_within(groups.reach) : 0) + rings * packer.reach();
-  const int first = std::clamp(row_of(own) - margin, 0, n_rows),
-            last = own < end ? std::clamp(row_of(end - 1) + margin + 1, 0, n_rows) : first;
-  Packing<dim> window = packer.pack(first, last);
+  // Groups of its own particles, rings around these, and one more for faces that only one cell has.
+  const int of_groups = groups.of ? packer.rows_within(groups.reach) : 0;
+  int first = 0, last = 0;
+  Packing<dim> window = packer.pack_window([&](int reach) {
+    const int margin = of_groups + (rings + 1) * reach;
+    first = std::clamp(row_of(own) - margin, 0, n_rows);
+    last = own < end ? std::clamp(row_of(end - 1) + margin + 1, 0, n_rows) : first;
+    return std::pair(first, last);
+  });
   core::require(window.size() == begin[last] - begin[first],
                 "rows hold another number of particles than was counted");
   return part_of(std::move(window), partition, ranks.rank(), rings, begin[first], groups);
@@ -419,14 +462,16 @@ Packing<dim> make_grouped_lattice(const LatticeParameters<dim> &parameters, int 
   require_no_joined_sides(parameters);
   core::require(n_windows > 0, "a lattice is made from at least one window of rows");
   Packer<dim> packer(parameters);
-  const int n_rows = packer.n_rows(), margin = rings * packer.reach();
+  const int n_rows = packer.n_rows();
   Packing<dim> all;
   for (int w = 0; w < n_windows; ++w) {
     const auto row = [&](int window) { return int(std::int64_t(n_rows) * window / n_windows); };
-    // Beyond a window lie the second particles of its faces, beyond these their rings.
-    const int first = std::max(row(w) - margin, 0),
-              last = std::min(row(w + 1) + packer.reach() + margin, n_rows);
-    Packing<dim> piece = packer.pack(first, last);
+    // Beyond a window lie the second particles of its faces, beyond these their rings; one more for
+    // faces that only one cell has.
+    Packing<dim> piece = packer.pack_window([&](int reach) {
+      return std::pair(std::max(row(w) - (rings + 1) * reach, 0),
+                       std::min(row(w + 1) + (rings + 2) * reach, n_rows));
+    });
     const std::vector<int> places = grouped_places(piece, groups, rings);
     const auto n_kept_before = [&](int r) {
       return int(std::lower_bound(places.begin(), places.end(), packer.n_before(r)) -
