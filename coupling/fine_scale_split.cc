@@ -359,6 +359,8 @@ void FineScaleSplit<dim>::load(const core::State &state, Bodies<dim> &bodies)
   kicks_ = load("kicks");
   rested_ = load("rested");
   far_rested_ = load("far_rested");
+  if (bodies.zone->rest() && !rests_) // parts of particles don't say who had been woken
+    wake_members(bodies);
   if (zone_bath_)
     load_bath(state, bodies);
 }

@@ -145,6 +145,7 @@ private:
   bool far_rests(const Bodies<dim> &bodies, const StepTime &step);
   /// Whether a wave has come; then particles and nodes of the overlap move from now on.
   void look(Bodies<dim> &bodies, const StepTime &step);
+  void wake_members(Bodies<dim> &bodies);
   double share_of(long rested) const { return kicks_ > 0 ? double(rested) / double(kicks_) : 0; }
   /// Mass damping of V by the factor; the energy in J that it takes is known after the kick.
   double damp_coarse_before_kick(double dt, double factor);

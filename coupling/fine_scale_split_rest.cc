@@ -49,6 +49,12 @@ void FineScaleSplit<dim>::look(Bodies<dim> &bodies, const StepTime &step)
   if (!wakes)
     return;
   rests_ = far_rests_ = false;
+  wake_members(bodies);
+}
+
+template <int dim>
+void FineScaleSplit<dim>::wake_members(Bodies<dim> &bodies)
+{
   std::vector<int> particles;
   for (const auto &m : here().members)
     particles.push_back(m.particle);
@@ -83,4 +89,6 @@ template bool FineScaleSplit<2>::far_rests(const Bodies<2> &, const StepTime &);
 template bool FineScaleSplit<3>::far_rests(const Bodies<3> &, const StepTime &);
 template void FineScaleSplit<2>::look(Bodies<2> &, const StepTime &);
 template void FineScaleSplit<3>::look(Bodies<3> &, const StepTime &);
+template void FineScaleSplit<2>::wake_members(Bodies<2> &);
+template void FineScaleSplit<3>::wake_members(Bodies<3> &);
 } // namespace ligament::coupling

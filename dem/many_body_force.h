@@ -39,6 +39,7 @@ public:
 
   /// Loads wake the blocks that they act on when they begin, contacts theirs.
   void set_rest(particles::RestBlocks<dim> *rest) override;
+  void wake_touching() override { contacts_.wake(body_.bonds(), rest_); }
 
   /// At the loads of the last compute; compression and elastic slip of contacts included.
   double potential_energy(const Particles &particles) const override;

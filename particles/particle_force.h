@@ -116,6 +116,8 @@ public:
   /// anything else than bonds between particles acts. They must outlive it. Only called where
   /// can_rest() says so.
   virtual void set_rest(RestBlocks<dim> *) {}
+  /// After load() of a state that doesn't say which blocks rest: wakes what contacts join.
+  virtual void wake_touching() {}
 
   /// Elastic (and contact) energy of the present state, in J.
   virtual double potential_energy(const Particles<dim> &particles) const = 0;

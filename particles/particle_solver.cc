@@ -127,10 +127,12 @@ void ParticleSolver<dim>::load(const core::State &all)
     body_force.load(share, state);
   if (!rest_)
     return;
-  if (ranks_.is_one() && share.count("blocks"))
+  if (ranks_.is_one() && share.count("blocks")) {
     rest_->load(share, names);
-  else
-    rest_->wake_all(); // parts don't say which of their blocks rest
+  } else { // parts don't say which of their blocks rest
+    rest_->wake_what_moved(state);
+    force->wake_touching();
+  }
 }
 
 template <int dim>

@@ -25,10 +25,20 @@ RestBlocks<dim>::RestBlocks(const Particles<dim> &p,
 {
   cut(p);
   find_neighbours(for_each_pair);
-  for (int b = 0; b < n_blocks(); ++b)
-    if (moves(p, b) || is_forced(p, b))
-      raise(b, moving);
   update_ranges();
+  wake_what_moved(p);
+}
+
+template <int dim>
+template <typename Moves>
+void RestBlocks<dim>::wake_where(Moves &&moves_now)
+{
+  const long before = version_;
+  for (int b = 0; b < n_blocks(); ++b)
+    if (nearness_[b] < moving && moves_now(b))
+      raise(b, moving);
+  if (version_ != before)
+    update_ranges();
 }
 
 // A block that ends one row and begins the next would wake both sides of the body.
@@ -129,12 +139,7 @@ void RestBlocks<dim>::look_at_ghosts(const Particles<dim> &p)
   core::require(exact_, "blocks of parts rest without a threshold only");
   if (all_awake())
     return;
-  const long before = version_;
-  for (int b = 0; b < n_blocks(); ++b)
-    if (nearness_[b] < moving && has_moved_ghost(p, b))
-      raise(b, moving);
-  if (version_ != before)
-    update_ranges();
+  wake_where([&](int b) { return has_moved_ghost(p, b); });
 }
 
 template <int dim>
@@ -166,11 +171,9 @@ void RestBlocks<dim>::wake(const std::vector<int> &particles)
 }
 
 template <int dim>
-void RestBlocks<dim>::wake_all()
+void RestBlocks<dim>::wake_what_moved(const Particles<dim> &p)
 {
-  std::fill(nearness_.begin(), nearness_.end(), std::uint8_t(moving));
-  ++version_;
-  update_ranges();
+  wake_where([&](int b) { return moves(p, b) || is_forced(p, b); });
 }
 
 template <int dim>

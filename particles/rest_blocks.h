@@ -38,8 +38,8 @@ public:
   /// The blocks of these particles move from now on: something outside acts on them.
   void wake(const std::vector<int> &particles);
 
-  /// All blocks move from now on.
-  void wake_all();
+  /// Blocks with a particle that is displaced, turned, in motion or under a force move from now on.
+  void wake_what_moved(const Particles<dim> &particles);
 
   /// After ghosts have come from other ranks: those that have begun to move wake what sees them,
   /// before the forces of the same step. Needs limits of zero: other ranks cut other blocks.
@@ -86,6 +86,8 @@ private:
   bool moves(const Particles<dim> &particles, int block) const;
   bool has_moved_ghost(const Particles<dim> &particles, int block) const;
   void raise(int block, int nearness);
+  template <typename Moves>
+  void wake_where(Moves &&moves_now);
   void update_ranges();
 
   int n_particles_;

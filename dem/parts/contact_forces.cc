@@ -80,9 +80,15 @@ void ContactForces<dim>::search(Particles &p, const BondNetwork<dim> &bonds, dou
     return;
   }
   search_.update(p, bonds, contacts_);
+  wake(bonds, rest);
+}
+
+// Those that the search found join particles that no bond ever joined.
+template <int dim>
+void ContactForces<dim>::wake(const BondNetwork<dim> &bonds, particles::RestBlocks<dim> *rest) const
+{
   if (!rest || rest->all_awake())
     return;
-  // Those that the search found join particles that no bond ever joined.
   std::vector<int> asleep;
   for (const auto &contact : all())
     for (const int i : {contact.face.i, contact.face.j})

@@ -63,6 +63,8 @@ public:
   /// faces have slid.
   void search(Particles &particles, const BondNetwork<dim> &bonds, double time,
               particles::RestBlocks<dim> *rest);
+  /// What contacts join is awake from now on.
+  void wake(const BondNetwork<dim> &bonds, particles::RestBlocks<dim> *rest) const;
   /// Adds forces and torques, after all other parts; slips follow the motion. See Contacts.
   void act(Particles &particles, double dt) { contacts_.add_forces(particles, dt); }
 
