@@ -8,30 +8,31 @@
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
+#include <algorithm>
 #include <climits>
 #include <cstdio>
+#include <cstring>
 #include <numeric>
 
 namespace ligament::core
 {
 namespace
 {
-/// Counts of MPI are ints.
-int count(std::size_t bytes)
+/// Calls visit(first byte, number of bytes) for pieces that MPI can count, in ints.
+template <typename Visit>
+void in_pieces(std::size_t bytes, std::size_t longest, Visit &&visit)
 {
-  require<EnvironmentError>(bytes <= std::size_t(INT_MAX),
-                            fmt::format("a message of {} bytes between ranks is too long for MPI; "
-                                        "use more ranks, with fewer particles each",
-                                        bytes));
-  return int(bytes);
+  for (std::size_t begin = 0; begin < bytes; begin += longest)
+    visit(begin, int(std::min(longest, bytes - begin)));
 }
 
 /// Errors end the job: MPI's own handler is left as it is.
 class MpiCommunicator : public Communicator
 {
 public:
-  MpiCommunicator()
+  explicit MpiCommunicator(std::size_t longest) : longest_(longest)
   {
+    require(0 < longest && longest <= std::size_t(INT_MAX), "MPI counts bytes in ints");
     MPI_Comm_dup(MPI_COMM_WORLD, &comm_);
     MPI_Comm_rank(comm_, &rank_);
     MPI_Comm_size(comm_, &size_);
@@ -53,9 +54,15 @@ public:
     constexpr int tag = 1;
     requests_.clear();
     for (const Incoming &m : in)
-      MPI_Irecv(m.data, count(m.bytes), MPI_BYTE, m.from, tag, comm_, &requests_.emplace_back());
+      in_pieces(m.bytes, longest_, [&](std::size_t at, int n) {
+        MPI_Irecv(static_cast<std::byte *>(m.data) + at, n, MPI_BYTE, m.from, tag, comm_,
+                  &requests_.emplace_back());
+      });
     for (const Outgoing &m : out)
-      MPI_Isend(m.data, count(m.bytes), MPI_BYTE, m.to, tag, comm_, &requests_.emplace_back());
+      in_pieces(m.bytes, longest_, [&](std::size_t at, int n) {
+        MPI_Isend(static_cast<const std::byte *>(m.data) + at, n, MPI_BYTE, m.to, tag, comm_,
+                  &requests_.emplace_back());
+      });
     MPI_Waitall(int(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   }
 
@@ -73,20 +80,31 @@ public:
   std::vector<std::vector<std::byte>> gather(const void *data, std::size_t bytes) override
   {
     const Timed timed(seconds_);
-    const int own = count(bytes);
-    std::vector<int> counts(size_), places(size_);
-    MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
-    const std::size_t total =
-        std::accumulate(counts.begin(), counts.end(), std::size_t(0),
-                        [](std::size_t sum, int n) { return sum + std::size_t(n); });
-    std::vector<std::byte> all(std::size_t(count(total)));
-    std::partial_sum(counts.begin(), counts.end() - 1, places.begin() + 1);
-    if (total > 0)
-      MPI_Allgatherv(data, own, MPI_BYTE, all.data(), counts.data(), places.data(), MPI_BYTE,
-                     comm_);
+    const std::uint64_t own = bytes;
+    std::vector<std::uint64_t> sizes(size_);
+    MPI_Allgather(&own, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, comm_);
+    const std::uint64_t total = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t(0));
     std::vector<std::vector<std::byte>> parts;
-    for (int r = 0; r < size_; ++r)
-      parts.emplace_back(all.begin() + places[r], all.begin() + places[r] + counts[r]);
+    if (total > longest_)
+      for (int r = 0; r < size_; ++r) {
+        std::vector<std::byte> &part = parts.emplace_back(sizes[r]);
+        if (r == rank_ && bytes > 0)
+          std::memcpy(part.data(), data, bytes);
+        in_pieces(part.size(), longest_, [&](std::size_t at, int n) {
+          MPI_Bcast(part.data() + at, n, MPI_BYTE, r, comm_);
+        });
+      }
+    else {
+      const std::vector<int> counts(sizes.begin(), sizes.end());
+      std::vector<int> places(size_);
+      std::partial_sum(counts.begin(), counts.end() - 1, places.begin() + 1);
+      std::vector<std::byte> all(total);
+      if (total > 0)
+        MPI_Allgatherv(data, counts[rank_], MPI_BYTE, all.data(), counts.data(), places.data(),
+                       MPI_BYTE, comm_);
+      for (int r = 0; r < size_; ++r)
+        parts.emplace_back(all.begin() + places[r], all.begin() + places[r] + counts[r]);
+    }
     return parts;
   }
 
@@ -114,6 +132,7 @@ private:
     const double begun_;
   };
 
+  const std::size_t longest_; // bytes, of what MPI is given at once
   MPI_Comm comm_;
   int rank_ = 0, size_ = 1;
   double seconds_ = 0;
@@ -134,8 +153,8 @@ MpiJob::~MpiJob()
   MPI_Finalize();
 }
 
-Ranks MpiJob::ranks() const
+Ranks MpiJob::ranks(std::size_t longest_piece) const
 {
-  return Ranks(std::make_shared<MpiCommunicator>());
+  return Ranks(std::make_shared<MpiCommunicator>(longest_piece));
 }
 } // namespace ligament::core

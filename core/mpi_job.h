@@ -15,7 +15,8 @@ public:
   MpiJob(const MpiJob &) = delete;
   MpiJob &operator=(const MpiJob &) = delete;
 
-  /// All of the job. They may be used as long as it lives.
-  Ranks ranks() const;
+  /// All of the job. They may be used as long as it lives. MPI counts in ints: longer messages are
+  /// sent in pieces of so many bytes.
+  Ranks ranks(std::size_t longest_piece = 1 << 30) const;
 };
 } // namespace ligament::core

@@ -94,7 +94,7 @@ public:
   std::vector<T> gather_at_first(const std::vector<T> &here) const;
 
   /// What each rank wants of each other one: the k-th list of `to` goes to rank k; returns what
-  /// came, by rank. For set-ups: all see everything for a moment.
+  /// came, by rank. For set-ups: all learn how many go where.
   template <typename T>
   std::vector<std::vector<T>> deal(const std::vector<std::vector<T>> &to) const;
 
@@ -159,22 +159,28 @@ std::vector<T> Ranks::gather_at_first(const std::vector<T> &here) const
 template <typename T>
 std::vector<std::vector<T>> Ranks::deal(const std::vector<std::vector<T>> &to) const
 {
-  struct Entry
-  {
-    int to;
-    T value;
-  };
-  std::vector<Entry> mine;
-  for (std::size_t k = 0; k < to.size(); ++k)
-    for (const T &value : to[k])
-      mine.push_back({int(k), value});
-  std::vector<std::vector<T>> come;
-  for (const auto &of : gather(mine)) {
-    come.emplace_back();
-    for (const Entry &entry : of)
-      if (entry.to == rank())
-        come.back().push_back(entry.value);
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (!all_)
+    return to;
+  std::vector<std::int64_t> sizes;
+  for (const auto &of : to)
+    sizes.push_back(std::int64_t(of.size()));
+  const auto all_sizes = gather(sizes);
+  std::vector<std::vector<T>> come(size());
+  std::vector<Communicator::Outgoing> out;
+  std::vector<Communicator::Incoming> in;
+  for (int k = 0; k < size(); ++k) {
+    if (k == rank()) {
+      come[k] = to[k];
+      continue;
+    }
+    come[k].resize(std::size_t(all_sizes[k][rank()]));
+    if (!come[k].empty())
+      in.push_back({k, come[k].data(), come[k].size() * sizeof(T)});
+    if (!to[k].empty())
+      out.push_back({k, to[k].data(), to[k].size() * sizeof(T)});
   }
+  exchange(out, in);
   return come;
 }
 } // namespace ligament::core

@@ -16,6 +16,8 @@ std::unique_ptr<core::Ranks> &all()
   return ranks;
 }
 
+const core::MpiJob *job = nullptr;
+
 class SayFailures : public ::testing::EmptyTestEventListener
 {
   void OnTestPartResult(const ::testing::TestPartResult &result) override
@@ -31,6 +33,11 @@ const core::Ranks &ranks()
 {
   return *all();
 }
+
+core::Ranks ranks_in_pieces(std::size_t longest)
+{
+  return job->ranks(longest);
+}
 } // namespace ligament::test
 
 int main(int argc, char **argv)
@@ -38,6 +45,7 @@ int main(int argc, char **argv)
   using namespace ligament;
   core::flush_denormals();
   const core::MpiJob job;
+  test::job = &job;
   test::all() = std::make_unique<core::Ranks>(job.ranks());
   ::testing::InitGoogleTest(&argc, argv);
   if (test::ranks().rank() > 0) {

@@ -83,6 +83,36 @@ TEST(Ranks, MessagesReachTheirRanks)
       EXPECT_EQ(in[k], std::vector<double>(1 + 1000 * k, 10 * k + r));
 }
 
+// MPI counts in ints: what is longer comes in pieces.
+TEST(Ranks, LongMessagesArriveInPieces)
+{
+  const int n = ranks().size();
+  for (const std::size_t longest : {1, 7, 64}) {
+    const Ranks in_pieces = test::ranks_in_pieces(longest);
+    const int r = in_pieces.rank();
+    const auto told = [](int from, int to) {
+      std::vector<std::int16_t> values(5 * from + 3 * to);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] = std::int16_t(1000 * from + 100 * to + int(k));
+      return values;
+    };
+    std::vector<std::vector<std::int16_t>> to(n);
+    for (int k = 0; k < n; ++k)
+      to[k] = told(r, k);
+    const auto come = in_pieces.deal(to), all = in_pieces.gather(told(r, r));
+    const auto at_first = in_pieces.gather_at_first(told(r, r));
+    std::vector<std::int16_t> joined;
+    for (int k = 0; k < n; ++k) {
+      EXPECT_EQ(come[k], told(k, r));
+      EXPECT_EQ(all[k], told(k, k));
+      joined.insert(joined.end(), all[k].begin(), all[k].end());
+    }
+    EXPECT_EQ(at_first, r == 0 ? joined : std::vector<std::int16_t>());
+  }
+  if (n > 1)
+    EXPECT_THROW(test::ranks_in_pieces(0), InputError);
+}
+
 TEST(Ranks, SumsAreThoseOfAllTerms)
 {
   // Terms over 600 orders of magnitude, dealt out in turn: plain sums of parts would differ.
