@@ -408,7 +408,7 @@ Utilisation<dim> ManyBodyForce<dim>::flow_utilisation(const Particles &p,
     return most;
   std::vector<int> watched;
   for (int i = 0; i < body_.n_particles(); ++i)
-    if (watch[i] == Watch::watched)
+    if (watch[i] == Watch::watched && p.part.owns(i))
       watched.push_back(i);
   const auto stress = stressed(p, evaluation_).stresses_of(watched);
   for (std::size_t k = 0; k < watched.size(); ++k) {
@@ -442,7 +442,7 @@ std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
                        can_break() ? "the criterion reads tractions; tensors are computed for "
                                      "output only"
                                    : "nothing reads them but the output"});
-  if (contacts_.all().empty())
+  if (contacts_.none())
     skipped.push_back({"contacts until a bond breaks", "no initial crack"});
   return skipped;
 }

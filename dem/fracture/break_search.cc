@@ -335,9 +335,12 @@ Utilisation<dim> BreakSearch<dim>::utilisation(const StressedBody<dim> &state,
   if (!can_break())
     return most;
   auto found = suspected_bonds(state);
+  const auto &part = state.particles.part;
   found.erase(std::remove_if(found.begin(), found.end(),
-                             [&](const auto &t) {
-                               return std::max(watch[t.bond.i], watch[t.bond.j]) != Watch::watched;
+                             [&](const auto &t) { // what others step lacks faces
+                               return std::max(watch[t.bond.i], watch[t.bond.j]) !=
+                                          Watch::watched ||
+                                      !(part.owns(t.bond.i) || part.owns(t.bond.j));
                              }),
               found.end());
   find_tensions(found, state, noted_share_);

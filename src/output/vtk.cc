@@ -294,7 +294,8 @@ StateFiles files_of(const std::string &name, bool has_particles, bool has_cells,
 
 StateFiles FieldSeries::files(const BodyState &state, const std::string &name, const Piece &piece)
 {
-  return files_of(name, state.particles.size() > 0, state.cells.n_cells() > 0, piece.of > 1);
+  // A rank without particles has fields without values.
+  return files_of(name, !state.particles.fields.empty(), state.cells.n_cells() > 0, piece.of > 1);
 }
 
 void FieldSeries::write_particles(const BodyState &state, const std::string &name,

@@ -65,7 +65,7 @@ ParticleFields fields_at_hand(const CoupledBody<dim> &body)
   Components<n_strains<dim>> stress;
   body.force()->stresses(state, stress);
   std::vector<double> tensor(6 * state.size()), out_of_plane;
-  for (int i = 0; i < state.size(); ++i)
+  for (std::size_t i = 0; i < stress[0].size(); ++i) // guests have none
     put_tensor<dim>(get(stress, i), body, &tensor[6 * i]);
   body.force()->stresses_out_of_plane(state, out_of_plane);
   for (std::size_t i = 0; i < out_of_plane.size(); ++i)
@@ -249,7 +249,7 @@ void StateFields<dim>::complete(const CoupledBody<dim> &body, BodyState &state)
   state.cuts = body.cut_faces;
   if (state.cells.n_cells() > 0)
     state.cells.cell_fields = constant_cell_fields(body);
-  if (state.particles.size() > 0)
+  if (body.zone)
     add_particle_fields(body, state);
 }
 

@@ -35,10 +35,6 @@ OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
   watch_.assign(body.zone->state.size(), Watch::none);
   for (const auto &m : overlap->members)
     watch_[m.particle] = m.pad ? Watch::exempt : Watch::watched;
-  asked_ = watch_; // of what others own faces are missing
-  for (std::size_t i = 0; i < asked_.size(); ++i)
-    if (asked_[i] == Watch::watched && !body.zone->state.part.owns(int(i)))
-      asked_[i] = Watch::none;
   is_blended_.assign(body.far->mesh().n_cells(), 0);
   for (const auto &cell : overlap->cells)
     is_blended_[cell.cell] = cell.layer == 0;
@@ -128,7 +124,7 @@ template <int dim>
 std::optional<particles::Utilisation<dim>>
 OverlapGuard<dim>::worst_face(const CoupledBody<dim> &body) const
 {
-  return worst_of_all(body.force()->utilisation(body.zone->state, asked_), limit, body.ranks);
+  return worst_of_all(body.force()->utilisation(body.zone->state, watch_), limit, body.ranks);
 }
 
 template <int dim>
@@ -200,7 +196,7 @@ template <int dim>
 auto OverlapGuard<dim>::find_flow(const CoupledBody<dim> &body) const -> Flow
 {
   Flow flow;
-  flow.most = worst_of_all(body.force()->flow_utilisation(body.zone->state, asked_),
+  flow.most = worst_of_all(body.force()->flow_utilisation(body.zone->state, watch_),
                            near_flow_limit, body.ranks)
                   .value_or(particles::Utilisation<dim>());
   flow.lower.setConstant(std::numeric_limits<double>::infinity());

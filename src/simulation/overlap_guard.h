@@ -71,7 +71,6 @@ private:
 
   bool watches_ = false;
   std::vector<particles::Watch> watch_;      // of the particles at hand
-  std::vector<particles::Watch> asked_;      // those of one's own
   std::vector<char> is_blended_;             // of the cells: particles carry it, too
   std::size_t seen_ = 0;                     // of the body's broken bonds
   std::optional<std::size_t> seen_here_ = 0; // of those at hand; unknown after load()
