@@ -90,6 +90,7 @@ int wait_for(pid_t child, const sigset_t &signals, int &status)
 int run_on_ranks(int ranks, int argc, char *const *argv)
 {
   const auto words = mpirun_words(ranks, argc, argv);
+  ::signal(SIGCHLD, SIG_DFL); // where it is ignored, nobody says when a child ends
   const sigset_t signals = awaited_signals();
   sigset_t before;
   pthread_sigmask(SIG_BLOCK, &signals, &before);

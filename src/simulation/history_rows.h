@@ -44,10 +44,7 @@ public:
 
   GaugeSet<dim> &gauges() { return gauges_; }
   /// The body was built anew.
-  void watch(const Scene &scene, const CoupledBody<dim> &body)
-  {
-    gauges_ = GaugeSet<dim>(scene, body);
-  }
+  void watch(const Scene &scene, const CoupledBody<dim> &body) { gauges_.watch(scene, body); }
 
 private:
   bool has_phases_, has_tools_, has_flow_, has_viscosity_, has_rebonding_;

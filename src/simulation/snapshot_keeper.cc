@@ -1,10 +1,12 @@
 #include "src/simulation/snapshot_keeper.h"
 
+#include "core/check.h"
 #include "src/simulation/body_fields.h"
 #include "src/simulation/kept_tables.h"
 #include "src/simulation/whole_body.h"
 
 #include <algorithm>
+#include <exception>
 
 namespace ligament::program
 {
@@ -178,6 +180,8 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
   if (!kept_[0])
     return;
   Snapshot snapshot = empty_snapshot(body);
+  std::exception_ptr
+      refused; // by the disk of the first rank, while others go on to the next motion
   for (std::size_t k = 0; k < kept_.size(); ++k) {
     if (!kept_[k])
       continue;
@@ -194,8 +198,14 @@ void SnapshotKeeper<dim>::write(const CoupledBody<dim> &body, const RunFolder &f
     snapshot.time = all.time;
     snapshot.displacement = in_turn(all.displacement);
     snapshot.velocity = in_turn(all.velocity);
-    write_snapshot(folder.snapshots()[k], snapshot);
+    try {
+      write_snapshot(folder.snapshots()[k], snapshot);
+    } catch (const core::EnvironmentError &) {
+      refused = std::current_exception();
+    }
   }
+  if (refused)
+    std::rethrow_exception(refused);
 }
 
 template <int dim>

@@ -92,6 +92,14 @@ std::vector<double> GaugeSet<dim>::read(const CoupledBody<dim> &body, double tim
 }
 
 template <int dim>
+void GaugeSet<dim>::watch(const Scene &scene, const CoupledBody<dim> &body)
+{
+  GaugeSet now(scene, body);
+  now.entries_ = std::move(entries_);
+  *this = std::move(now);
+}
+
+template <int dim>
 void GaugeSet<dim>::write(const CoupledBody<dim> &body, const RunFolder &folder)
 {
   for (const auto &gauge : gauges_)

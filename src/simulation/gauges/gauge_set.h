@@ -21,6 +21,8 @@ public:
   std::vector<double> read(const CoupledBody<dim> &body, double time);
   /// Names, kinds, columns, and from what they read.
   const std::vector<GaugeEntry> &entries() const { return entries_; }
+  /// From now on of a body built anew; what they read is said of the one before any bond broke.
+  void watch(const Scene &scene, const CoupledBody<dim> &body);
   /// What they leave behind besides columns.
   void write(const CoupledBody<dim> &body, const RunFolder &folder);
 
