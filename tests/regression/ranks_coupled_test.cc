@@ -179,6 +179,20 @@ TEST_F(RanksCoupled, TheGuardOfTheOverlapEndsAll)
 {
   expect_the_same_on({3}, crack_into_the_overlap(), 10, 3);
 }
+// Near the limit, not broken: of faces between a member and what is none, on two ranks, too. Places
+// of the mesh decide which ones these are.
+TEST_F(RanksCoupled, TheGuardLooksAtFacesAcrossASeam)
+{
+  for (const double cell : {3.6, 3.8, 4.0, 4.2}) {
+    Json scene = coupled(2, "hexagonal", {90, 90}, {48, 42}, cell);
+    scene["specimen"]["cracks"] = {{{"points", {{-2, 0}, {10, 0}}}}};
+    scene["material"]["fracture"] = {{"criterion", "face_tension"}, {"strength", 1e-3}};
+    pull(scene, 1, 1, 4e-4);
+    scene["time"]["duration"] = 120;
+    fs::remove_all("on_1");
+    expect_the_same_on({2, 3}, scene, 0, 3);
+  }
+}
 TEST_F(RanksCoupled, ACrackThroughTheOverlap)
 {
   expect_the_same_on({2}, crack_through_the_overlap(), 50);
@@ -219,6 +233,13 @@ TEST_F(RanksCoupled, ABarThatRests)
   expect_the_same_on({2}, bar_that_rests(), 0);
   for (const char *share : {"share_at_rest", "overlap_at_rest"})
     EXPECT_GT(file_json("on_2/run.json")["figures"][share]["value"], 0.02) << share;
+}
+// What rests before a new cut rests after it; the overlap, which the wave has woken, goes on.
+TEST_F(RanksCoupled, ABarThatRestsCutAnew)
+{
+  expect_the_same_when_cut_anew(2, bar_that_rests(), 60, 0);
+  for (const char *share : {"share_at_rest", "overlap_at_rest"})
+    EXPECT_GT(file_json("cut_anew/run.json")["figures"][share]["value"], 0.02) << share;
 }
 TEST_F(RanksCoupled, AWaistThatFlows)
 {

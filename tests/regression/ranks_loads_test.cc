@@ -80,14 +80,17 @@ Json falling_inside_a_mesh(double servo_ramp)
                 {"ramp", 30},
                 {"within", {{"lower", {nullptr, from}}, {"upper", {nullptr, to}}}}};
   };
-  scene["loads"] = {
-      {{"boundary", "top"},
-       {"velocity", {nullptr, 3e-3}},
-       {"servo",
-        {{"gauge", "mouth"}, {"value", 0.1}, {"ramp", servo_ramp}, {"gain", 0.5}, {"response_time", 60}}}},
-      {{"boundary", "bottom"}, {"absorbing", true}, {"absorbing_layer", 8}},
-      pressed(-11, 11),
-      pressed(41, 50)};
+  scene["loads"] = {{{"boundary", "top"},
+                     {"velocity", {nullptr, 3e-3}},
+                     {"servo",
+                      {{"gauge", "mouth"},
+                       {"value", 0.1},
+                       {"ramp", servo_ramp},
+                       {"gain", 0.5},
+                       {"response_time", 60}}}},
+                    {{"boundary", "bottom"}, {"absorbing", true}, {"absorbing_layer", 8}},
+                    pressed(-11, 11),
+                    pressed(41, 50)};
   scene["gauges"] = {{{"name", "mouth"},
                       {"kind", "opening"},
                       {"points", {{-19, -1}, {-19, 1.2}}},

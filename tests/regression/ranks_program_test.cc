@@ -3,16 +3,11 @@
 #include "src/output/vtk_reader.h"
 #include "tests/support/rank_runs.h"
 
-#include <csignal>
-#include <thread>
-
 using namespace ligament;
 using namespace ligament::tests;
 
 namespace
 {
-const std::string program = LIGAMENT_PROGRAM;
-
 class RanksProgram : public OnRanks
 {
 };
@@ -215,6 +210,31 @@ TEST_F(RanksProgram, RandomInSpace)
 {
   expect_the_same_on({3}, random_in_space(), 10);
 }
+// Fewer blocks of particles than ranks.
+TEST_F(RanksProgram, RanksWithoutParticles)
+{
+  Json plate = scene_of(2, "hexagonal", {10, 10});
+  plate["specimen"]["cracks"] = {{{"points", {{-6, 0}, {0, 0}}}}};
+  pull(plate, 1, 1, 2e-3, 10);
+  plate["time"]["duration"] = 60;
+  expect_the_same_on({3, 4}, plate, 1);
+  ASSERT_EQ(run_ligament("run scene.json -n 3 --pieces -o pieces").code, 0);
+  EXPECT_EQ(results("pieces")["broken_bonds.csv"], results("on_1")["broken_bonds.csv"]);
+  for (const auto &entry : fs::directory_iterator("pieces/fields"))
+    if (entry.path().extension() == ".pvtp")
+      program::read_particles_pvtp(entry.path());
+}
+/// What rests before a new cut rests after it; what its flanks touch is woken.
+TEST_F(RanksProgram, ABarThatRestsCutAnew)
+{
+  Json scene = bar_that_rests();
+  scene["specimen"]["cracks"] = {{{"points", {{-3, 70}, {9, 66}}}}};
+  expect_the_same_when_cut_anew(3, scene, 20, 5);
+  const auto share = [](const std::string &run) -> double {
+    return file_json(run + "/run.json")["figures"]["share_at_rest"]["value"];
+  };
+  EXPECT_GT(share("cut_anew"), share("on_1") / 3);
+}
 TEST_F(RanksProgram, ABarThatRests)
 {
   expect_the_same_on({2}, bar_that_rests(), 5);
@@ -287,16 +307,6 @@ TEST_F(RanksProgram, SlowAllOnAnyNumber)
   }
 }
 
-/// Cut in two, whose flanks slide along each other.
-Json halves_that_slide()
-{
-  Json scene = scene_of(2, "hexagonal", {30, 40});
-  scene["discrete_zone"]["orientation"] = 10;
-  scene["specimen"]["cracks"] = {{{"points", {{0, -20.5}, {0, 20.5}}}}};
-  pull(scene, 0, 1, 2e-3);
-  return scene;
-}
-
 TEST_F(RanksProgram, GoOnOnAnotherNumber)
 {
   Json scene = halves_that_slide();
@@ -316,7 +326,8 @@ TEST_F(RanksProgram, GoOnWhereItFlowsAndCreeps)
   expect_to_go_on(scene, 2);
 }
 
-// States of parts don't say what rests: whoever goes on wakes all.
+// States of parts don't say what rests: whoever goes on wakes what has moved, and what that
+// touches.
 /// The same values, whatever the files are.
 void expect_same_fields(const std::string &run, const std::string &reference)
 {
@@ -432,184 +443,9 @@ TEST_F(RanksProgram, WhatOneProcessMustComputeIsRefusedWithAllReasons)
   }
 }
 
-/// Until the run is well under way.
-void wait_for_rows(const std::string &run)
-{
-  const std::string history = run + "/history.csv";
-  std::error_code none;
-  while (!fs::exists(history, none) || fs::file_size(history, none) < 4000)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-}
-
 TEST_F(RanksProgram, CheckKnowsPartsAndGhosts)
 {
   for (const Json &scene : {crack_along_the_seam(), fcc_with_a_crack()})
     expect_check_to_know(scene);
-}
-
-// A signal to the program that users started ends all ranks in good order; they can go on.
-TEST_F(RanksProgram, ASignalEndsAllInGoodOrder)
-{
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  written(scene, "scene.json");
-  Process process("exec " + program + " run scene.json -n 2 -o out");
-  wait_for_rows("out");
-  process.send(SIGTERM);
-  EXPECT_EQ(process.wait().code, 128 + SIGTERM);
-  EXPECT_EQ(file_json("out/run.json")["status"], "interrupted");
-  EXPECT_FALSE(newest_checkpoint("out").empty());
-}
-
-/// The solvers that run this scene.
-std::vector<pid_t> solvers_of(const std::string &scene)
-{
-  std::vector<pid_t> found;
-  std::error_code none;
-  for (const auto &entry : fs::directory_iterator("/proc", none)) {
-    const std::string name = entry.path().filename();
-    if (name.find_first_not_of("0123456789") != name.npos)
-      continue;
-    std::string words = file_text(entry.path() / "cmdline");
-    words = words.substr(0, words.find(std::string("--quiet"))); // mpirun has no more to say
-    if (words.find("ligament-solver") != words.npos && words.find(scene) != words.npos)
-      found.push_back(std::stoi(name));
-  }
-  return found;
-}
-
-// Killed, it leaves nobody behind.
-TEST_F(RanksProgram, NobodyOutlivesTheProgram)
-{
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  const std::string name = written(scene, "orphans_of_nobody.json");
-  Process process("exec " + program + " run " + name + " -n 2 -o out");
-  wait_for_rows("out");
-  EXPECT_EQ(solvers_of(name).size(), 2u);
-  process.send(SIGKILL);
-  process.wait();
-  for (int k = 0; k < 100 && !solvers_of(name).empty(); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  EXPECT_EQ(solvers_of(name).size(), 0u);
-}
-
-// Nor does one rank that is killed leave the others waiting.
-TEST_F(RanksProgram, AKilledRankEndsAll)
-{
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  const std::string name = written(scene, "one_is_killed.json");
-  Process process("exec " + program + " run " + name + " -n 3 -o out");
-  wait_for_rows("out");
-  const auto solvers = solvers_of(name);
-  ASSERT_EQ(solvers.size(), 3u);
-  const auto killed_at = std::chrono::steady_clock::now();
-  kill(solvers.back(), SIGKILL);
-  EXPECT_NE(process.wait().code, 0);
-  EXPECT_LT(std::chrono::steady_clock::now() - killed_at, std::chrono::seconds(10)); // documented
-  EXPECT_EQ(solvers_of(name).size(), 0u);
-}
-
-// What only the first rank finds ends the others, too.
-TEST_F(RanksProgram, AFolderThatCannotBeOneEndsAll)
-{
-  Json scene = scene_of(2, "hexagonal", {20, 20});
-  pull(scene, 1, 1, 4e-4);
-  written(scene, "scene.json");
-  std::ofstream("out") << "a file";
-  const Outcome outcome = run_ligament("run scene.json -n 3 -o out");
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.errors.find("out is a file"), std::string::npos) << outcome.errors;
-}
-
-/// From one corner on it is strained beyond all that its law and its steps bear.
-Json torn_at_a_corner()
-{
-  Json scene = scene_of(2, "hexagonal", {30, 40});
-  scene["material"]["fracture"] = {{"criterion", "none"}};
-  scene["loads"] = {
-      {{"boundary", "right"}, {"velocity", {1, nullptr}}, {"ramp", 100}, {"from", 17}},
-      {{"boundary", "left"}, {"displacement", {0, nullptr}}}};
-  return scene;
-}
-
-/// What a guard finds ends all ranks, in the step in which it would end one process. The
-/// checkpoints are of sound motion; who goes on from one comes to the same end.
-void expect_one_end(const Json &scene, const std::string &words)
-{
-  const std::string name = written(scene, "guarded.json"), within = "exec timeout 60 " + program;
-  std::vector<nlohmann::json> records;
-  for (const int n : {1, 3}) {
-    const std::string run = "on_" + std::to_string(n);
-    fs::remove_all(run);
-    const Outcome outcome =
-        run_shell(within + " run " + name + " -n " + std::to_string(n) + " -o " + run);
-    EXPECT_EQ(outcome.code, 3) << outcome.errors;
-    EXPECT_EQ(solvers_of(name).size(), 0u);
-    const auto record = records.emplace_back(file_json(run + "/run.json"));
-    EXPECT_EQ(record["status"], "stopped");
-    EXPECT_EQ(record["ranks"], n);
-    EXPECT_NE(std::string(record["reason"]).find(words), std::string::npos) << record["reason"];
-    ASSERT_FALSE(newest_checkpoint(run).empty());
-    const auto manifest = file_json(newest_checkpoint(run) + "/manifest.json");
-    EXPECT_LT(manifest["step"], record["steps"]);
-  }
-  for (const char *key : {"reason", "steps", "trusted_until", "external_work", "energy_residual"})
-    EXPECT_EQ(records[0][key], records[1][key]) << key;
-  const Outcome more = run_shell(within + " resume on_3 -n 2");
-  EXPECT_EQ(more.code, 3) << more.errors;
-  const auto record = file_json("on_3/run.json");
-  EXPECT_EQ(record["reason"], records[0]["reason"]);
-  EXPECT_EQ(record["ranks"], 2);
-}
-
-TEST_F(RanksProgram, AGuardOfTheEnergyEndsAllInTheSameStep)
-{
-  expect_one_end(torn_at_a_corner(), "came from nowhere");
-}
-
-TEST_F(RanksProgram, AGuardOfTheMotionEndsAllInTheSameStep)
-{
-  Json scene = torn_at_a_corner();
-  scene["output"]["history_interval"] = 1000; // no look at the energy comes first
-  expect_one_end(scene, "spacings in one step");
-}
-
-// Before the first step: all ranks find the same stable one.
-TEST_F(RanksProgram, AStepAboveTheStableOneIsRefusedByAll)
-{
-  const std::string name = written(halves_that_slide(), "scene.json");
-  std::vector<std::string> errors;
-  for (const char *n : {"1", "3"}) {
-    const Outcome outcome =
-        run_ligament("run " + name + " --set /time/step=5 -n " + n + " -o on_" + n);
-    EXPECT_EQ(outcome.code, 2);
-    errors.push_back(outcome.errors);
-  }
-  EXPECT_NE(errors[0].find("is above the stable step of"), std::string::npos) << errors[0];
-  EXPECT_EQ(errors[0], errors[1]);
-}
-
-// What a later rank alone finds wrong, while the others wait for it in a message: the job ends,
-// when it would have ended had all found it, and 10 s later at most (documented).
-TEST_F(RanksProgram, AnErrorOfOneRankEndsAllWithItsReason)
-{
-  using Clock = std::chrono::steady_clock;
-  const std::string name = written(halves_that_slide(), "wrong_on_one.json"),
-                    run = program + " run " + name + " -o out", wrong = run + " --set /time/step=5",
-                    start = "exec mpirun -q --oversubscribe -n ";
-  const auto all_begin = Clock::now();
-  EXPECT_EQ(run_shell(start + "3 " + wrong).code, 2);
-  const auto alone_begin = Clock::now();
-  const Outcome outcome = run_shell(start + "2 " + run + " : -n 1 " + wrong);
-  EXPECT_LT(Clock::now() - alone_begin, alone_begin - all_begin + std::chrono::seconds(10));
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos)
-      << outcome.errors;
-  EXPECT_EQ(solvers_of(name).size(), 0u);
 }
 } // namespace

@@ -33,8 +33,9 @@ inline std::map<std::string, std::string> results(const std::string &run)
 {
   namespace fs = std::filesystem;
   std::map<std::string, std::string> files;
-  for (const char *name : {"history.csv", "broken_bonds.csv", "cut_faces.csv", "packing.csv",
-                           "fields.pvd", "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
+  for (const char *name :
+       {"history.csv", "broken_bonds.csv", "cut_faces.csv", "fragments.csv", "packing.csv",
+        "fields.pvd", "snapshot_0.bin", "snapshot_1.bin", "snapshot_2.bin"})
     if (fs::exists(run + "/" + name))
       files[name] = file_text(run + "/" + name);
   for (const char *folder : {"fields", "pictures"})
