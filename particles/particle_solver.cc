@@ -90,6 +90,53 @@ core::Table own_rows(const std::string &name, const core::Table &table,
   }
   return kept;
 }
+
+/// Counts of the steps that particles took, without the blocks that took them.
+core::State counts_of(double steps, double particle_steps)
+{
+  core::State counts;
+  counts["blocks"].add("nearness", std::vector<std::int64_t>());
+  core::save_value(counts, "rest", "steps", steps);
+  core::save_value(counts, "rest", "particle_steps", particle_steps);
+  return counts;
+}
+
+/// Ranks cut other blocks; what they tell of them is how often all of the body moved.
+template <int dim>
+void save_rest(const RestBlocks<dim> &rest, const Particles<dim> &particles,
+               const core::Ranks &ranks, core::State &all)
+{
+  if (ranks.is_one()) {
+    rest.save(all, particles.names());
+    return;
+  }
+  core::State here;
+  rest.save(here, particles.names());
+  const double steps = core::load_real(here, "rest", "steps");
+  core::ExactSum moved;
+  moved.add((1 - rest.share_at_rest()) * steps * double(count(particles.part.owned)));
+  all["rest"] = counts_of(steps, ranks.sum(moved).value())["rest"];
+}
+
+/// States of parts don't say which blocks rest.
+template <int dim>
+void load_rest(const core::State &all, const Particles<dim> &particles, const core::Ranks &ranks,
+               ParticleForce<dim> &force, RestBlocks<dim> &rest)
+{
+  if (ranks.is_one() && all.count("blocks")) {
+    rest.load(all, particles.names());
+    return;
+  }
+  if (all.count("rest")) {
+    const double share =
+        double(particles.size()) / double(ranks.sum(std::int64_t(count(particles.part.owned))));
+    rest.load(counts_of(core::load_real(all, "rest", "steps"),
+                        share * core::load_real(all, "rest", "particle_steps")),
+              particles.names());
+  }
+  rest.wake_what_moved(particles);
+  force.wake_touching();
+}
 } // namespace
 
 template <int dim>
@@ -101,8 +148,8 @@ void ParticleSolver<dim>::save(core::State &all) const
   dashpots.save(all, "particle_dashpots", names);
   if (!body_force.is_empty())
     body_force.save(all, state);
-  if (rest_ && ranks_.is_one()) // ranks cut other blocks
-    rest_->save(all, names);
+  if (rest_)
+    save_rest(*rest_, state, ranks_, all);
   if (ranks_.is_one())
     return;
   std::vector<std::int64_t> own;
@@ -125,14 +172,8 @@ void ParticleSolver<dim>::load(const core::State &all)
   dashpots.load(share, "particle_dashpots", names);
   if (!body_force.is_empty())
     body_force.load(share, state);
-  if (!rest_)
-    return;
-  if (ranks_.is_one() && share.count("blocks")) {
-    rest_->load(share, names);
-  } else { // parts don't say which of their blocks rest
-    rest_->wake_what_moved(state);
-    force->wake_touching();
-  }
+  if (rest_)
+    load_rest(share, state, ranks_, *force, *rest_);
 }
 
 template <int dim>

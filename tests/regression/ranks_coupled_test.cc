@@ -179,20 +179,6 @@ TEST_F(RanksCoupled, TheGuardOfTheOverlapEndsAll)
 {
   expect_the_same_on({3}, crack_into_the_overlap(), 10, 3);
 }
-// Near the limit, not broken: of faces between a member and what is none, on two ranks, too. Places
-// of the mesh decide which ones these are.
-TEST_F(RanksCoupled, TheGuardLooksAtFacesAcrossASeam)
-{
-  for (const double cell : {3.6, 3.8, 4.0, 4.2}) {
-    Json scene = coupled(2, "hexagonal", {90, 90}, {48, 42}, cell);
-    scene["specimen"]["cracks"] = {{{"points", {{-2, 0}, {10, 0}}}}};
-    scene["material"]["fracture"] = {{"criterion", "face_tension"}, {"strength", 1e-3}};
-    pull(scene, 1, 1, 4e-4);
-    scene["time"]["duration"] = 120;
-    fs::remove_all("on_1");
-    expect_the_same_on({2, 3}, scene, 0, 3);
-  }
-}
 TEST_F(RanksCoupled, ACrackThroughTheOverlap)
 {
   expect_the_same_on({2}, crack_through_the_overlap(), 50);
