@@ -120,7 +120,7 @@ class Draw:
             fracture["softening"] = self.one_of("linear", "bilinear")
         if self.chance(0.3):
             fracture["weibull"] = {"modulus": self.between(5, 15), "reference_area": 1, "seed": self.one_of(1, 2, 3)}
-        if self.chance(0.2) and law == "elastic" and not self.static:
+        if self.chance(0.2) and law == "elastic" and "energy" not in fracture and not self.static:
             fracture["crack_velocity"] = self.between(0.05, 0.4)
         material["fracture"] = fracture
         self.softens = "energy" in fracture
