@@ -27,7 +27,14 @@ public:
   /// From here on the first signal is left to the caller.
   void leave_to_caller() { left_to_caller_ = true; }
   /// The signal that asks the caller to end; 0: none.
-  int signal() const { return signal_.load(std::memory_order_relaxed); }
+  int signal() const
+  {
+    const int own = signal_.load(std::memory_order_relaxed);
+    return own != 0 ? own : heard_of_.load(std::memory_order_relaxed);
+  }
+  /// Another process of the same run was asked by this signal: the caller is, too. One that comes
+  /// here afterwards is the first one all the same.
+  void hear_of(int signal) { heard_of_ = signal; }
 
   /// For a process whose libraries start threads before it can make one: these inherit what is
   /// blocked now.
@@ -42,7 +49,7 @@ private:
   void listen();
   void take(int signal);
 
-  std::atomic<int> signal_{0};
+  std::atomic<int> signal_{0}, heard_of_{0};
   std::atomic<bool> left_to_caller_{false};
   std::mutex mutex_;
   std::function<void(int)> last_words_;

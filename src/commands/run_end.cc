@@ -38,7 +38,7 @@ int exit_code(const RunRecord &record, const core::Interruption &interruption)
 }
 } // namespace
 
-EndRequest end_request(const CommandLine &line, const core::Interruption &interruption)
+EndRequest end_request(const CommandLine &line, core::Interruption &interruption)
 {
   using Clock = std::chrono::steady_clock;
   EndRequest request{&interruption};

@@ -13,7 +13,7 @@ constexpr int out_of_time = 124;
 
 /// What asks a run that begins now to end. The outputs of a run take time, too: its loop ends
 /// before the limit of --wall-time by a tenth of it, or a minute.
-EndRequest end_request(const CommandLine &line, const core::Interruption &interruption);
+EndRequest end_request(const CommandLine &line, core::Interruption &interruption);
 
 /// Writes the report, says how the run ended, returns the exit code. `name`: of the run in
 /// messages.

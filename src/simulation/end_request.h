@@ -11,11 +11,16 @@ namespace ligament::program
 {
 struct EndRequest
 {
-  const core::Interruption *interruption = nullptr;
+  core::Interruption *interruption = nullptr;
   std::optional<std::chrono::steady_clock::time_point> deadline = {}; // of the time loop
 
   /// The signal that asks; 0: none does.
   int signal() const { return interruption ? interruption->signal() : 0; }
+  void hear_of(int signal) const
+  {
+    if (interruption && signal != 0)
+      interruption->hear_of(signal);
+  }
   bool is_late() const { return deadline && std::chrono::steady_clock::now() >= *deadline; }
   /// Who asks, in a word; empty: nobody.
   static std::string reason(int signal, bool is_late)

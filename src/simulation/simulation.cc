@@ -66,6 +66,7 @@ void Simulation<dim>::look_at_the_clock(const EndRequest &request)
   const std::vector<std::int64_t> seen =
       body_.ranks.max({request.signal(), request.is_late(), keeper_ && keeper_->has_some(),
                        keeper_ && keeper_->is_due()});
+  request.hear_of(int(seen[0])); // exit codes say which signal it was
   asked_by_ = EndRequest::reason(int(seen[0]), seen[1] != 0);
   // A run that is at its end may be prolonged from there.
   const bool ends = !asked_by_.empty() || (is_at_end && seen[2] != 0);

@@ -73,6 +73,23 @@ TEST_F(RanksEnds, NobodyOutlivesTheProgram)
   EXPECT_EQ(solvers_of(name).size(), 0u);
 }
 
+// A scheduler may ask any of them.
+TEST_F(RanksEnds, ASignalToOneRankEndsAllInGoodOrder)
+{
+  Json scene = scene_of(2, "hexagonal", {40, 60});
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 1e5;
+  const std::string name = written(scene, "one_is_asked.json");
+  Process process("exec " + program + " run " + name + " -n 3 -o out");
+  wait_for_rows("out");
+  const auto solvers = solvers_of(name);
+  ASSERT_EQ(solvers.size(), 3u);
+  kill(solvers.back(), SIGTERM);
+  EXPECT_EQ(process.wait().code, 128 + SIGTERM);
+  EXPECT_EQ(file_json("out/run.json")["status"], "interrupted");
+  EXPECT_FALSE(newest_checkpoint("out").empty());
+}
+
 // Nor does one rank that is killed leave the others waiting.
 TEST_F(RanksEnds, AKilledRankEndsAll)
 {
