@@ -135,7 +135,8 @@ Json torn_at_a_corner()
 /// checkpoints are of sound motion; who goes on from one comes to the same end.
 void expect_one_end(const Json &scene, const std::string &words)
 {
-  const std::string name = written(scene, "guarded.json"), within = "exec timeout 60 " + program;
+  const std::string name = written(scene, "guarded.json"),
+                    within = "exec timeout -k 5 60 " + program;
   std::vector<nlohmann::json> records;
   for (const int n : {1, 3}) {
     const std::string run = "on_" + std::to_string(n);
@@ -219,7 +220,7 @@ TEST_F(RanksEnds, ADiskThatRefusesTheLastFilesIsAFailedRun)
       run_shell("exec env FAULTY_DISK_FOLDER=" + out + "/snapshot_0 FAULTY_DISK_ACTION=fail_on" +
                 " FAULTY_DISK_CALL=1 FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) +
                 " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD=" + LIGAMENT_FAULTY_DISK +
-                " timeout 60 " + program + " run " + name + " -n 3 -o " + out);
+                " timeout -k 5 60 " + program + " run " + name + " -n 3 -o " + out);
   EXPECT_EQ(outcome.code, 4) << outcome.errors;
   const auto record = file_json("out/run.json");
   EXPECT_EQ(record["status"], "failed");
@@ -238,8 +239,9 @@ TEST_F(RanksEnds, ASceneOnStandardInputIsRefused)
   ASSERT_EQ(run_ligament("run scene.json -o done").code, 0);
   for (const std::string how :
        {"mpirun -q -n 2 --oversubscribe " + program + " run - -o out",
-        program + " run - -n 2 -o out", program + " resume done -n 2 --scene -"}) {
-    const Outcome outcome = run_shell("exec timeout 60 " + how + " < scene.json");
+        program + " run - -n 2 -o out", program + " resume done -n 2 --scene -"})
+  {
+    const Outcome outcome = run_shell("exec timeout -k 5 60 " + how + " < scene.json");
     EXPECT_EQ(outcome.code, 2) << how;
     EXPECT_NE(outcome.errors.find("reach the first rank alone"), std::string::npos)
         << outcome.errors;
@@ -252,7 +254,11 @@ TEST_F(RanksEnds, WhoeverIgnoresTheEndOfChildren)
   Json scene = scene_of(2, "hexagonal", {20, 20});
   pull(scene, 1, 1, 4e-4);
   written(scene, "scene.json");
-  EXPECT_EQ(run_shell("trap '' CHLD; exec timeout 60 " + program + " run scene.json -n 2 -o out").code,
-            0);
+  const Outcome outcome =
+      run_shell("exec timeout -k 5 60 python3 -c \"import os, signal\n"
+                "signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
+                "os.execv('" +
+                program + "', '" + program + " run scene.json -n 2 -o out'.split())\"");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
 }
 } // namespace
