@@ -15,6 +15,15 @@ class RanksEnds : public OnRanks
 {
 };
 
+/// Ends only when it is asked to.
+Json without_end()
+{
+  Json scene = scene_of(2, "hexagonal", {40, 60});
+  pull(scene, 1, 1, 4e-4);
+  scene["time"]["duration"] = 1e5;
+  return scene;
+}
+
 /// Until the run is well under way.
 void wait_for_rows(const std::string &run)
 {
@@ -27,10 +36,7 @@ void wait_for_rows(const std::string &run)
 // A signal to the program that users started ends all ranks in good order; they can go on.
 TEST_F(RanksEnds, ASignalEndsAllInGoodOrder)
 {
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  written(scene, "scene.json");
+  written(without_end(), "scene.json");
   Process process("exec " + program + " run scene.json -n 2 -o out");
   wait_for_rows("out");
   process.send(SIGTERM);
@@ -59,10 +65,7 @@ std::vector<pid_t> solvers_of(const std::string &scene)
 // Killed, it leaves nobody behind.
 TEST_F(RanksEnds, NobodyOutlivesTheProgram)
 {
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  const std::string name = written(scene, "orphans_of_nobody.json");
+  const std::string name = written(without_end(), "orphans_of_nobody.json");
   Process process("exec " + program + " run " + name + " -n 2 -o out");
   wait_for_rows("out");
   EXPECT_EQ(solvers_of(name).size(), 2u);
@@ -76,10 +79,7 @@ TEST_F(RanksEnds, NobodyOutlivesTheProgram)
 // A scheduler may ask any of them.
 TEST_F(RanksEnds, ASignalToOneRankEndsAllInGoodOrder)
 {
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  const std::string name = written(scene, "one_is_asked.json");
+  const std::string name = written(without_end(), "one_is_asked.json");
   Process process("exec " + program + " run " + name + " -n 3 -o out");
   wait_for_rows("out");
   const auto solvers = solvers_of(name);
@@ -93,10 +93,7 @@ TEST_F(RanksEnds, ASignalToOneRankEndsAllInGoodOrder)
 // Nor does one rank that is killed leave the others waiting.
 TEST_F(RanksEnds, AKilledRankEndsAll)
 {
-  Json scene = scene_of(2, "hexagonal", {40, 60});
-  pull(scene, 1, 1, 4e-4);
-  scene["time"]["duration"] = 1e5;
-  const std::string name = written(scene, "one_is_killed.json");
+  const std::string name = written(without_end(), "one_is_killed.json");
   Process process("exec " + program + " run " + name + " -n 3 -o out");
   wait_for_rows("out");
   const auto solvers = solvers_of(name);
