@@ -102,7 +102,7 @@ public:
   /// the discrete law cannot follow. Without more knowledge the far field's cells turn.
   virtual void set_regime(Regime regime, Bodies<dim> &bodies);
   /// Of the near cells at present.
-  virtual NearMotion largest_motion() const { return {}; }
+  virtual NearMotion<dim> largest_motion() const { return {}; }
 
   // A body in equilibrium, theory.md section 6. Motions are the velocities and spins of the
   // particles and a field of all nodes; forces those of the particles and a field of all nodes.

@@ -90,7 +90,10 @@ public:
   /// Forces that bear some in the reference need a law of finite strain, and no stress there.
   bool can_strain() const override { return can_strain_; }
   /// Of the near cells, in the present state.
-  NearMotion largest_motion() const override { return parts_.largest_motion(near_.displacement()); }
+  NearMotion<dim> largest_motion() const override
+  {
+    return parts_.largest_motion(near_.displacement());
+  }
 
   /// From now on overlap and mesh wait for a wave: the near nodes stand still until the far field
   /// pulls at one of them, or particles within two bonds of the overlap are awake, and the far

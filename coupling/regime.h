@@ -1,6 +1,8 @@
 // How far overlap and far field may move, and how far they do.
 #pragma once
 
+#include "core/largest.h"
+
 #include <string>
 #include <vector>
 
@@ -22,10 +24,11 @@ inline const std::string &name_of(Regime regime)
 }
 
 /// How far the near cells move, at their centres.
+template <int dim>
 struct NearMotion
 {
-  double rotation = 0; // rad, the largest
-  double bending = 0;  // rad, the largest against the rotation of the part
-  double strain = 0;   // the largest |S - 1|
+  Largest<dim> rotation; // rad
+  Largest<dim> bending;  // rad, against the rotation of the part
+  Largest<dim> strain;   // |S - 1|
 };
 } // namespace ligament::coupling

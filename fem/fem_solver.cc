@@ -326,12 +326,15 @@ typename FemSolver<dim>::Motion FemSolver<dim>::largest_motion() const
       continue;
     const CellVectors<dim> gradient = centre_gradients(mesh_, cell);
     Matrix f = Matrix::Identity();
-    for (int a = 0; a < n_cell_nodes<dim>; ++a)
-      f += get(displacement, mesh_.cells[cell][a]) * gradient.col(a).transpose();
+    Vector<dim> centre = Vector<dim>::Zero();
+    for (int a = 0; a < n_cell_nodes<dim>; ++a) {
+      const int node = mesh_.cells[cell][a];
+      f += get(displacement, node) * gradient.col(a).transpose();
+      centre += mesh_.nodes[node] / n_cell_nodes<dim>;
+    }
     const core::PolarRotation<dim> polar(f);
-    largest.rotation = std::max(largest.rotation, polar.angle());
-    largest.strain =
-        std::max(largest.strain, (polar.matrix().transpose() * f - Matrix::Identity()).norm());
+    largest.rotation.take(polar.angle(), centre);
+    largest.strain.take((polar.matrix().transpose() * f - Matrix::Identity()).norm(), centre);
   }
   return largest;
 }

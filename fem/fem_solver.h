@@ -4,6 +4,7 @@
 
 #include "core/dashpots.h"
 #include "core/hyperelastic_law.h"
+#include "core/largest.h"
 #include "core/load.h"
 #include "fem/mesh.h"
 #include "fem/pressed_faces.h"
@@ -56,7 +57,7 @@ public:
   /// Largest rotation in rad and largest strain (2-norm) at the centres of the solver's own cells.
   struct Motion
   {
-    double rotation = 0, strain = 0;
+    Largest<dim> rotation, strain;
   };
   Motion largest_motion() const;
 

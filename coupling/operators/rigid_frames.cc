@@ -40,9 +40,12 @@ RigidFrames<dim>::RigidFrames(const Overlap<dim> &overlap)
   }
   for (const auto &cell : overlap.cells) {
     const Vector<dim> &h = overlap.mesh.cell_size[cell.cell];
-    cells_.push_back(
-        {part_of_root[root(cell.nodes[0])], cell.nodes,
-         fem::shape_gradients<dim>(Vector<dim>::Zero(), h, h / 2) * cell.shape.shares});
+    Vector<dim> centre = Vector<dim>::Zero();
+    for (const int node : overlap.mesh.cells[cell.cell])
+      centre += overlap.mesh.nodes[node] / fem::n_cell_nodes<dim>;
+    cells_.push_back({part_of_root[root(cell.nodes[0])], cell.nodes,
+                      fem::shape_gradients<dim>(Vector<dim>::Zero(), h, h / 2) * cell.shape.shares,
+                      centre});
   }
   for (const auto &part : nodes) {
     Vector<dim> centre = Vector<dim>::Zero();
@@ -78,11 +81,11 @@ std::vector<typename RigidFrames<dim>::Frame> RigidFrames<dim>::frames(const Nod
 }
 
 template <int dim>
-NearMotion RigidFrames<dim>::largest_motion(const Nodal<dim> &u) const
+NearMotion<dim> RigidFrames<dim>::largest_motion(const Nodal<dim> &u) const
 {
   using Matrix = Eigen::Matrix<double, dim, dim>;
   const auto parts = frames(u);
-  NearMotion largest;
+  NearMotion<dim> largest;
   for (const Cell &cell : cells_) {
     Matrix f = Matrix::Identity();
     for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
@@ -90,9 +93,9 @@ NearMotion RigidFrames<dim>::largest_motion(const Nodal<dim> &u) const
     const core::PolarRotation<dim> rotation(f);
     const Matrix &r = rotation.matrix();
     const core::PolarRotation<dim> relative(parts[cell.part].rotation.matrix().transpose() * r);
-    largest.rotation = std::max(largest.rotation, rotation.angle());
-    largest.bending = std::max(largest.bending, relative.angle());
-    largest.strain = std::max(largest.strain, (r.transpose() * f - Matrix::Identity()).norm());
+    largest.rotation.take(rotation.angle(), cell.centre);
+    largest.bending.take(relative.angle(), cell.centre);
+    largest.strain.take((r.transpose() * f - Matrix::Identity()).norm(), cell.centre);
   }
   return largest;
 }

@@ -25,7 +25,7 @@ public:
   /// Of a torque on a part, what turns it.
   Spin<dim> turning(const Spin<dim> &torque) const { return torque.cwiseProduct(free_spin_); }
 
-  NearMotion largest_motion(const Nodal<dim> &u) const;
+  NearMotion<dim> largest_motion(const Nodal<dim> &u) const;
 
   std::vector<std::vector<int>> nodes; // near nodes of each part
   Nodal<dim> position;                 // m, of the nodes from the centre of their part
@@ -37,6 +37,7 @@ private:
     int part;
     std::array<int, fem::n_cell_nodes<dim>> nodes;
     Eigen::Matrix<double, dim, fem::n_cell_nodes<dim>> gradient; // at the centre, 1/m
+    Vector<dim> centre;                                          // m
   };
   std::vector<Cell> cells_;
   Vector<dim> free_;    // per axis 1, 0 where the body repeats itself along it

@@ -15,6 +15,16 @@ std::string grouped(std::int64_t n);
 /// a power (m^2) or none get a power of ten instead.
 std::string quantity(double value, const std::string &unit);
 
+/// "(12.0 mm, -3.00 mm)", of coordinates in m.
+template <typename Coordinates>
+std::string place(const Coordinates &x)
+{
+  std::string text;
+  for (int c = 0; c < int(x.size()); ++c)
+    text += (c ? ", " : "") + quantity(x[c], "m");
+  return "(" + text + ")";
+}
+
 /// "+0.31 %"; "-" when empty.
 std::string percent(const std::optional<double> &fraction);
 

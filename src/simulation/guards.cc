@@ -167,15 +167,6 @@ Finding<dim> agreed(const Finding<dim> &here, const core::Ranks &ranks)
 }
 
 template <int dim>
-std::string place(const Finding<dim> &finding)
-{
-  std::string text;
-  for (int c = 0; c < dim; ++c)
-    text += (c ? ", " : "") + quantity(finding.place[c], "m");
-  return "(" + text + ")";
-}
-
-template <int dim>
 std::string words(const Finding<dim> &finding, double spacing)
 {
   const char *remedy = "lower /time/step_fraction or the load's rate";
@@ -183,19 +174,19 @@ std::string words(const Finding<dim> &finding, double spacing)
   case Fault::fast:
     return fmt::format("the particle from {} moves by {:.2g} spacings in one step, farther than "
                        "the search for contacts sees ahead ({}); {}",
-                       place(finding), finding.much / spacing, largest_way, remedy);
+                       place(finding.place), finding.much / spacing, largest_way, remedy);
   case Fault::far_away:
     return fmt::format("the particle from {} is lost: it has gone {:.2g} spacings, and from {:.0e} "
                        "on rounding spoils what its bonds bear; {}, or end the run earlier",
-                       place(finding), finding.much / spacing, largest_distance, remedy);
+                       place(finding.place), finding.much / spacing, largest_distance, remedy);
   case Fault::inside_out:
     return fmt::format("the cell of the far field at {} is turned inside out; make "
                        "/discrete_zone/region larger, or {}",
-                       place(finding), remedy);
+                       place(finding.place), remedy);
   case Fault::not_finite:
     return fmt::format("the motion of the {} {} is no longer finite: the run is unstable; {}",
                        finding.is_cell ? "cell of the far field at" : "particle from",
-                       place(finding), remedy);
+                       place(finding.place), remedy);
   case Fault::none:
     break;
   }

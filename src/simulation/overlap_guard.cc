@@ -13,18 +13,6 @@ namespace ligament::program
 {
 using particles::Watch;
 
-namespace
-{
-template <int dim>
-std::string place(const Vector<dim> &x)
-{
-  std::string text;
-  for (int c = 0; c < dim; ++c)
-    text += (c ? ", " : "") + quantity(x[c], "m");
-  return "(" + text + ")";
-}
-} // namespace
-
 template <int dim>
 OverlapGuard<dim>::OverlapGuard(const CoupledBody<dim> &body)
 {
@@ -141,7 +129,7 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body,
     return fmt::format("{} in the overlap broke, the first at {}: the mesh there still carries as "
                        "if {} had not; {}",
                        n_broken_ == 1 ? "a face" : grouped(n_broken_) + " faces",
-                       place<dim>(first_broken(body)), n_broken_ == 1 ? "it" : "they", remedy);
+                       place(first_broken(body)), n_broken_ == 1 ? "it" : "they", remedy);
   }
   const auto most = worst_face(body);
   if (!most)
@@ -149,7 +137,7 @@ std::optional<std::string> OverlapGuard<dim>::look(const CoupledBody<dim> &body,
   found_ = true;
   return fmt::format("a face in the overlap bears {:.0f} % of what breaks it, at {}: fracture "
                      "comes near it; {}",
-                     100 * most->share, place<dim>(most->place), remedy);
+                     100 * most->share, place(most->place), remedy);
 }
 
 // Green's strain of the motion at the middle of each cell: a cell that turns is not strained.
@@ -226,8 +214,8 @@ auto OverlapGuard<dim>::look_at_flow(const CoupledBody<dim> &body) -> std::optio
           "{} {} {}, where it stays elastic: it bears {:.0f} % of the stress that makes its "
           "material flow; let /discrete_zone/region contain at least the box from {} to {}",
           found.in_mesh ? "the far field" : "the overlap",
-          found_ ? "would flow at" : "comes near flow at", place<dim>(found.most.place),
-          100 * found.most.share, place<dim>(lower), place<dim>(upper)),
+          found_ ? "would flow at" : "comes near flow at", place(found.most.place),
+          100 * found.most.share, place(lower), place(upper)),
       found_};
 }
 

@@ -1,5 +1,6 @@
 #include "src/simulation/regime_control.h"
 
+#include "src/output/format.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/kept_tables.h"
 
@@ -85,15 +86,15 @@ void RegimeControl<dim>::measure(CoupledBody<dim> &body)
     std::swap(body.far->displacement, mean_);
   struct Seen
   {
-    coupling::NearMotion near;
+    coupling::NearMotion<dim> near;
     typename fem::FemSolver<dim>::Motion far;
   };
   for (const auto &[near, far] : body.ranks.gather_all(std::vector<Seen>{{near_, far_}})) {
-    near_.rotation = std::max(near_.rotation, near.rotation);
-    near_.bending = std::max(near_.bending, near.bending);
-    near_.strain = std::max(near_.strain, near.strain);
-    far_.rotation = std::max(far_.rotation, far.rotation);
-    far_.strain = std::max(far_.strain, far.strain);
+    near_.rotation.take(near.rotation);
+    near_.bending.take(near.bending);
+    near_.strain.take(near.strain);
+    far_.rotation.take(far.rotation);
+    far_.strain.take(far.strain);
   }
 }
 
@@ -108,11 +109,11 @@ void RegimeControl<dim>::set(Regime regime, CoupledBody<dim> &body)
 template <int dim>
 Regime RegimeControl<dim>::needed() const
 {
-  const double strain = has_law_ ? std::max(near_.strain, far_.strain) : near_.strain,
+  const double strain = has_law_ ? this->strain().value : near_.strain.value,
                most = has_law_ ? largest_linear_strain : largest_corotated_strain;
-  if (can_strain_ && (near_.bending > change_at || strain > most))
+  if (can_strain_ && (near_.bending.value > change_at || strain > most))
     return Regime::nonlinear;
-  return std::max(near_.rotation, far_.rotation) > change_at ? Regime::corotated : Regime::linear;
+  return rotation().value > change_at ? Regime::corotated : Regime::linear;
 }
 
 template <int dim>
@@ -126,24 +127,22 @@ double RegimeControl<dim>::largest_allowed_strain() const
 template <int dim>
 std::optional<std::string> RegimeControl<dim>::excess() const
 {
-  const double rotation = std::max(near_.rotation, far_.rotation);
-  const double strain = std::max(near_.strain, far_.strain);
-  if (strain > largest_allowed_strain())
-    return fmt::format("overlap or far field is strained by {:.1f} %, more than its law is for; "
-                       "make /discrete_zone/region larger or end the run earlier",
-                       100 * strain);
-  if (regime_ == Regime::linear && rotation > limit)
-    return fmt::format("overlap or far field has turned by {:.2f} degrees, more than the linear "
-                       "regime carries; {}",
-                       rotation / degree,
+  if (strain().value > largest_allowed_strain())
+    return fmt::format("overlap or far field is strained by {:.1f} % at {}, more than its law is "
+                       "for; make /discrete_zone/region larger or end the run earlier",
+                       100 * strain().value, place(strain().place));
+  if (regime_ == Regime::linear && rotation().value > limit)
+    return fmt::format("overlap or far field has turned by {:.2f} degrees at {}, more than the "
+                       "linear regime carries; {}",
+                       rotation().value / degree, place(rotation().place),
                        can_turn_ ? "set /coupling/regime to \"automatic\""
                                  : "energy-weighted schemes have no other: hold the specimen "
                                    "against rotation or end the run earlier");
   if (regime_ == Regime::corotated &&
-      near_.bending > (can_strain_ ? limit : largest_corotated_bending))
+      near_.bending.value > (can_strain_ ? limit : largest_corotated_bending))
     return fmt::format(
-        "the overlap bends by {:.2f} degrees, more than one rotation carries; {}",
-        near_.bending / degree,
+        "the overlap bends by {:.2f} degrees at {}, more than one rotation carries; {}",
+        near_.bending.value / degree, place(near_.bending.place),
         can_strain_ ? "set /coupling/regime to \"automatic\" or \"nonlinear\""
                     : "overlaps of atoms know no more: make /discrete_zone/region larger or end "
                       "the run earlier");
@@ -171,8 +170,8 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
     history_.emplace_back(regime_, step.time);
     log.info("{} regime from {:.4g} s: rotation {:.2f} degrees, bending {:.2f} degrees, strain "
              "{:.2g}; the energy changes by {:.3g} J",
-             name_of(regime_), step.time, std::max(near_.rotation, far_.rotation) / degree,
-             near_.bending / degree, std::max(near_.strain, far_.strain), jump);
+             name_of(regime_), step.time, rotation().value / degree, near_.bending.value / degree,
+             strain().value, jump);
   }
   if (warned_)
     return {};

@@ -37,6 +37,8 @@ private:
   void set(coupling::Regime regime, CoupledBody<dim> &body);
   void follow(const CoupledBody<dim> &body, double dt);
   void measure(CoupledBody<dim> &body);
+  Largest<dim> rotation() const { return larger(near_.rotation, far_.rotation); } // rad
+  Largest<dim> strain() const { return larger(near_.strain, far_.strain); }
 
   bool can_turn_;   // else the coupler is linear
   bool can_strain_; // else it is linear or turns
@@ -44,7 +46,7 @@ private:
   bool automatic_;
   Components<dim> mean_; // m, displacements of all nodes; none, where they are taken as they are
   coupling::Regime regime_ = coupling::Regime::linear;
-  coupling::NearMotion near_; // at the last look
+  coupling::NearMotion<dim> near_; // at the last look
   typename fem::FemSolver<dim>::Motion far_;
   bool warned_ = false;
   std::vector<std::pair<coupling::Regime, double>> history_; // and since when, s

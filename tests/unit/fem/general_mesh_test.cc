@@ -186,7 +186,7 @@ void check_corotated_patch()
     solver.compute_forces(0);
     EXPECT_LT(largest<dim>(solver.force), 1e-13);
     EXPECT_LT(solver.potential_energy(), 1e-26 * volume(mesh));
-    EXPECT_NEAR(solver.largest_motion().rotation, angle, 1e-12);
+    EXPECT_NEAR(solver.largest_motion().rotation.value, angle, 1e-12);
 
     set_affine<dim>(solver, r * (Matrix<dim>::Identity() + stretch) - Matrix<dim>::Identity());
     solver.compute_forces(0);
@@ -198,7 +198,7 @@ void check_corotated_patch()
     EXPECT_LT(misfit<dim>(solver.force, expected, largest<dim>(expected)), 1e-12);
     EXPECT_NEAR(solver.potential_energy(), volume(mesh) / 2 * stress.cwiseProduct(stretch).sum(),
                 1e-13 * volume(mesh));
-    EXPECT_NEAR(solver.largest_motion().strain, stretch.norm(), 1e-12);
+    EXPECT_NEAR(solver.largest_motion().strain.value, stretch.norm(), 1e-12);
   }
 }
 

@@ -1,12 +1,14 @@
 // Guards end a run on all ranks, whichever of them finds something: at the same step, with the same
 // words and the same place as in one process; what they leave is a checkpoint of sound motion.
 #include "dem/many_body_force.h"
+#include "src/output/format.h"
 #include "src/simulation/guards.h"
 #include "src/simulation/regime_control.h"
 #include "src/simulation/simulation.h"
 #include "tests/support/ranks.h"
 #include "tests/support/small_plate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -220,6 +222,33 @@ TEST(Guards, StrainsBeyondTheLawOfTheFarField)
       mesh.small.deform(Eigen::Vector2d(0, 0.2).asDiagonal());
     const auto found = control.look(mesh.small.body, {0, 0, mesh.small.body.dt}, *mesh.small.log);
     EXPECT_NE(found.value_or("").find("strained by 20.0 %"), std::string::npos);
+  }
+}
+
+TEST(Guards, TheLargestStrainHasAPlace)
+{
+  for (int part = 0; part < ranks().size(); ++part) {
+    OwnMesh mesh;
+    auto &far = *mesh.small.body.far;
+    const auto &cells = far.mesh().cells;
+    std::vector<int> n_cells(far.mesh().n_nodes());
+    for (const auto &cell : cells)
+      for (const int node : cell)
+        ++n_cells[node];
+    const int corner = int(std::find(n_cells.begin(), n_cells.end(), 1) - n_cells.begin());
+    const auto cell = std::find_if(cells.begin(), cells.end(), [&](const auto &of) {
+      return std::find(of.begin(), of.end(), corner) != of.end();
+    });
+    ASSERT_NE(cell, cells.end());
+    Vector<2> middle = Vector<2>::Zero();
+    for (const int node : *cell)
+      middle += far.mesh().nodes[node] / double(cell->size());
+    if (mesh.is_chosen(part))
+      far.displacement[1][corner] = far.mesh().nodes[corner][1] - middle[1];
+    RegimeControl<2> control(RegimeChoice::automatic, mesh.small.body);
+    const auto found = control.look(mesh.small.body, {0, 0, mesh.small.body.dt}, *mesh.small.log);
+    EXPECT_NE(found.value_or("").find(" % at " + place(middle)), std::string::npos)
+        << found.value_or("nothing") << ", " << place(middle);
   }
 }
 } // namespace
