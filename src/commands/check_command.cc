@@ -63,9 +63,10 @@ int check(const CommandLine &line, const ReadResult &input)
   // Predictions are of steps alone; a run with phases skips most of them, and how many nobody
   // knows.
   std::optional<StaticCost> equilibrium;
+  const double body_memory = peak_memory();
   if (scene.time.has_phases())
     equilibrium = static_cost(scene, body);
-  const double memory = peak_memory();
+  const double memory = body_memory + (equilibrium ? equilibrium->memory : 0);
   const long steps = std::lround(std::ceil(scene.time.duration / body.dt));
   const double output = output_seconds(scene, body, steps);
   const double seconds = setup_seconds + steps * cost.seconds_per_step + output;
@@ -95,7 +96,8 @@ int check(const CommandLine &line, const ReadResult &input)
              scene.time.stop_when == StopWhen::end ? "" : ", less if it breaks earlier");
   std::optional<RanksCost> on_ranks;
   if (line.ranks > 1) {
-    on_ranks = ranks_cost(scene, body, line.ranks, cost, memory);
+    on_ranks = ranks_cost(scene, body, line.ranks, cost, body_memory,
+                          equilibrium ? equilibrium->memory : 0);
     fmt::print("{}", to_text(*on_ranks, cost.seconds_per_step));
   }
   double saving = 0;

@@ -1,6 +1,7 @@
 #include "src/commands/check_volumes.h"
 
 #include "core/log.h"
+#include "src/commands/static_cost.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,7 +23,10 @@ double memory_of(const Scene &scene, const SizeEstimate &size)
   const bool plane = scene.dimension == 2, lattice = !scene.zone.is_irregular();
   const double particle = lattice ? (plane ? 550 : 1050) : (plane ? 2300 : 4300);
   const double overlap = plane ? 1000 : 26000, cell = plane ? 420 : 800, program = 1.7e8;
-  return program + particle * size.particles + overlap * size.overlap_particles + cell * size.cells;
+  const double equilibrium =
+      scene.time.has_phases() ? (plane ? 3 : 6) * equilibrium_bytes(scene.dimension) : 0;
+  return program + (particle + equilibrium) * size.particles + overlap * size.overlap_particles +
+         cell * size.cells;
 }
 
 const std::vector<std::string> not_checked = {

@@ -89,7 +89,7 @@ std::vector<std::int64_t> ghosts_of(const CoupledBody<dim> &body,
 
 template <int dim>
 RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks,
-                     const StepCost &cost, double memory)
+                     const StepCost &cost, double memory, double equilibrium_memory)
 {
   const double n = double(body.n_particles);
   const auto partition = particles::make_partition(body.n_particles, ranks);
@@ -120,7 +120,8 @@ RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks
   c.other_memory = empty_rank + whole - of_particles + share * of_particles +
                    double(c.largest_part) * kept_bytes;
   c.whole_at_first = scene.time.has_phases();
-  c.memory = c.other_memory + drawing + n * written_bytes + (c.whole_at_first ? whole : 0);
+  c.memory = c.other_memory + drawing + n * written_bytes +
+             (c.whole_at_first ? whole + equilibrium_memory : 0);
   return c;
 }
 
@@ -145,6 +146,8 @@ std::string to_text(const RanksCost &cost, double seconds_per_step)
   return text;
 }
 
-template RanksCost ranks_cost(const Scene &, const CoupledBody<2> &, int, const StepCost &, double);
-template RanksCost ranks_cost(const Scene &, const CoupledBody<3> &, int, const StepCost &, double);
+template RanksCost ranks_cost(const Scene &, const CoupledBody<2> &, int, const StepCost &, double,
+                              double);
+template RanksCost ranks_cost(const Scene &, const CoupledBody<3> &, int, const StepCost &, double,
+                              double);
 } // namespace ligament::program

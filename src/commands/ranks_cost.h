@@ -17,14 +17,14 @@ struct RanksCost
   bool whole_at_first = false;   // the first one has the whole body besides, for equilibria
 };
 
-/// `cost` and `memory` (bytes) are those of one process. Ranks wait for the largest part; a ghost
-/// costs half of a particle, of its pressures alone; messages of a step pass between neighbours
-/// and, where bonds break or a mesh is there, all. What the mesh takes it takes on every rank, time
-/// and memory: the passes over the members of the overlap, which ranks share, count as its own. The
-/// body is whole.
+/// `cost`, `memory` and that of an equilibrium (bytes) are those of one process. Ranks wait for the
+/// largest part; a ghost costs half of a particle, of its pressures alone; messages of a step pass
+/// between neighbours and, where bonds break or a mesh is there, all. What the mesh takes it takes
+/// on every rank, time and memory: the passes over the members of the overlap, which ranks share,
+/// count as its own. The body is whole.
 template <int dim>
 RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks,
-                     const StepCost &cost, double memory);
+                     const StepCost &cost, double memory, double equilibrium_memory);
 
 /// For the card of `check`.
 std::string to_text(const RanksCost &cost, double seconds_per_step);

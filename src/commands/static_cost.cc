@@ -1,5 +1,6 @@
 #include "src/commands/static_cost.h"
 
+#include "src/commands/peak_memory.h"
 #include "src/output/format.h"
 #include "src/simulation/equilibrium_solver.h"
 
@@ -19,15 +20,19 @@ template <int dim>
 StaticCost static_cost(const Scene &scene, CoupledBody<dim> &body)
 {
   StaticCost cost;
+  const double before = peak_memory();
   EquilibriumSolver<dim> solver(body, preconditioning(scene.time.static_solver));
   cost.unknowns = solver.system().n_unknowns();
-  if (cost.unknowns > most_to_measure)
+  if (cost.unknowns > most_to_measure) {
+    cost.memory = equilibrium_bytes(dim) * double(cost.unknowns);
     return cost;
+  }
   const auto start = std::chrono::steady_clock::now();
   Eigen::VectorXd response;
   if (solver.find_response(0, scene.time.duration, response) ==
       EquilibriumSolver<dim>::End::converged)
     cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  cost.memory = peak_memory() - before;
   return cost;
 }
 
@@ -44,12 +49,18 @@ std::string to_text(const StaticCost &cost, const Scene &scene, double seconds_p
   else
     text += fmt::format("  one equilibrium           unknown: only measured up to {} unknowns\n",
                         grouped(most_to_measure));
+  text += fmt::format("  its memory           {:>12.0f} MiB{}\n", cost.memory / 1048576,
+                      cost.seconds ? ""
+                      : scene.time.static_solver == StaticSolver::cholesky
+                          ? " by multigrid, unknown by cholesky"
+                          : " by count");
   return text;
 }
 
 nlohmann::ordered_json to_json(const StaticCost &cost)
 {
-  nlohmann::ordered_json json = {{"unknowns", cost.unknowns}, {"seconds", nullptr}};
+  nlohmann::ordered_json json = {
+      {"unknowns", cost.unknowns}, {"seconds", nullptr}, {"memory_bytes", cost.memory}};
   if (cost.seconds)
     json["seconds"] = *cost.seconds;
   return json;

@@ -10,12 +10,19 @@
 
 namespace ligament::program
 {
+/// Of each unknown by multigrid: its matrix twice, the levels, vectors; measured (docs/scaling.md).
+constexpr double equilibrium_bytes(int dimension)
+{
+  return dimension == 2 ? 1800 : 3600;
+}
+
 /// How many phases there will be is known to nobody before the bonds break; what one equilibrium
 /// asks for is.
 struct StaticCost
 {
   long unknowns = 0;             // of one equilibrium
   std::optional<double> seconds; // of one solve, set-up included; empty: not measured
+  double memory = 0;             // bytes beside the body; predicted where nothing was measured
 };
 
 /// Solves once. Leaves the body where it is.

@@ -115,6 +115,21 @@ TEST(Program, CheckCountsTheUnknownsOfAnEquilibrium)
   EXPECT_EQ(mesh["equilibrium"]["unknowns"], 2 * 7 * 30 - 7);
 }
 
+// Too large to be solved for a check: at the least, two copies of a matrix of seven blocks a row.
+TEST(Program, CheckCountsTheMemoryOfEquilibria)
+{
+  const std::string check = "check " + scene_file("large_phases.json") + pulled +
+                            "--set /far_field=none --set /specimen/size=[350,350] "
+                            "--set /damping/mass=0.01 --json ";
+  const auto dynamic = ligament(check).json(),
+             phases = ligament(check + "--set /time/loading=static").json();
+  const double unknowns = phases["equilibrium"]["unknowns"];
+  ASSERT_GT(unknowns, 300000);
+  EXPECT_TRUE(phases["equilibrium"]["seconds"].is_null());
+  EXPECT_GT(phases["memory_bytes"].get<double>() - dynamic["memory_bytes"].get<double>(),
+            2 * 7 * 3 * sizeof(double) * unknowns);
+}
+
 TEST(Program, CheckAndCompareEndWithTheFieldsThatScriptsRead)
 {
   const std::string scene = scene_file("check.json");
