@@ -1,5 +1,7 @@
 #include "algebra/multigrid.h"
 
+#include "algebra/inert_unknowns.h"
+#include "algebra/multigrid_settings.h"
 #include "algebra/raised_diagonal.h"
 #include "core/check.h"
 
@@ -7,14 +9,11 @@
 #include <Epetra_Map.h>
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
-#include <Teuchos_ParameterList.hpp>
-#include <ml_MultiLevelPreconditioner.h>
 #include <ml_utils.h>
 #include <mpi.h>
 
 #include <cstdlib>
 #include <limits>
-#include <vector>
 
 namespace ligament::algebra
 {
@@ -97,56 +96,28 @@ private:
   BlockMatrix matrix_;
 };
 
-Teuchos::ParameterList settings(const BlockMatrix &matrix, Eigen::MatrixXd &modes)
-{
-  Teuchos::ParameterList list;
-  ML_Epetra::SetDefaults("SA", list);
-  list.set("ML output", 0);
-  list.set("PDE equations", matrix.block_size());
-  list.set("aggregation: type", "Uncoupled");
-  list.set("smoother: type", "Chebyshev");
-  list.set("smoother: sweeps", 4);
-  list.set("coarse: type", "Amesos-KLU");
-  list.set("null space: type", "pre-computed");
-  list.set("null space: dimension", int(modes.cols()));
-  list.set("null space: vectors", modes.data());
-  list.set("null space: add default vectors", false);
-  return list;
-}
-
 class Multigrid : public Preconditioner
 {
 public:
   Multigrid(const BlockMatrix &matrix, const Eigen::MatrixXd &modes)
       : modes_(modes), communicator_(MPI_COMM_SELF),
         map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
-        levels_(rows_, settings(matrix, modes_), false)
+        levels_(rows_, multigrid_settings(matrix.block_size(), modes_), false), inert_(matrix)
   {
     // Eigenvalues are estimated from a random vector on: the same matrix, the same levels.
     ML_set_random_seed(1);
     core::require<core::EnvironmentError>(levels_.ComputePreconditioner() == 0,
                                           "multigrid: ML cannot make its levels");
-    const Eigen::VectorXd diagonal = matrix.diagonal();
-    for (Eigen::Index k = 0; k < diagonal.size(); ++k)
-      if (diagonal[k] == 0)
-        inert_.push_back(int(k));
   }
 
   void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const override
   {
-    // Coarse functions may reach into inert unknowns: these are passed by, there and back.
-    const bool is_asked = (r(inert_).array() != 0).any();
-    Eigen::VectorXd others;
-    if (is_asked) {
-      others = r;
-      others(inert_).setZero();
-    }
-    z.resize(r.size());
-    const Epetra_Vector right(View, map_, const_cast<double *>((is_asked ? others : r).data()));
-    Epetra_Vector result(View, map_, z.data());
-    const int failed = levels_.ApplyInverse(right, result);
-    core::require<core::EnvironmentError>(failed == 0, "multigrid: ML failed");
-    z(inert_) = r(inert_);
+    inert_.pass_by(r, z, [&](const Eigen::VectorXd &from, Eigen::VectorXd &to) {
+      const Epetra_Vector right(View, map_, const_cast<double *>(from.data()));
+      Epetra_Vector result(View, map_, to.data());
+      const int failed = levels_.ApplyInverse(right, result);
+      core::require<core::EnvironmentError>(failed == 0, "multigrid: ML failed");
+    });
   }
 
   const char *name() const override { return "multigrid"; }
@@ -157,7 +128,7 @@ private:
   Epetra_Map map_;
   Rows rows_;
   ML_Epetra::MultiLevelPreconditioner levels_;
-  std::vector<int> inert_; // unknowns without entries
+  InertUnknowns inert_;
 };
 } // namespace
 

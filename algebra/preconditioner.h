@@ -3,6 +3,7 @@
 #pragma once
 
 #include "algebra/block_matrix.h"
+#include "core/ranks.h"
 
 #include <memory>
 
@@ -10,9 +11,10 @@ namespace ligament::algebra
 {
 enum class Preconditioning
 {
-  automatic, // Cholesky up to most_unknowns_to_factorise, multigrid above
-  cholesky,  // supernodal, of CHOLMOD
-  multigrid  // smoothed aggregation, of Trilinos ML
+  automatic,         // Cholesky up to most_unknowns_to_factorise, multigrid above
+  cholesky,          // supernodal, of CHOLMOD
+  multigrid,         // smoothed aggregation, of Trilinos ML
+  parallel_multigrid // the same, its levels shared out among ranks
 };
 
 /// Where set-up and some ten solves take equally long (bench/algebra.cc, reference BLAS).
@@ -37,7 +39,9 @@ public:
 /// entries (held components, rotations that nodes lack) keep what they are given. modes: near null
 /// space (rigid motions), one column each, n_rows * block_size long; multigrid needs them.
 /// dimension: 2 or 3, of space. Throws core::EnvironmentError where the matrix isn't positive
-/// definite (Cholesky) or the library fails.
+/// definite (Cholesky) or the library fails. helpers: of parallel_multigrid, whose first rank this
+/// is (algebra/parallel_multigrid.h); by one process it is multigrid.
 std::unique_ptr<Preconditioner> make_preconditioner(Preconditioning kind, const BlockMatrix &matrix,
-                                                    const Eigen::MatrixXd &modes, int dimension);
+                                                    const Eigen::MatrixXd &modes, int dimension,
+                                                    const core::Ranks &helpers = {});
 } // namespace ligament::algebra

@@ -110,7 +110,8 @@ enum class StaticSolver
 {
   automatic,
   cholesky,
-  multigrid
+  multigrid,
+  parallel_multigrid // by all ranks
 };
 
 /// What a load prescribes.
@@ -222,7 +223,8 @@ inline const std::vector<std::string> &words(Loading)
 
 inline const std::vector<std::string> &words(StaticSolver)
 {
-  static const std::vector<std::string> list = {"automatic", "cholesky", "multigrid"};
+  static const std::vector<std::string> list = {"automatic", "cholesky", "multigrid",
+                                                "parallel_multigrid"};
   return list;
 }
 

@@ -374,7 +374,7 @@ void declare_time(Section &s, TimeParameters &t)
   s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)", words(StopWhen()));
   s.add("loading", t.loading, "dynamic: by time steps all the way; static: by equilibria up to the load at which the next bond breaks, with time steps from there until the body is calm again; sequential: by equilibria alone, bond by bond, without dynamics", words(Loading()));
   s.add("calm", t.calm, "for loading static: transits of a shear wave through the discrete zone without a break after which time steps may end; they go on while the kinetic energy is above 1 % of the potential one, up to 50 transits").above(0).at_most(50).usually(2, 30, "");
-  s.add("static_solver", t.static_solver, "for loading static and sequential: what the equilibria are solved with; automatic: cholesky for small bodies in 2D, multigrid for all others", words(StaticSolver()));
+  s.add("static_solver", t.static_solver, "for loading static and sequential: what the equilibria are solved with; automatic: cholesky for small bodies in 2D, multigrid for all others; parallel_multigrid: its levels on all ranks, where others leave equilibria to the first one: faster, but results are no longer those of one process to the last bit", words(StaticSolver()));
 }
 
 void declare_picture(Section &s, PictureParameters &p)

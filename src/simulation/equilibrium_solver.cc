@@ -74,14 +74,17 @@ algebra::Preconditioning preconditioning(StaticSolver solver)
     return algebra::Preconditioning::cholesky;
   case StaticSolver::multigrid:
     return algebra::Preconditioning::multigrid;
+  case StaticSolver::parallel_multigrid:
+    return algebra::Preconditioning::parallel_multigrid;
   default:
     return algebra::Preconditioning::automatic;
   }
 }
 
 template <int dim>
-EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind)
-    : body_(body), kind_(kind), system_(body)
+EquilibriumSolver<dim>::EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind,
+                                          core::Ranks helpers)
+    : body_(body), kind_(kind), helpers_(std::move(helpers)), system_(body)
 {
   core::require(!body.zone || body.force()->has_trials(),
                 "/time/loading: this force has no equilibrium to be sought; choose \"dynamic\"");
@@ -114,7 +117,7 @@ void EquilibriumSolver<dim>::prepare()
   for (double penalty = 1;; penalty *= 10)
     try {
       preconditioner_ = algebra::make_preconditioner(kind_, system_.near_stiffness(penalty),
-                                                     system_.rigid_motions(), dim);
+                                                     system_.rigid_motions(), dim, helpers_);
       return;
     } catch (const core::EnvironmentError &) {
       if (penalty > 100)

@@ -26,8 +26,9 @@ public:
     indefinite // nothing resists a motion, or it helps it: the body no longer carries
   };
 
-  /// The body must outlive it and have trials.
-  EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind);
+  /// The body must outlive it and have trials. helpers: see algebra::make_preconditioner().
+  EquilibriumSolver(CoupledBody<dim> &body, algebra::Preconditioning kind,
+                    core::Ranks helpers = {});
 
   /// What may stay out of balance, of the largest load: work and energy lack the square of it.
   static constexpr double exact = 1e-9;
@@ -82,6 +83,7 @@ private:
 
   CoupledBody<dim> &body_;
   algebra::Preconditioning kind_;
+  core::Ranks helpers_;
   StaticSystem<dim> system_;
   Eigen::MatrixXd free_motions_, free_forces_; // columns; each force works on its own motion alone
   Eigen::MatrixXd free_shares_;                // of the rigid motions that the first are made of

@@ -1,5 +1,6 @@
 // How a run goes on with another body: after a checkpoint, cut anew, or with equilibria solved for
 // by one of several ranks.
+#include "algebra/parallel_multigrid.h"
 #include "core/check.h"
 #include "core/ranks_state.h"
 #include "core/version.h"
@@ -182,16 +183,19 @@ bool Simulation<dim>::skip_steps_at_first()
   core::Log nothing_new;
   std::map<std::string, core::State> told;
   const auto copies = kept_copies();
+  const bool is_helped = scene_.time.static_solver == StaticSolver::parallel_multigrid;
   recorder_.wait(); // what it writes is part of the state
   if (ranks_.is_first()) {
     const core::State run = run_state();
     take_over(make_body<dim>(scene_, nothing_new, timers_, reference_, make_force_),
               *before_forces_, run);
     recorder_.load_copies(run, copies, body_);
-    phases_ = StaticPhases<dim>(scene_, body_, log_);
+    phases_ = StaticPhases<dim>(scene_, body_, log_, is_helped ? ranks_ : core::Ranks());
     phases_.load(run);
     compute_forces();
     ends_elsewhere_ = !look_around(true);
+    if (is_helped)
+      algebra::dismiss_servers(ranks_);
     if (!ends_elsewhere_) {
       take_step();
       recorder_.wait();
@@ -200,7 +204,8 @@ bool Simulation<dim>::skip_steps_at_first()
       for (auto &[name, copy] : kept_copies())
         told["kept " + name] = std::move(copy);
     }
-  }
+  } else if (is_helped)
+    algebra::serve_multigrid(ranks_);
   told = core::from_first(told, ranks_);
   if (told.empty()) {
     ends_elsewhere_ = !ranks_.is_first();

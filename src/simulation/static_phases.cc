@@ -119,12 +119,12 @@ struct StaticPhases<dim>::Work
 {
   using End = typename EquilibriumSolver<dim>::End;
 
-  Work(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+  Work(const Scene &scene, CoupledBody<dim> &body, core::Log &log, const core::Ranks &helpers)
       : loading(scene.time.loading), calm(scene.time.calm), log(log), machine(body),
         transit(largest_extent(body) / shear_wave_speed(body)), ratio(body.coupler->step_ratio())
   {
     if (body.ranks.is_one())
-      solver.emplace(body, preconditioning(scene.time.static_solver));
+      solver.emplace(body, preconditioning(scene.time.static_solver), helpers);
   }
 
   bool looks(const Clock &clock) const;
@@ -166,11 +166,12 @@ struct StaticPhases<dim>::Work
 };
 
 template <int dim>
-StaticPhases<dim>::StaticPhases(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
+StaticPhases<dim>::StaticPhases(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
+                                const core::Ranks &helpers)
 {
   if (!scene.time.has_phases())
     return;
-  work_ = std::make_unique<Work>(scene, body, log);
+  work_ = std::make_unique<Work>(scene, body, log, helpers);
 }
 
 template <int dim>
@@ -305,8 +306,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     dynamic_since = clock.now.step;
     dynamic_began = std::chrono::steady_clock::now();
     broken_then = n_broken(body);
-    log.info("static phase to {:.6g} s: {} ({} solves, {} iterations, {} faces broken)",
-             clock.now.time, text_of(reason), phase.solves, phase.iterations, phase.broken);
+    log.info("static phase to {:.6g} s: {} ({} solves by {}, {} iterations, {} faces broken)",
+             clock.now.time, text_of(reason), phase.solves, solver->preconditioner(),
+             phase.iterations, phase.broken);
   };
   const auto failed = [&](End end) {
     log.warning("at {:.4g} s {}: the run goes on by steps", clock.now.time,

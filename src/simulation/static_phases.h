@@ -21,8 +21,10 @@ public:
   /// or nothing.
   using Look = std::function<std::optional<Stop>()>;
 
-  /// The body must outlive it. Nothing where the scene's loading is dynamic.
-  StaticPhases(const Scene &scene, CoupledBody<dim> &body, core::Log &log);
+  /// The body must outlive it. Nothing where the scene's loading is dynamic. helpers: see
+  /// algebra::make_preconditioner().
+  StaticPhases(const Scene &scene, CoupledBody<dim> &body, core::Log &log,
+               const core::Ranks &helpers = {});
   ~StaticPhases();
   StaticPhases(StaticPhases &&) noexcept;
   StaticPhases &operator=(StaticPhases &&) noexcept;

@@ -285,6 +285,33 @@ TEST_F(RanksCoupled, CutAnewBetweenEquilibria)
   expect_the_same_when_cut_anew(3, calm_until_it_breaks(), 100, 10);
 }
 
+// To the tolerance of equilibria: up to the first broken bond, behind which such differences grow.
+TEST_F(RanksCoupled, EquilibriaByAllRanks)
+{
+  Json scene = calm_until_it_breaks();
+  scene["specimen"]["size"] = {50, 120};
+  scene["discrete_zone"]["region"] = {{"lower", {nullptr, -32}}, {"upper", {nullptr, 32}}};
+  scene["time"]["duration"] = 1200;
+  written(scene, "scene.json");
+  ASSERT_EQ(run_ligament("run scene.json -o by_one").code, 0);
+  for (const int n : {2, 3}) {
+    const std::string run = fmt::format("by_{}", n);
+    const Outcome outcome = run_ligament(fmt::format(
+        "run scene.json -n {} --set /time/static_solver=parallel_multigrid -o {}", n, run));
+    ASSERT_EQ(outcome.code, 0) << outcome.errors;
+    const auto wanted = file_json("by_one/run.json")["phases"],
+               found = file_json(run + "/run.json")["phases"];
+    ASSERT_GE(wanted.size(), 2u);
+    ASSERT_GE(found.size(), 2u);
+    EXPECT_EQ(found[0]["reason"], wanted[0]["reason"]);
+    EXPECT_EQ(found[0]["end"], wanted[0]["end"]);
+    EXPECT_NEAR(found[0]["load"].get<double>(), wanted[0]["load"].get<double>(),
+                1e-8 * wanted[0]["load"].get<double>());
+    EXPECT_LT(found[0]["iterations"].get<double>(), 1.5 * wanted[0]["iterations"].get<double>());
+    EXPECT_NE(file_text(run + "/run.log").find("parallel multigrid"), std::string::npos);
+  }
+}
+
 /// Faces soften over some spacings.
 Json softening(Json scene)
 {

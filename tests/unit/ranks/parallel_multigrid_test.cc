@@ -1,0 +1,125 @@
+// Multigrid by several ranks solves what one process solves, in about as many iterations.
+#include "algebra/conjugate_gradients.h"
+#include "algebra/parallel_multigrid.h"
+#include "tests/support/lattice_body.h"
+#include "tests/support/ranks.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+using namespace ligament;
+using algebra::Preconditioning;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::ranks;
+
+/// The first rank acts while the others serve it.
+template <typename Act>
+void while_others_serve(Act &&act)
+{
+  if (!ranks().is_first()) {
+    algebra::serve_multigrid(ranks());
+    return;
+  }
+  act();
+  algebra::dismiss_servers(ranks());
+}
+
+/// Held on one side; so many particles besides that nothing is tied to.
+struct System
+{
+  System(const test::LatticeBody &body, int n_loose)
+  {
+    algebra::BlockAssembly assembly(body.n() + n_loose, body.block_size());
+    for (const auto &term : body.terms())
+      assembly.announce(term.members.data(), int(term.members.size()));
+    assembly.close();
+    for (const auto &term : body.terms())
+      assembly.add(term.members.data(), int(term.members.size()), term.entries->data());
+    const MatrixXd ground = MatrixXd::Identity(body.block_size(), body.block_size());
+    for (int i = 0; i < body.n(); ++i)
+      if (body.position()[i][1] < 0.1)
+        assembly.add_block(i, i, ground.data());
+    matrix = assembly.take();
+    modes.setZero(matrix.n_unknowns(), body.modes().cols());
+    modes.topRows(body.modes().rows()) = body.modes();
+    n_loose_unknowns = n_loose * body.block_size();
+  }
+
+  VectorXd right() const
+  {
+    VectorXd f = VectorXd::Random(matrix.n_unknowns());
+    f.tail(n_loose_unknowns).setZero();
+    return f;
+  }
+
+  algebra::CgResult solve(const algebra::Preconditioner &near, const VectorXd &f, VectorXd &x) const
+  {
+    x.resize(0);
+    return algebra::conjugate_gradients(
+        [&](const VectorXd &p, VectorXd &ap) { matrix.multiply(p, ap); },
+        [&](const VectorXd &r, VectorXd &z) { near.apply(r, z); }, f, x, 1e-11 * f.norm(), 300);
+  }
+
+  algebra::BlockMatrix matrix;
+  MatrixXd modes;
+  int n_loose_unknowns;
+};
+
+void expect_the_same_solution(const test::LatticeBody &body, int dim)
+{
+  while_others_serve([&] {
+    for (const int n_loose : {0, 7}) { // levels are made anew
+      const System system(body, n_loose);
+      const auto one = algebra::make_preconditioner(Preconditioning::multigrid, system.matrix,
+                                                    system.modes, dim);
+      const auto all = algebra::make_preconditioner(Preconditioning::parallel_multigrid,
+                                                    system.matrix, system.modes, dim, ranks());
+      EXPECT_STREQ(all->name(), ranks().is_one() ? "multigrid" : "parallel multigrid");
+      for (int load = 0; load < 2; ++load) {
+        const VectorXd f = system.right();
+        VectorXd x, y;
+        const auto by_one = system.solve(*one, f, x), by_all = system.solve(*all, f, y);
+        EXPECT_EQ(by_one.end, algebra::CgResult::End::converged);
+        EXPECT_EQ(by_all.end, algebra::CgResult::End::converged);
+        EXPECT_LE(by_all.iterations, 1.3 * by_one.iterations);
+        EXPECT_LT((y - x).norm(), 1e-8 * x.norm());
+      }
+      VectorXd r = VectorXd::Random(system.matrix.n_unknowns()), z;
+      all->apply(r, z);
+      EXPECT_EQ(z.tail(system.n_loose_unknowns), r.tail(system.n_loose_unknowns));
+      const VectorXd before = z;
+      all->apply(r, z);
+      EXPECT_EQ(z, before);
+      r.tail(system.n_loose_unknowns).setZero();
+      all->apply(r, z);
+      EXPECT_EQ(z.head(z.size() - system.n_loose_unknowns),
+                before.head(z.size() - system.n_loose_unknowns));
+    }
+  });
+}
+
+TEST(ParallelMultigrid, OfAPlate)
+{
+  expect_the_same_solution(test::LatticeBody(2, true, {60, 80}), 2);
+}
+
+TEST(ParallelMultigrid, OfABlock)
+{
+  expect_the_same_solution(test::LatticeBody(3, true, {8, 12, 12}), 3);
+}
+
+TEST(ParallelMultigrid, SmallOnesAreLeftToTheFirstRank)
+{
+  while_others_serve([] {
+    const System system(test::LatticeBody(2, true, {20, 20}), 0);
+    const auto near = algebra::make_preconditioner(Preconditioning::parallel_multigrid,
+                                                   system.matrix, system.modes, 2, ranks());
+    EXPECT_STREQ(near->name(), "multigrid");
+    const VectorXd f = system.right();
+    VectorXd x;
+    EXPECT_EQ(system.solve(*near, f, x).end, algebra::CgResult::End::converged);
+  });
+}
+} // namespace
