@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ligament::algebra
@@ -15,6 +16,15 @@ class BlockMatrix
 {
 public:
   BlockMatrix() = default;
+
+  /// Some rows of such a matrix. Their columns are numbered otherwise, those of the rows themselves
+  /// first; other columns have no rows here, and x in A x is longer than y.
+  BlockMatrix(int block_size, std::vector<std::int64_t> row_start, std::vector<int> column,
+              core::LargeArray value)
+      : block_size_(block_size), row_start_(std::move(row_start)), column_(std::move(column)),
+        value_(std::move(value))
+  {
+  }
 
   int block_size() const { return block_size_; }
   int n_rows() const { return int(row_start_.size()) - 1; } // of blocks

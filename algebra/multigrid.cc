@@ -1,11 +1,10 @@
 #include "algebra/multigrid.h"
 
+#include "algebra/epetra_rows.h"
 #include "algebra/inert_unknowns.h"
 #include "algebra/multigrid_settings.h"
-#include "algebra/raised_diagonal.h"
 #include "core/check.h"
 
-#include <Epetra_BasicRowMatrix.h>
 #include <Epetra_Map.h>
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
@@ -43,65 +42,12 @@ void need_mpi()
   });
 }
 
-/// The rows of a block matrix, raised on the diagonal, as Trilinos asks for them.
-class Rows : public Epetra_BasicRowMatrix
-{
-public:
-  Rows(const BlockMatrix &matrix, const Epetra_Map &map)
-      : Epetra_BasicRowMatrix(map.Comm()), matrix_(matrix.copy())
-  {
-    SetMaps(map, map);
-    matrix_.for_each_diagonal([](double &entry) { entry = raised(entry); });
-  }
-
-  int NumMyRowEntries(int row, int &n) const override
-  {
-    const int b = matrix_.block_size();
-    n = b * int(matrix_.row_start()[row / b + 1] - matrix_.row_start()[row / b]);
-    return 0;
-  }
-
-  int ExtractMyRowCopy(int row, int length, int &n, double *values, int *columns) const override
-  {
-    NumMyRowEntries(row, n);
-    if (n > length)
-      return -1;
-    const int b = matrix_.block_size(), r = row % b;
-    for (auto k = matrix_.row_start()[row / b]; k < matrix_.row_start()[row / b + 1]; ++k)
-      for (int c = 0; c < b; ++c) {
-        *values++ = matrix_.value()[k * b * b + r * b + c];
-        *columns++ = matrix_.column()[k] * b + c;
-      }
-    return 0;
-  }
-
-  int Multiply(bool, const Epetra_MultiVector &x, Epetra_MultiVector &y) const override
-  {
-    for (int k = 0; k < x.NumVectors(); ++k)
-      matrix_.multiply(x[k], y[k]);
-    return 0;
-  }
-
-  int ExtractDiagonalCopy(Epetra_Vector &diagonal) const override
-  {
-    Eigen::Map<Eigen::VectorXd>(diagonal.Values(), diagonal.MyLength()) = matrix_.diagonal();
-    return 0;
-  }
-
-  // Entry by entry: only Epetra's own loops ask, which are replaced above.
-  int ExtractMyEntryView(int, double *&, int &, int &) override { return -1; }
-  int ExtractMyEntryView(int, double const *&, int &, int &) const override { return -1; }
-
-private:
-  BlockMatrix matrix_;
-};
-
 class Multigrid : public Preconditioner
 {
 public:
   Multigrid(const BlockMatrix &matrix, const Eigen::MatrixXd &modes)
       : modes_(modes), communicator_(MPI_COMM_SELF),
-        map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix, map_),
+        map_(int(matrix.n_unknowns()), 0, communicator_), rows_(matrix.copy(), map_),
         levels_(rows_, multigrid_settings(matrix.block_size(), modes_), false), inert_(matrix)
   {
     // Eigenvalues are estimated from a random vector on: the same matrix, the same levels.
@@ -126,7 +72,7 @@ private:
   Eigen::MatrixXd modes_; // ML keeps a pointer
   Epetra_MpiComm communicator_;
   Epetra_Map map_;
-  Rows rows_;
+  EpetraRows rows_;
   ML_Epetra::MultiLevelPreconditioner levels_;
   InertUnknowns inert_;
 };

@@ -1,19 +1,21 @@
 #include "algebra/parallel_multigrid.h"
 
+#include "algebra/epetra_rows.h"
 #include "algebra/inert_unknowns.h"
 #include "algebra/multigrid.h"
 #include "algebra/multigrid_settings.h"
-#include "algebra/raised_diagonal.h"
 #include "core/check.h"
 
-#include <Epetra_CrsMatrix.h>
 #include <Epetra_Map.h>
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
 #include <ml_utils.h>
 #include <mpi.h>
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace ligament::algebra
@@ -52,37 +54,71 @@ struct Piece
   std::int64_t n_all = 0;              // unknowns, of all pieces
   std::vector<std::int64_t> row_start; // one more entry than block rows
   std::vector<int> column;             // of each block, in the whole matrix
-  std::vector<double> value;           // block_size^2 of each block, row-major
+  core::LargeArray value;              // block_size^2 of each block, row-major
   Eigen::MatrixXd modes;               // of its unknowns
 
-  int n_unknowns() const { return int(row_start.size() - 1) * block_size; }
+  explicit Piece(const Request &of)
+      : block_size(int(of.block_size)), n_all(of.n_all), row_start(std::size_t(of.n_rows + 1)),
+        column(std::size_t(of.n_blocks)),
+        value(std::size_t(of.n_blocks * of.block_size * of.block_size), true),
+        modes(of.n_rows * of.block_size, of.n_modes)
+  {
+  }
+
+  /// fill(data, bytes) for each of its arrays, in the order of Cut.
+  template <typename Fill>
+  void for_each_array(Fill &&fill)
+  {
+    const std::size_t n_values = column.size() * std::size_t(block_size * block_size);
+    fill(row_start.data(), row_start.size() * sizeof(std::int64_t));
+    fill(column.data(), column.size() * sizeof(int));
+    fill(value.data(), n_values * sizeof(double));
+    fill(modes.data(), std::size_t(modes.size()) * sizeof(double));
+  }
+
+  int n_rows() const { return int(row_start.size()) - 1; }
 };
 
-Piece cut(const BlockMatrix &matrix, const Eigen::MatrixXd &modes, int rank, int n_ranks)
+/// The same where it stands in the whole: arrays in place of copies.
+class Cut
 {
-  const int b = matrix.block_size(), begin = first_row(matrix.n_rows(), rank, n_ranks),
-            end = first_row(matrix.n_rows(), rank + 1, n_ranks);
-  const auto &start = matrix.row_start();
-  Piece piece;
-  piece.block_size = b;
-  piece.n_all = matrix.n_unknowns();
-  for (int row = begin; row <= end; ++row)
-    piece.row_start.push_back(start[row] - start[begin]);
-  piece.column.assign(matrix.column().begin() + start[begin], matrix.column().begin() + start[end]);
-  piece.value.assign(matrix.value() + start[begin] * b * b, matrix.value() + start[end] * b * b);
-  piece.modes = modes.middleRows(std::int64_t(begin) * b, std::int64_t(end - begin) * b);
-  return piece;
-}
+public:
+  Cut(const BlockMatrix &matrix, const Eigen::MatrixXd &modes, int rank, int n_ranks)
+      : matrix_(matrix), modes_(modes), begin_(first_row(matrix.n_rows(), rank, n_ranks)),
+        end_(first_row(matrix.n_rows(), rank + 1, n_ranks))
+  {
+  }
 
-/// `visit(data, bytes)` for each array of it, in one order.
-template <typename P, typename Visit>
-void for_each_array(P &piece, Visit &&visit)
-{
-  visit(piece.row_start.data(), piece.row_start.size() * sizeof(std::int64_t));
-  visit(piece.column.data(), piece.column.size() * sizeof(int));
-  visit(piece.value.data(), piece.value.size() * sizeof(double));
-  visit(piece.modes.data(), std::size_t(piece.modes.size()) * sizeof(double));
-}
+  Request request() const
+  {
+    return {Task::make, matrix_.n_unknowns(), end_ - begin_,
+            n_blocks(), matrix_.block_size(), modes_.cols()};
+  }
+
+  /// take(data, bytes) with each of its arrays.
+  template <typename Take>
+  void for_each_array(Take &&take) const
+  {
+    const int b = matrix_.block_size();
+    const auto &start = matrix_.row_start();
+    std::vector<std::int64_t> row_start(start.begin() + begin_, start.begin() + end_ + 1);
+    for (std::int64_t &k : row_start)
+      k -= start[begin_];
+    const Eigen::MatrixXd modes =
+        modes_.middleRows(std::int64_t(begin_) * b, std::int64_t(end_ - begin_) * b);
+    take(row_start.data(), row_start.size() * sizeof(std::int64_t));
+    take(matrix_.column().data() + start[begin_], std::size_t(n_blocks()) * sizeof(int));
+    take(matrix_.value() + start[begin_] * b * b, std::size_t(n_blocks() * b * b) * sizeof(double));
+    take(modes.data(), std::size_t(modes.size()) * sizeof(double));
+  }
+
+  std::int64_t n_blocks() const { return matrix_.row_start()[end_] - matrix_.row_start()[begin_]; }
+
+private:
+  const BlockMatrix &matrix_;
+  const Eigen::MatrixXd &modes_;
+  int begin_, end_;
+};
 
 /// From the first rank, the same for all others.
 void ask(const core::Ranks &ranks, Task task)
@@ -104,45 +140,64 @@ Request next_request(const core::Ranks &ranks)
 
 Piece receive_piece(const core::Ranks &ranks, const Request &of)
 {
-  Piece piece;
-  piece.block_size = int(of.block_size);
-  piece.n_all = of.n_all;
-  piece.row_start.resize(std::size_t(of.n_rows + 1));
-  piece.column.resize(std::size_t(of.n_blocks));
-  piece.value.resize(std::size_t(of.n_blocks * of.block_size * of.block_size));
-  piece.modes.resize(of.n_rows * of.block_size, of.n_modes);
-  for_each_array(piece, [&](void *data, std::size_t bytes) {
+  Piece piece(of);
+  piece.for_each_array([&](void *data, std::size_t bytes) {
     ranks.exchange({}, {{0, data, bytes}});
   });
   return piece;
 }
 
-std::unique_ptr<Epetra_CrsMatrix> epetra_matrix(const Piece &piece, const Epetra_Map &map)
+Piece copy_of(const Cut &cut)
 {
-  const int b = piece.block_size, n_rows = int(piece.row_start.size()) - 1;
-  std::vector<int> n_entries;
-  for (int row = 0; row < n_rows; ++row)
-    n_entries.insert(n_entries.end(), b, b * int(piece.row_start[row + 1] - piece.row_start[row]));
-  auto matrix = std::make_unique<Epetra_CrsMatrix>(Copy, map, n_entries.data(), true);
-  std::vector<int> columns;
-  std::vector<double> values;
-  for (int unknown = 0; unknown < n_rows * b; ++unknown) {
-    const int row = unknown / b, global = map.MinMyGID() + unknown;
-    columns.clear();
-    values.clear();
-    for (auto k = piece.row_start[row]; k < piece.row_start[row + 1]; ++k)
-      for (int c = 0; c < b; ++c) {
-        const double entry = piece.value[std::size_t((k * b + unknown % b) * b + c)];
-        columns.push_back(piece.column[std::size_t(k)] * b + c);
-        values.push_back(columns.back() == global ? raised(entry) : entry);
-      }
-    const int failed =
-        matrix->InsertGlobalValues(global, int(values.size()), values.data(), columns.data());
-    core::require<core::EnvironmentError>(failed >= 0, "multigrid: Epetra takes no more entries");
-  }
-  core::require<core::EnvironmentError>(matrix->FillComplete() == 0,
-                                        "multigrid: Epetra cannot share the matrix");
-  return matrix;
+  Piece piece(cut.request());
+  std::vector<void *> to;
+  piece.for_each_array([&](void *data, std::size_t) { to.push_back(data); });
+  std::size_t k = 0;
+  cut.for_each_array([&](const void *data, std::size_t bytes) {
+    if (bytes > 0)
+      std::memcpy(to[k], data, bytes);
+    ++k;
+  });
+  return piece;
+}
+
+/// Numbers its columns as they are at hand: its own first, then others, which are returned by their
+/// numbers in the whole.
+std::vector<int> number_columns(Piece &piece, int first_row)
+{
+  const auto is_own = [&](int column) {
+    return first_row <= column && column < first_row + piece.n_rows();
+  };
+  std::vector<int> others;
+  for (const int column : piece.column)
+    if (!is_own(column))
+      others.push_back(column);
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  for (int &column : piece.column)
+    column = is_own(column)
+                 ? column - first_row
+                 : piece.n_rows() +
+                       int(std::lower_bound(others.begin(), others.end(), column) - others.begin());
+  return others;
+}
+
+/// The unknowns of its columns, which it numbers.
+Epetra_Map columns_of(Piece &piece, const Epetra_Map &rows)
+{
+  const int b = piece.block_size, first = rows.MinMyGID() / b;
+  std::vector<int> unknowns(rows.NumMyElements());
+  std::iota(unknowns.begin(), unknowns.end(), first * b);
+  for (const int column : number_columns(piece, first))
+    for (int c = 0; c < b; ++c)
+      unknowns.push_back(column * b + c);
+  return Epetra_Map(-1, int(unknowns.size()), unknowns.data(), 0, rows.Comm());
+}
+
+BlockMatrix matrix_of(Piece &piece)
+{
+  return BlockMatrix(piece.block_size, std::move(piece.row_start), std::move(piece.column),
+                     std::move(piece.value));
 }
 
 /// One rank's part of the levels. All ranks make theirs and apply it together.
@@ -150,9 +205,11 @@ class Levels
 {
 public:
   explicit Levels(Piece piece)
-      : communicator_(MPI_COMM_WORLD), map_(int(piece.n_all), piece.n_unknowns(), 0, communicator_),
-        modes_(std::move(piece.modes)), matrix_(epetra_matrix(piece, map_)),
-        levels_(*matrix_, multigrid_settings(piece.block_size, modes_), false)
+      : communicator_(MPI_COMM_WORLD),
+        map_(int(piece.n_all), piece.n_rows() * piece.block_size, 0, communicator_),
+        columns_(columns_of(piece, map_)), modes_(std::move(piece.modes)),
+        rows_(matrix_of(piece), map_, columns_),
+        levels_(rows_, multigrid_settings(piece.block_size, modes_), false)
   {
     // Eigenvalues are estimated from a random vector on: the same matrix, the same levels.
     ML_set_random_seed(1);
@@ -172,9 +229,9 @@ public:
 
 private:
   Epetra_MpiComm communicator_;
-  Epetra_Map map_;
+  Epetra_Map map_, columns_;
   Eigen::MatrixXd modes_; // ML keeps a pointer
-  std::unique_ptr<Epetra_CrsMatrix> matrix_;
+  EpetraRows rows_;
   ML_Epetra::MultiLevelPreconditioner levels_;
 };
 
@@ -189,8 +246,8 @@ public:
     for (int rank = 0; rank <= ranks.size(); ++rank)
       begins_.push_back(std::int64_t(first_row(matrix.n_rows(), rank, ranks.size())) * b);
     for (int rank = 1; rank < ranks.size(); ++rank)
-      send(cut(matrix, modes, rank, ranks.size()), rank);
-    levels_.emplace(cut(matrix, modes, 0, ranks.size()));
+      send(Cut(matrix, modes, rank, ranks.size()), rank);
+    levels_.emplace(copy_of(Cut(matrix, modes, 0, ranks.size())));
   }
 
   void apply(const Eigen::VectorXd &r, Eigen::VectorXd &z) const override
@@ -213,16 +270,11 @@ public:
   const char *name() const override { return "parallel multigrid"; }
 
 private:
-  void send(const Piece &piece, int rank) const
+  void send(const Cut &cut, int rank) const
   {
-    const Request request = {Task::make,
-                             piece.n_all,
-                             std::int64_t(piece.row_start.size()) - 1,
-                             std::int64_t(piece.column.size()),
-                             piece.block_size,
-                             piece.modes.cols()};
+    const Request request = cut.request();
     ranks_.exchange({{rank, &request, sizeof request}}, {});
-    for_each_array(piece, [&](const void *data, std::size_t bytes) {
+    cut.for_each_array([&](const void *data, std::size_t bytes) {
       ranks_.exchange({{rank, data, bytes}}, {});
     });
   }
@@ -240,8 +292,12 @@ std::unique_ptr<Preconditioner> make_parallel_multigrid(const BlockMatrix &matri
 {
   if (ranks.is_one() || matrix.n_rows() / ranks.size() < least_rows)
     return make_multigrid(matrix, modes);
-  core::require<core::EnvironmentError>(matrix.n_unknowns() < std::numeric_limits<int>::max(),
-                                        "multigrid: too many unknowns");
+  const std::int64_t block = matrix.block_size() * matrix.block_size();
+  for (int rank = 0; rank < ranks.size(); ++rank)
+    core::require<core::EnvironmentError>(
+        std::max(Cut(matrix, modes, rank, ranks.size()).n_blocks() * block, matrix.n_unknowns()) <
+            std::numeric_limits<int>::max(),
+        "multigrid: too many unknowns; take more ranks");
   core::require(modes.rows() == matrix.n_unknowns() && modes.cols() > 0,
                 "multigrid: the modes don't fit the matrix");
   return std::make_unique<ParallelMultigrid>(matrix, modes, ranks);

@@ -10,7 +10,9 @@ namespace ligament::algebra
 /// make_multigrid() on the first rank, by all of them, the others being in serve_multigrid() until
 /// they are dismissed. Each has contiguous rows, and aggregates do not cross from one to another:
 /// the solutions differ from those of one process, within the tolerance that they are sought to.
-/// Fewer than 1000 block rows for each rank are left to the first one.
+/// Fewer than 1000 block rows for each rank are left to the first one. The ranks are all of the
+/// job's. Throws core::EnvironmentError where ML fails; the others may then wait for what never
+/// comes, and the job must end.
 std::unique_ptr<Preconditioner> make_parallel_multigrid(const BlockMatrix &matrix,
                                                         const Eigen::MatrixXd &modes,
                                                         const core::Ranks &ranks);

@@ -25,8 +25,8 @@ double memory_of(const Scene &scene, const SizeEstimate &size)
   const double overlap = plane ? 1000 : 26000, cell = plane ? 420 : 800, program = 1.7e8;
   const double equilibrium =
       scene.time.has_phases() ? (plane ? 3 : 6) * equilibrium_bytes(scene.dimension) : 0;
-  return program + (particle + equilibrium) * size.particles + overlap * size.overlap_particles +
-         cell * size.cells;
+  return program + particle * size.particles + overlap * size.overlap_particles +
+         cell * size.cells + equilibrium * (size.particles + size.cells);
 }
 
 const std::vector<std::string> not_checked = {

@@ -122,6 +122,8 @@ RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks
   c.whole_at_first = scene.time.has_phases();
   c.memory = c.other_memory + drawing + n * written_bytes +
              (c.whole_at_first ? whole + equilibrium_memory : 0);
+  if (scene.time.static_solver == StaticSolver::parallel_multigrid)
+    c.other_memory += equilibrium_memory / ranks; // their rows and what is made of them
   return c;
 }
 

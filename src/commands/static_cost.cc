@@ -24,7 +24,7 @@ StaticCost static_cost(const Scene &scene, CoupledBody<dim> &body)
   EquilibriumSolver<dim> solver(body, preconditioning(scene.time.static_solver));
   cost.unknowns = solver.system().n_unknowns();
   if (cost.unknowns > most_to_measure) {
-    cost.memory = equilibrium_bytes(dim) * double(cost.unknowns);
+    cost.memory = equilibrium_bytes(dim) * double(solver.system().size());
     return cost;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -33,6 +33,7 @@ StaticCost static_cost(const Scene &scene, CoupledBody<dim> &body)
       EquilibriumSolver<dim>::End::converged)
     cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   cost.memory = peak_memory() - before;
+  cost.is_measured = true;
   return cost;
 }
 
@@ -42,18 +43,18 @@ std::string to_text(const StaticCost &cost, const Scene &scene, double seconds_p
                                  word_of(scene.time.loading));
   text += fmt::format("  unknowns             {:>12} in one equilibrium\n", cost.unknowns);
   if (cost.seconds)
-    text += fmt::format("  one equilibrium      {:>12}, as long as {} steps; a phase takes 3 to 5, "
-                        "where faces slide some tens\n",
-                        duration(*cost.seconds),
-                        grouped(std::llround(*cost.seconds / seconds_per_step)));
+    text += fmt::format(
+        "  one equilibrium      {:>12} on one process, as long as {} steps; a phase takes 3 to 5, "
+        "where faces slide some tens\n",
+        duration(*cost.seconds), grouped(std::llround(*cost.seconds / seconds_per_step)));
   else
     text += fmt::format("  one equilibrium           unknown: only measured up to {} unknowns\n",
                         grouped(most_to_measure));
+  const bool is_factor = scene.time.static_solver == StaticSolver::cholesky;
   text += fmt::format("  its memory           {:>12.0f} MiB{}\n", cost.memory / 1048576,
-                      cost.seconds ? ""
-                      : scene.time.static_solver == StaticSolver::cholesky
-                          ? " by multigrid, unknown by cholesky"
-                          : " by count");
+                      cost.is_measured ? " beyond the set-up's"
+                      : is_factor      ? " by multigrid; by cholesky unknown, and more"
+                                       : " beyond the set-up's, predicted");
   return text;
 }
 

@@ -10,7 +10,8 @@
 
 namespace ligament::program
 {
-/// Of each unknown by multigrid: its matrix twice, the levels, vectors; measured (docs/scaling.md).
+/// Of each unknown by multigrid, beyond the peak of the set-up: its matrix twice, the levels,
+/// vectors; measured (docs/scaling.md). Nodes count like particles, whose blocks they fill.
 constexpr double equilibrium_bytes(int dimension)
 {
   return dimension == 2 ? 1800 : 3600;
@@ -22,7 +23,8 @@ struct StaticCost
 {
   long unknowns = 0;             // of one equilibrium
   std::optional<double> seconds; // of one solve, set-up included; empty: not measured
-  double memory = 0;             // bytes beside the body; predicted where nothing was measured
+  double memory = 0;             // bytes beyond the peak of the set-up
+  bool is_measured = false;      // the memory; else it is predicted, by multigrid
 };
 
 /// Solves once. Leaves the body where it is.

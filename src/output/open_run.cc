@@ -94,13 +94,21 @@ void OpenRun::go_on(const RunRecord &first)
   write_run_record(folder_.record(), first);
 }
 
+namespace
+{
+void complete(const RunFolder &folder, RunRecord record, const std::string &status,
+              const std::string &reason)
+{
+  record.status = status;
+  record.reason = reason;
+  write_run_record(folder.record(), record);
+}
+} // namespace
+
 void OpenRun::end(const std::string &status, const std::string &reason) noexcept
 {
   try {
-    RunRecord record = read_run_record(folder_.record());
-    record.status = status;
-    record.reason = reason;
-    write_run_record(folder_.record(), record);
+    complete(folder_, read_run_record(folder_.record()), status, reason);
   } catch (const std::exception &error) {
     core::tell(stderr, fmt::format("warning: the record of the run could not be completed: {}\n",
                                    error.what()));
@@ -112,12 +120,9 @@ void end_for_another(const RunFolder &folder, const std::string &status,
                      const std::string &reason) noexcept
 {
   try {
-    RunRecord record = read_run_record(folder.record());
-    if (record.status != "running")
-      return;
-    record.status = status;
-    record.reason = reason;
-    write_run_record(folder.record(), record);
+    const RunRecord record = read_run_record(folder.record());
+    if (record.status == "running")
+      complete(folder, record, status, reason);
   } catch (const std::exception &) {
     // Nobody has begun one.
   }

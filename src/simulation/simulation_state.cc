@@ -175,8 +175,9 @@ void Simulation<dim>::keep_for_phases()
     before_forces_ = core::merged_at_first(take_state(body_), ranks_);
 }
 
-// Equilibria are solved for in one process: their systems couple all of the body. The state goes
-// both ways between drift and forces, where it is that of the whole to the last bit.
+// Equilibria are sought by one process: their systems couple all of the body; the others may help
+// with multigrid. The state goes both ways between drift and forces, where it is that of the whole
+// to the last bit.
 template <int dim>
 bool Simulation<dim>::skip_steps_at_first()
 {

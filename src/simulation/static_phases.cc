@@ -306,9 +306,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
     dynamic_since = clock.now.step;
     dynamic_began = std::chrono::steady_clock::now();
     broken_then = n_broken(body);
-    log.info("static phase to {:.6g} s: {} ({} solves by {}, {} iterations, {} faces broken)",
-             clock.now.time, text_of(reason), phase.solves, solver->preconditioner(),
-             phase.iterations, phase.broken);
+    const std::string by = phase.solves > 0 ? std::string(" by ") + solver->preconditioner() : "";
+    log.info("static phase to {:.6g} s: {} ({} solves{}, {} iterations, {} faces broken)",
+             clock.now.time, text_of(reason), phase.solves, by, phase.iterations, phase.broken);
   };
   const auto failed = [&](End end) {
     log.warning("at {:.4g} s {}: the run goes on by steps", clock.now.time,

@@ -128,6 +128,18 @@ TEST(Program, CheckCountsTheMemoryOfEquilibria)
   EXPECT_TRUE(phases["equilibrium"]["seconds"].is_null());
   EXPECT_GT(phases["memory_bytes"].get<double>() - dynamic["memory_bytes"].get<double>(),
             2 * 7 * 3 * sizeof(double) * unknowns);
+
+  // The first of several ranks alone needs it, unless all of them help.
+  const std::string on_ranks = check + "-n 2 --set /time/loading=static ";
+  const auto alone = ligament(on_ranks).json()["on_ranks"],
+             helped = ligament(on_ranks + "--set /time/static_solver=parallel_multigrid")
+                          .json()["on_ranks"];
+  const auto beyond_others = [](const nlohmann::json &ranks) {
+    return ranks["memory_bytes"].get<double>() - ranks["other_memory_bytes"].get<double>();
+  };
+  EXPECT_GT(beyond_others(alone), phases["equilibrium"]["memory_bytes"].get<double>());
+  EXPECT_LT(beyond_others(helped),
+            beyond_others(alone) - 0.4 * phases["equilibrium"]["memory_bytes"].get<double>());
 }
 
 TEST(Program, CheckAndCompareEndWithTheFieldsThatScriptsRead)
