@@ -31,6 +31,10 @@ constexpr double empty_check = 155e6, empty_rank = 175e6, drawing = 38e6; // byt
 template <int dim>
 constexpr double particle_bytes = dim == 2 ? 516 : 1034;
 
+// Of what an equilibrium takes on one process: the matrix that the first rank hands out, and the
+// rows and levels that ranks share.
+constexpr double matrix_share = 0.2, level_share = 0.7;
+
 /// Of the cells of the overlap, which are stepped together.
 template <int dim>
 std::vector<std::vector<int>> groups_of(const CoupledBody<dim> &body)
@@ -122,8 +126,11 @@ RanksCost ranks_cost(const Scene &scene, const CoupledBody<dim> &body, int ranks
   c.whole_at_first = scene.time.has_phases();
   c.memory = c.other_memory + drawing + n * written_bytes +
              (c.whole_at_first ? whole + equilibrium_memory : 0);
-  if (scene.time.static_solver == StaticSolver::parallel_multigrid)
-    c.other_memory += equilibrium_memory / ranks; // their rows and what is made of them
+  if (scene.time.static_solver == StaticSolver::parallel_multigrid) {
+    const double of_levels = level_share * equilibrium_memory / ranks;
+    c.memory += of_levels - (1 - matrix_share) * equilibrium_memory;
+    c.other_memory += of_levels;
+  }
   return c;
 }
 
