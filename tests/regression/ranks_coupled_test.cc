@@ -310,6 +310,15 @@ TEST_F(RanksCoupled, EquilibriaByAllRanks)
     EXPECT_LT(found[0]["iterations"].get<double>(), 1.5 * wanted[0]["iterations"].get<double>());
     EXPECT_NE(file_text(run + "/run.log").find("parallel multigrid"), std::string::npos);
   }
+  // Runs that end within a phase, by their duration or by a guard, which the first rank alone sees.
+  const std::string by_all = "run scene.json -n 2 --set /time/static_solver=parallel_multigrid ";
+  const Outcome ended = run_ligament(by_all + "--set /time/duration=100 -o ended");
+  ASSERT_EQ(ended.code, 0) << ended.errors;
+  EXPECT_EQ(file_json("ended/run.json")["phases"].size(), 1u);
+  const Outcome stopped = run_ligament(by_all + "--set /coupling/guard=stop --set "
+                                                "/specimen/cracks=[] --set /gauges=[] -o stopped");
+  EXPECT_EQ(stopped.code, 3) << stopped.errors;
+  EXPECT_EQ(file_json("stopped/run.json")["status"], "stopped");
 }
 
 /// Faces soften over some spacings.

@@ -125,6 +125,52 @@ TEST(ParallelMultigrid, OfABlock)
   expect_the_same_solution(test::LatticeBody(3, true, {8, 12, 12}), 3);
 }
 
+/// Entries of n members in blocks with one unknown more, which has none.
+MatrixXd widened(const MatrixXd &entries, int n, int block)
+{
+  const int wide = block + 1;
+  MatrixXd result = MatrixXd::Zero(n * wide, n * wide);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      result.block(i * wide, j * wide, block, block) =
+          entries.block(i * block, j * block, block, block);
+  return result;
+}
+
+// Coarse functions reach into them, as rigid motions do into the spins that nodes lack.
+TEST(ParallelMultigrid, UnknownsWithoutEntriesWithinBlocksArePassedBy)
+{
+  while_others_serve([] {
+    const test::LatticeBody body(2, false, {60, 80});
+    const int block = body.block_size(), wide = block + 1;
+    algebra::BlockAssembly assembly(body.n(), wide);
+    for (const auto &term : body.terms())
+      assembly.announce(term.members.data(), int(term.members.size()));
+    assembly.close();
+    for (const auto &term : body.terms()) {
+      const int n = int(term.members.size());
+      const MatrixXd entries = widened(*term.entries, n, block);
+      assembly.add(term.members.data(), n, entries.data());
+    }
+    const algebra::BlockMatrix matrix = assembly.take();
+    const MatrixXd of_body = body.modes();
+    MatrixXd modes = MatrixXd::Ones(body.n() * wide, of_body.cols());
+    for (int i = 0; i < body.n(); ++i)
+      modes.middleRows(i * wide, block) = of_body.middleRows(i * block, block);
+    const auto near = algebra::make_preconditioner(Preconditioning::parallel_multigrid, matrix,
+                                                   modes, 2, ranks());
+    VectorXd r = VectorXd::Random(matrix.n_unknowns()), z, other;
+    near->apply(r, z);
+    for (int i = 0; i < body.n(); ++i) {
+      EXPECT_EQ(z[i * wide + block], r[i * wide + block]);
+      r[i * wide + block] = 0;
+    }
+    near->apply(r, other);
+    for (int i = 0; i < body.n(); ++i)
+      EXPECT_EQ(z.segment(i * wide, block), other.segment(i * wide, block)) << i;
+  });
+}
+
 TEST(ParallelMultigrid, SmallOnesAreLeftToTheFirstRank)
 {
   while_others_serve([] {
