@@ -124,7 +124,8 @@ void Contacts<dim>::tell(const std::vector<std::size_t> &of)
     ContactFlags::set(c, t.flags, t.overlap);
     auto place = t.numbers.begin();
     for_each_told<dim>(c, [&](double &number) { number = *place++; });
-    insert(std::move(c));
+    contacts_.push_back(std::move(c));
+    settle(); // the next one is looked for
   }
 }
 

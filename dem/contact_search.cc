@@ -164,6 +164,7 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
         face_between(i, other.particle, std::min(rest_distance(p, i, other), apart), other.image),
         false);
   }
+  contacts.settle();
 }
 
 template <int dim>

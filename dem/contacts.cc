@@ -56,20 +56,21 @@ void remember(Contact<dim> &c, const State &s, const particles::Particles<dim> &
 } // namespace
 
 template <int dim>
-Contact<dim> &Contacts<dim>::insert(Contact<dim> c)
+Contact<dim> &Contacts<dim>::add(const Bond<dim> &face, bool from_face)
 {
-  if (contacts_.empty() || contacts_.back().name < c.name)
-    return contacts_.emplace_back(std::move(c));
-  const auto place = std::lower_bound(
-      contacts_.begin(), contacts_.end(), c,
-      [](const Contact<dim> &a, const Contact<dim> &b) { return a.name < b.name; });
-  return *contacts_.insert(place, std::move(c));
+  return contacts_.emplace_back(make(face, from_face));
 }
 
 template <int dim>
-Contact<dim> &Contacts<dim>::add(const Bond<dim> &face, bool from_face)
+void Contacts<dim>::settle()
 {
-  return insert(make(face, from_face));
+  const auto by_name = [](const Contact<dim> &a, const Contact<dim> &b) { return a.name < b.name; };
+  const auto added = std::is_sorted_until(contacts_.begin(), contacts_.end(), by_name);
+  if (added == contacts_.end())
+    return;
+  std::sort(added, contacts_.end(), by_name);
+  const auto first = std::upper_bound(contacts_.begin(), added, *added, by_name);
+  std::inplace_merge(first, added, contacts_.end(), by_name);
 }
 
 template <int dim>
@@ -93,7 +94,7 @@ void Contacts<dim>::add_joint(const Bond<dim> &face, int cut, const Vector<dim> 
   c.home = centre_j;
   c.cut = cut;
   c.cut_normal = std::copysign(1, cut_normal.dot(face.normal)) * cut_normal;
-  insert(std::move(c));
+  contacts_.push_back(std::move(c));
 }
 
 // Of a joint, 2 G S/r0 is 2 G A/h: A = S n.N the face's area projected on the cut, h = r0 n.N the

@@ -82,7 +82,8 @@ class Contacts
 public:
   using Particles = particles::Particles<dim>;
 
-  /// `ids` of the particles; empty: their indices. Contacts are in the order of their names.
+  /// `ids` of the particles; empty: their indices. Contacts are in the order of their names, but
+  /// for those that add() and add_joint() put behind them until settle() is called.
   explicit Contacts(const Materials &materials, const std::vector<std::int64_t> &ids = {},
                     int n_particles = 0)
       : materials_(materials),
@@ -90,8 +91,12 @@ public:
   {
   }
 
-  /// Valid until the next one comes.
+  /// Becomes the last one, so that many at once cost no more than their number; valid until the
+  /// next one comes.
   Contact<dim> &add(const Bond<dim> &face, bool from_face);
+  /// Brings those that were added to their places. To be called before the next step, save() or
+  /// find().
+  void settle();
 
   /// Ranks that hold other parts of the body step some of the particles from now on (must outlive
   /// it). All call add_forces() together; contacts whose first particle is one's own are booked.
@@ -221,7 +226,6 @@ private:
   std::map<int, Motion> foreign_motions(const std::vector<Change> &changed,
                                         const Particles &particles) const;
   static Motion motion_of(const Particles &particles, int i);
-  Contact<dim> &insert(Contact<dim> contact);
   Contact<dim> make(const Bond<dim> &face, bool from_face) const;
 
   Materials materials_;

@@ -82,7 +82,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
   for (const auto &[name, c] : of_faces)
     if (!std::binary_search(old.keys().begin(), old.keys().end(), name[0]) ||
         !std::binary_search(old.keys().begin(), old.keys().end(), name[1]))
-      insert(c);
+      contacts_.push_back(c);
+  settle();
   frictional_work_ = core::load_sum(state, "frictional_work");
   step_error_ = core::load_sum(state, "contact_step_error");
 }

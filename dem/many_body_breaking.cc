@@ -245,6 +245,7 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
                 energy_before - energy - contacts_.act_broken(touching, pressing, p, dt()),
                 of_opening);
   }
+  contacts_.settle();
   for (const auto &name : rebonded) {
     const double energy_before = rebonded_.local_energy(name, p, evaluation_.pressure);
     broken_.add_again(time_,

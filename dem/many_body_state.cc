@@ -65,6 +65,7 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
     broken_.add(b, p, time[r], energy[r]);
     numbers.push_back(table.keys()[r]);
   }
+  contacts_.settle();
   if (ranks().is_one())
     return;
   broken_.set_numbers(std::move(numbers));

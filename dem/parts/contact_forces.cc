@@ -25,6 +25,7 @@ ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const M
       b.distance = std::min(b.distance, between.norm());
       contacts_.add(b, true);
     }
+  contacts_.settle();
 }
 
 template <int dim>

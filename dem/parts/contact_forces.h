@@ -46,8 +46,9 @@ public:
   void follow_break();
 
   /// A bond has broken: its particles lie on a surface, its face may touch. Null: other ranks keep
-  /// this contact.
+  /// this contact. Whoever is through with the bonds of a step calls settle().
   const Contact<dim> *add_broken(const Bond<dim> &bond);
+  void settle() { contacts_.settle(); }
   /// The same; adds the force of the contact, too, and returns its energy in J, of one that is
   /// kept. `pressing`: the bond's force on its first particle (N) where that is to go on; 0
   /// otherwise.

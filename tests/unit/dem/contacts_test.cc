@@ -1,0 +1,61 @@
+// Contacts that come many at once, as where a body falls to pieces.
+#include "dem/contacts.h"
+
+#include "tests/unit/dem/body.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+namespace ligament::dem::testing
+{
+/// Of neighbours in a row, in metres their number apart.
+template <int dim>
+Bond<dim> face_of(int i)
+{
+  const Vector<dim> n = Vector<dim>::Unit(0);
+  return {i, i + 1, n, 0.5 * n, -0.5 * n, 1, 1. + i, 0, 0};
+}
+
+template <int dim>
+void check_order()
+{
+  const DemMaterial material;
+  constexpr int n = 50000;
+  std::vector<int> drawn(n);
+  for (int i = 0; i < n; ++i)
+    drawn[i] = i;
+  std::shuffle(drawn.begin(), drawn.end(), std::mt19937(1));
+  Contacts<dim> contacts(material, {}, n + 1);
+  const auto start = std::chrono::steady_clock::now();
+  for (const int first : {0, 10, n / 2}) { // few, many, and many among many
+    const int last = first == 0 ? 10 : first == 10 ? n / 2 : n;
+    for (int k = first; k < last; ++k) {
+      const Contact<dim> &added = contacts.add(face_of<dim>(drawn[k]), true);
+      ASSERT_EQ(&added, &contacts.all().back());
+    }
+    contacts.settle();
+    ASSERT_EQ(contacts.all().size(), std::size_t(last));
+    std::vector<int> expected(drawn.begin(), drawn.begin() + last);
+    std::sort(expected.begin(), expected.end());
+    for (int k = 0; k < last; ++k) {
+      const Contact<dim> &c = contacts.all()[k];
+      const int i = expected[k];
+      const std::array<std::int64_t, 3> name = {i, i + 1, 0};
+      ASSERT_EQ(c.name, name);
+      ASSERT_EQ(c.face.distance, 1. + i) << "it came with another face";
+      ASSERT_EQ(contacts.find(name), std::optional<std::size_t>(k));
+    }
+  }
+  // In proportion to their number this takes a tenth of a second, to its square more than a minute.
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
+}
+
+TEST(Contacts, ManyAtOnceAreInOrder)
+{
+  check_order<2>();
+  check_order<3>();
+}
+} // namespace ligament::dem::testing
