@@ -3,11 +3,66 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <unordered_map>
 
 namespace ligament::dem
 {
+namespace
+{
+/// Things in space, found by where they are.
+template <int dim, typename Thing>
+class Cells
+{
+public:
+  explicit Cells(double size) : size_(size) {}
+
+  void add(const Vector<dim> &place, const Thing &thing)
+  {
+    cells_[key(cell_of(place))].push_back({place, thing});
+  }
+
+  /// visit(place, thing) of all that are nearer than `size` to this place, and of others; may visit
+  /// one twice.
+  template <typename Visit>
+  void for_each_near(const Vector<dim> &place, Visit &&visit) const
+  {
+    constexpr int n = dim == 2 ? 9 : 27;
+    const Cell home = cell_of(place);
+    for (int m = 0; m < n; ++m) {
+      Cell c = home;
+      for (int a = 0, rest = m; a < dim; ++a, rest /= 3)
+        c[a] += rest % 3 - 1;
+      if (const auto found = cells_.find(key(c)); found != cells_.end())
+        for (const auto &[where, thing] : found->second)
+          visit(where, thing);
+    }
+  }
+
+private:
+  using Cell = std::array<std::int64_t, dim>;
+
+  Cell cell_of(const Vector<dim> &place) const
+  {
+    Cell c;
+    for (int a = 0; a < dim; ++a)
+      c[a] = std::int64_t(std::floor(place[a] / size_));
+    return c;
+  }
+
+  /// Mixes the integer coordinates; two cells may share one.
+  static std::uint64_t key(const Cell &c)
+  {
+    std::uint64_t mixed = 0;
+    for (const auto v : c)
+      mixed = (mixed ^ std::uint64_t(v)) * 0x9e3779b97f4a7c15ull;
+    return mixed;
+  }
+
+  double size_;
+  std::unordered_map<std::uint64_t, std::vector<std::pair<Vector<dim>, Thing>>> cells_;
+};
+} // namespace
+
 template <int dim>
 ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double face_area,
                                   const PeriodicImages<dim> *images)
@@ -89,35 +144,30 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
   else
     flanks_.pass_on_joints(p, contacts);
 
-  std::set<std::pair<int, int>> known;
-  const auto key = [](int i, int j) { return std::pair<int, int>(std::min(i, j), std::max(i, j)); };
-  for (const auto &c : contacts.all())
-    known.insert(key(c.face.i, c.face.j));
-
-  // Cells of the size of the reach; the key mixes the cell's integer coordinates.
-  using Cell = std::array<std::int64_t, dim>;
-  const auto position = [&](int i) { return place_of(p, {i, nullptr}); };
-  const auto cell_of = [&](const Vector<dim> &x) {
-    Cell c;
-    for (int a = 0; a < dim; ++a)
-      c[a] = std::int64_t(std::floor(x[a] / reach));
-    return c;
-  };
-  const auto hash = [](const Cell &c) {
-    std::uint64_t h = 0;
-    for (const auto v : c)
-      h = (h ^ std::uint64_t(v)) * 0x9e3779b97f4a7c15ull;
-    return h;
-  };
-  std::unordered_map<std::uint64_t, std::vector<Partner>> cells;
+  Cells<dim, Partner> cells(reach);
   for (const int i : surface_)
-    cells[hash(cell_of(position(i)))].push_back({i, nullptr});
+    cells.add(place_of(p, {i, nullptr}), {i, nullptr});
   // No two images of a particle are near the same one: pairs are known by their particles alone.
   if (images_)
     images_->for_each([&](const PeriodicImage<dim> *image) {
       for (const int i : surface_)
-        cells[hash(cell_of(place_of(p, {i, image})))].push_back({i, image});
+        cells.add(place_of(p, {i, image}), {i, image});
     });
+
+  const auto key = [](int i, int j) { return std::pair<int, int>(std::min(i, j), std::max(i, j)); };
+  std::vector<std::pair<int, int>> touching;
+  for (const auto &c : contacts.all())
+    touching.push_back(key(c.face.i, c.face.j));
+  std::sort(touching.begin(), touching.end());
+  const auto are_bonded = [&](int i, int j) {
+    bool found = false;
+    const int bearing = i < bonds.n_particles() ? i : j; // guests have no bonds
+    if (bearing < bonds.n_particles())
+      bonds.for_each_bond_of(bearing, [&](BondId, const Bond<dim> &b) {
+        found = found || key(b.i, b.j) == key(i, j);
+      });
+    return found;
+  };
 
   struct Pair
   {
@@ -125,28 +175,19 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
     Partner j;
   };
   std::vector<Pair> found;
-  int neighbours = 1;
-  for (int a = 0; a < dim; ++a)
-    neighbours *= 3;
   for (const int i : surface_) {
-    const Vector<dim> x = position(i);
-    const Cell home = cell_of(x);
-    for (int m = 0; m < neighbours; ++m) {
-      Cell c = home;
-      for (int a = 0, rest = m; a < dim; ++a, rest /= 3)
-        c[a] += rest % 3 - 1;
-      const auto it = cells.find(hash(c));
-      if (it == cells.end())
-        continue;
-      for (const Partner &other : it->second)
-        if (const int j = other.particle;
-            p.global_id[i] < p.global_id[j] && (!guests_ || guests_->keeps(i, j)) &&
-            (place_of(p, other) - x).norm() < rest_distance(p, i, other) + 2 * skin_ &&
-            !known.count(key(i, j)) && !flanks_.face_each_other(i, j))
-          found.push_back({i, other});
-    }
-    if (i < bonds.n_particles()) // else a guest
-      bonds.for_each_bond_of(i, [&](BondId, const Bond<dim> &b) { known.insert(key(b.i, b.j)); });
+    const Vector<dim> x = place_of(p, {i, nullptr});
+    const std::int64_t name = p.global_id[i];
+    cells.for_each_near(x, [&](const Vector<dim> &place, const Partner &other) {
+      const int j = other.particle;
+      const double apart = (place - x).norm();
+      // The distance of rest is no more than that of the sizes, which passes over most at once.
+      if (apart < (diameter(i) + diameter(j)) / 2 + 2 * skin_ && name < p.global_id[j] &&
+          apart < rest_distance(p, i, other) + 2 * skin_ && (!guests_ || guests_->keeps(i, j)) &&
+          !std::binary_search(touching.begin(), touching.end(), key(i, j)) && !are_bonded(i, j) &&
+          !flanks_.face_each_other(i, j))
+        found.push_back({i, other});
+    });
   }
   const auto names = [&](const Pair &pair) {
     return std::pair(p.global_id[pair.i], p.global_id[pair.j.particle]);
@@ -157,9 +198,7 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
                           [&](const Pair &a, const Pair &b) { return names(a) == names(b); }),
               found.end());
   for (const auto &[i, other] : found) {
-    if (known.count(key(i, other.particle)))
-      continue;
-    const double apart = (place_of(p, other) - position(i)).norm();
+    const double apart = (place_of(p, other) - place_of(p, {i, nullptr})).norm();
     contacts.add(
         face_between(i, other.particle, std::min(rest_distance(p, i, other), apart), other.image),
         false);
