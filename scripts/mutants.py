@@ -39,6 +39,8 @@ TESTS = [("core/", ["test_ranks"], RANKS),
          ("particles/", ["test_particles", "test_ranks", "test_dem"],
           ["test_particles", "test_dem"] + RANKS),
          ("dem/", ["test_ranks", "test_dem"], ["test_dem"] + RANKS),
+         ("coupling/fine_scale_split_static.cc", ["test_simulation"], ["test_simulation"]),
+         ("coupling/bridging_domain_static.cc", ["test_simulation"], ["test_simulation"]),
          ("coupling/", ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts"],
           ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts_on_2",
            "test_zone_parts_on_3"])]
