@@ -40,7 +40,7 @@ void ManyBodyForce<dim>::load(const core::State &state, const core::Names &names
     began_at_ = core::load_real(state, "force", "began_at");
 }
 
-// Bonds of strangers are passed over.
+// Bonds of strangers are passed over. The contacts get their order when they are loaded.
 template <int dim>
 void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Names &names,
                                        const Particles &p)
@@ -65,7 +65,6 @@ void ManyBodyForce<dim>::replay_broken(const core::State &state, const core::Nam
     broken_.add(b, p, time[r], energy[r]);
     numbers.push_back(table.keys()[r]);
   }
-  contacts_.settle();
   if (ranks().is_one())
     return;
   broken_.set_numbers(std::move(numbers));

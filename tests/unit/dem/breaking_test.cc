@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace ligament::dem::testing
@@ -155,6 +156,45 @@ TYPED_TEST(Breaking, AlsoAmongPlasticStrains)
   Body<TypeParam::value> body;
   body.flows = true;
   body.expect_mean();
+}
+
+// Ranks, and those who go on from a state, rely on it at the end of each step.
+TYPED_TEST(Breaking, ContactsOfBrokenFacesAreAmongTheOthersByName)
+{
+  constexpr int dim = TypeParam::value;
+  Body<dim> body;
+  for (std::size_t k = 0; k < body.packing.faces.size(); k += 7)
+    body.packing.faces[k].cracked = true;
+  auto p = at_rest(body.packing, body.materials.base());
+  disturb<dim>(p, body.packing.spacing, 0.05, Spin<dim>::Constant(0.3), 3);
+  std::vector<int> all(body.packing.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto intact = body.make();
+  body.at(*intact, p);
+  const auto breaking =
+      body.make({FractureLaw::Criterion::face_tension, 0.4 * intact->max_tension(p, all)});
+  body.at(*breaking, p);
+  const auto names = [](const ManyBodyForce<dim> &force) {
+    std::vector<std::array<std::int64_t, 3>> found;
+    for (const auto &contact : force.contacts().all())
+      found.push_back(contact.name);
+    return found;
+  };
+  const auto cracked = names(*intact), now = names(*breaking);
+  ASSERT_EQ(now.size(), cracked.size() + breaking->broken_bonds().size());
+  std::int64_t first = body.packing.size();
+  for (const auto &b : breaking->broken_bonds())
+    first = std::min<std::int64_t>({first, b.i, b.j});
+  ASSERT_LT(first, cracked.back()[0]) << "none came before others";
+  EXPECT_TRUE(std::is_sorted(now.begin(), now.end()));
+
+  std::vector<std::int64_t> ids(all.begin(), all.end());
+  core::State state;
+  p.save(state, core::Names(ids));
+  breaking->save(state, core::Names(ids), p);
+  const auto resumed = body.make();
+  resumed->load(state, core::Names(ids), p);
+  EXPECT_EQ(names(*resumed), now);
 }
 } // namespace
 } // namespace ligament::dem::testing
