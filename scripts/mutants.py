@@ -34,16 +34,19 @@ FILES = ["dem/**/*.cc", "dem/**/*.h", "coupling/**/*.cc", "coupling/**/*.h", "pa
 # Where a file begins with this, these targets are built and these ctests run, those first that end
 # soonest where they notice a fault: one process stops at the first failure, ranks don't.
 RANKS = ["test_ranks_on_2", "test_ranks_on_3"]
+COUPLING = ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts"]
+COUPLING_TESTS = ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts_on_2",
+                  "test_zone_parts_on_3"]
 TESTS = [("core/", ["test_ranks"], RANKS),
          ("packings/", ["test_packings", "test_ranks"], ["test_packings"] + RANKS),
          ("particles/", ["test_particles", "test_ranks", "test_dem"],
           ["test_particles", "test_dem"] + RANKS),
          ("dem/", ["test_ranks", "test_dem"], ["test_dem"] + RANKS),
-         ("coupling/fine_scale_split_static.cc", ["test_simulation"], ["test_simulation"]),
-         ("coupling/bridging_domain_static.cc", ["test_simulation"], ["test_simulation"]),
-         ("coupling/", ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts"],
-          ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone_parts_on_2",
-           "test_zone_parts_on_3"])]
+         ("coupling/fine_scale_split_static.cc", COUPLING + ["test_simulation"],
+          COUPLING_TESTS + ["test_simulation"]),
+         ("coupling/bridging_domain_static.cc", COUPLING + ["test_simulation"],
+          COUPLING_TESTS + ["test_simulation"]),
+         ("coupling/", COUPLING, COUPLING_TESTS)]
 
 COLUMNS = ["number", "seed", "tree", "file", "line", "kind", "old", "new", "result", "by", "seconds"]
 

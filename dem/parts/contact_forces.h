@@ -46,14 +46,15 @@ public:
   void follow_break();
 
   /// A bond has broken: its particles lie on a surface, its face may touch. Null: other ranks keep
-  /// this contact. Whoever is through with the bonds of a step calls settle().
+  /// this contact. Behind the last one of a step comes settle().
   const Contact<dim> *add_broken(const Bond<dim> &bond);
-  void settle() { contacts_.settle(); }
   /// The same; adds the force of the contact, too, and returns its energy in J, of one that is
   /// kept. `pressing`: the bond's force on its first particle (N) where that is to go on; 0
   /// otherwise.
   double act_broken(const Bond<dim> &bond, const Vector<dim> &pressing, Particles &particles,
                     double dt);
+  /// See Contacts.
+  void settle() { contacts_.settle(); }
 
   /// See Contacts: a bond holds this one from now on; and it is a contact again, as act_broken.
   void bond(const std::array<std::int64_t, 3> &name) { contacts_.bond(contacts_.place(name)); }
