@@ -43,8 +43,12 @@ EndRequest end_request(const CommandLine &line, core::Interruption &interruption
   using Clock = std::chrono::steady_clock;
   EndRequest request{&interruption};
   if (line.wall_time > 0) {
-    const std::chrono::duration<double> left(line.wall_time - std::min(0.1 * line.wall_time, 60.));
-    request.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(left);
+    const auto in = [now = Clock::now()](double seconds) {
+      return now +
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    };
+    request.deadline = in(line.wall_time - std::min(0.1 * line.wall_time, 60.));
+    request.limit = in(line.wall_time);
   }
   return request;
 }

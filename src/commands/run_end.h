@@ -12,7 +12,8 @@ namespace ligament::program
 constexpr int out_of_time = 124;
 
 /// What asks a run that begins now to end. The outputs of a run take time, too: its loop ends
-/// before the limit of --wall-time by a tenth of it, or a minute.
+/// before the limit of --wall-time by a tenth of it, or a minute, and pictures that are still to be
+/// drawn then are left out.
 EndRequest end_request(const CommandLine &line, core::Interruption &interruption);
 
 /// Writes the report, says how the run ended, returns the exit code. `name`: of the run in

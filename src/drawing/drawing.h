@@ -77,6 +77,7 @@ public:
 
 private:
   void set_color(Color color, double opacity);
+  void add_path(const std::vector<Spot> &line);
   void outline_path(const std::vector<Spot> &corners);
   void stroke(const Pen &pen);
   Spot snapped(const Spot &at) const;

@@ -28,8 +28,10 @@ std::string caption(const ShownField &field, const BodyState &state)
 std::vector<PictureEntry> write_pictures(const RunFolder &folder,
                                          const std::vector<const BodyState *> &states,
                                          const std::vector<std::string> &fields, int dimension,
-                                         double magnification, std::vector<std::string> *missing)
+                                         double magnification, std::vector<std::string> *missing,
+                                         std::optional<PictureTime> until)
 {
+  core::require(missing || !until, "nobody would hear of the pictures that are left out");
   std::vector<PictureEntry> entries;
   FieldView view;
   view.magnify = magnification;
@@ -38,6 +40,12 @@ std::vector<PictureEntry> write_pictures(const RunFolder &folder,
     auto pictures = pictures_of(states, dimension, view);
     for (std::size_t s = 0; s < states.size(); ++s) {
       const std::string file = fmt::format("pictures/{}_{}.png", states[s]->name, word);
+      if (until && PictureTime::clock::now() >= *until) {
+        missing->push_back(
+            fmt::format("{}: no time was left; `ligament report {} --field {}` draws it", file,
+                        folder.path, word));
+        continue;
+      }
       pictures[s].title = caption(view.field, *states[s]);
       try {
         write_picture(folder.path + "/" + file, pictures[s]);

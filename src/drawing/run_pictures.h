@@ -5,16 +5,21 @@
 #include "src/output/run_folder.h"
 #include "src/output/run_record.h"
 
+#include <chrono>
+#include <optional>
+
 namespace ligament::program
 {
+using PictureTime = std::chrono::steady_clock::time_point;
+
 /// One picture per field and state, pictures/STATE_FIELD.png: all states of a field with the same
 /// range of colours, all with this factor on displacements. A disk that refuses is an
-/// EnvironmentError, or with `missing` a reason there for each picture that is not to be had.
-std::vector<PictureEntry> write_pictures(const RunFolder &folder,
-                                         const std::vector<const BodyState *> &states,
-                                         const std::vector<std::string> &fields, int dimension,
-                                         double magnification,
-                                         std::vector<std::string> *missing = nullptr);
+/// EnvironmentError, or with `missing` a reason there for each picture that is not to be had; none
+/// is begun after `until`.
+std::vector<PictureEntry>
+write_pictures(const RunFolder &folder, const std::vector<const BodyState *> &states,
+               const std::vector<std::string> &fields, int dimension, double magnification,
+               std::vector<std::string> *missing = nullptr, std::optional<PictureTime> until = {});
 
 /// The same of a run that has ended, in the folder `target`: the states that it kept, with its
 /// magnification.

@@ -12,7 +12,9 @@ namespace ligament::program
 struct EndRequest
 {
   core::Interruption *interruption = nullptr;
-  std::optional<std::chrono::steady_clock::time_point> deadline = {}; // of the time loop
+  using Time = std::chrono::steady_clock::time_point;
+  std::optional<Time> deadline = {}; // of the time loop
+  std::optional<Time> limit = {};    // of the run, from when on no picture is begun
 
   /// The signal that asks; 0: none does.
   int signal() const { return interruption ? interruption->signal() : 0; }

@@ -2,7 +2,6 @@
 
 #include "core/check.h"
 #include "src/analysis/curve.h"
-#include "src/drawing/run_pictures.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
 #include "src/simulation/guards.h"
@@ -351,7 +350,7 @@ std::vector<std::string> Recorder<dim>::shown_fields() const
 
 template <int dim>
 void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
-                                RunRecord &record)
+                                RunRecord &record, std::optional<PictureTime> pictures_until)
 {
   if (!draws_pictures_)
     return;
@@ -381,8 +380,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
   record.magnification =
       scene_.output.magnification > 0 ? scene_.output.magnification : good_magnification(all);
   std::vector<std::string> missing;
-  record.pictures =
-      write_pictures(folder_, all, shown_fields(), dim, record.magnification, &missing);
+  record.pictures = write_pictures(folder_, all, shown_fields(), dim, record.magnification,
+                                   &missing, pictures_until);
   for (const std::string &reason : missing)
     log_.warning("a picture is missing: {}", reason);
   attempt([&] { writer_.wait(); }); // it reads the states
@@ -403,7 +402,8 @@ void Recorder<dim>::attempt(Write &&write)
 
 template <int dim>
 void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTime &step,
-                           double damping, RunRecord &record)
+                           double damping, RunRecord &record,
+                           std::optional<PictureTime> pictures_until)
 {
   const auto timing = timers_.scope(section_);
   if (const auto finding = guard_.look(body, step.time))
@@ -436,7 +436,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   if (break_state_)
     keep(std::move(*break_state_), "broken", "when the load path is gone");
   keep(present_state(body, step.time), "end", "at the end");
-  keep_states(body, std::move(states), record);
+  keep_states(body, std::move(states), record, pictures_until);
   record.broken_time = broken_time_;
   record.trusted_until = trusted_until_;
   record.broken_bonds = n_broken(body);

@@ -3,6 +3,7 @@
 
 #include "core/background_writer.h"
 #include "core/state.h"
+#include "src/drawing/run_pictures.h"
 #include "src/output/progress.h"
 #include "src/output/run_folder.h"
 #include "src/output/vtk.h"
@@ -60,8 +61,9 @@ public:
 
   /// Last row, last fields, pictures, tables; completes the record. A file that cannot be written
   /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
+  /// No picture is begun after `pictures_until`.
   void finish(const CoupledBody<dim> &body, const coupling::StepTime &step, double damping,
-              RunRecord &record);
+              RunRecord &record, std::optional<PictureTime> pictures_until = {});
 
   /// Waits for the fields that are being written; throws what kept them from it.
   void wait() { writer_.wait(); }
@@ -109,7 +111,8 @@ private:
   /// What a rank writes of them.
   Piece piece(const CoupledBody<dim> &body) const;
   /// Completes, writes and draws what the run keeps.
-  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record);
+  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record,
+                   std::optional<PictureTime> pictures_until);
   std::string report(const std::string &finding, const coupling::StepTime &step);
   void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);
   void write_bonds(const std::string &path, const std::vector<BrokenBond> &bonds) const;

@@ -300,7 +300,7 @@ RunRecord Simulation<dim>::run(const EndRequest &request)
   record.steps = clock_.now.step;
   record.simulated_time = clock_.now.time;
   record.wall_seconds = timers_.total() - record.setup_seconds;
-  recorder_.finish(body_, clock_.now, damping_.energy(), record);
+  recorder_.finish(body_, clock_.now, damping_.energy(), record, request.limit);
   if (!recorder_.failure().empty() && record.status != "failed") {
     record.status = "failed";
     record.reason = recorder_.failure() + " (after the last step)";

@@ -192,6 +192,17 @@ TEST_F(Resume, AnEndOfTheWallTimeLeavesACheckpoint)
   EXPECT_GT(more.json()["steps"], steps);
 }
 
+TEST_F(Resume, PicturesForWhichNoTimeIsLeftAreDrawnLater)
+{
+  const auto outcome = run_ligament("run torn.json --wall-time 1e-3 --json -o late");
+  EXPECT_EQ(outcome.code, 124) << outcome.errors;
+  EXPECT_FALSE(newest_checkpoint("late").empty());
+  EXPECT_TRUE(fs::is_empty("late/pictures"));
+  EXPECT_TRUE(has(outcome.errors, "`ligament report late --field stress_yy`")) << outcome.errors;
+  EXPECT_EQ(run_ligament("report late --field stress_yy -o drawn").code, 3); // of such a run
+  EXPECT_TRUE(fs::exists("drawn/pictures/end_stress_yy.png"));
+}
+
 /// The same damage as in tests/unit/output/checkpoints_test.cc, which has all of it.
 TEST_F(Resume, ADamagedCheckpointIsPassedOver)
 {

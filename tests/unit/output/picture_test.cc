@@ -320,6 +320,30 @@ TEST(FieldView, OnlyOuterFacesAreDrawnIn3D)
 
 // The texts of this program, Greek letters and superscripts included, have letters and no boxes:
 // a font is there.
+// Many lines are drawn in parts; where they lie over each other they are as dark as one.
+TEST(Drawing, ManyLinesAreAsDarkAsOne)
+{
+  const std::vector<Spot> line = {{10, 20}, {90, 20}};
+  for (const double opacity : {1., 0.35}) {
+    const Drawing::Pen pen = {{225, 25, 60}, 4, opacity};
+    const auto image_of = [&](std::size_t n) {
+      Drawing drawing(100, 40, ImageFormat::png);
+      std::vector<std::vector<Spot>> lines(n, line);
+      lines.push_back({{10, 30}, {90, 30}}); // the last part is drawn, too
+      drawing.lines(lines, pen);
+      return Image(drawing.file());
+    };
+    const Image one = image_of(1);
+    EXPECT_FALSE(equal(one.at(50, 20), {255, 255, 255}));
+    for (const std::size_t n : {255, 256, 2000}) {
+      const Image many = image_of(n);
+      for (int x = 15; x < 85; ++x)
+        for (const int y : {19, 20, 30})
+          EXPECT_NEAR(many.at(x, y).g, one.at(x, y).g, 1) << opacity << " " << n;
+    }
+  }
+}
+
 TEST(Drawing, TextsHaveWidths)
 {
   const Drawing::Font font = {12};
