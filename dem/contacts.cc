@@ -373,6 +373,9 @@ void Contacts<dim>::pass_on(std::size_t k, int j, const Particles &p)
   };
   if (c.known)
     book(update_slip(c, state(c, p), p));
+  if (c.correction != 0 && p.part.owns(c.face.i)) // as press() would, which sees another pair
+    step_error_.add(0.5 * c.correction * (state(c, p).overlap - c.last_overlap.value_or(0)));
+  c.correction = 0;
   const double before = compression_energy(c, p);
   if (j < 0) {
     book(before + 0.5 * state(c, p).stiffness * c.slip.squaredNorm());

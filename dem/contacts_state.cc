@@ -36,6 +36,7 @@ void Contacts<dim>::save(core::State &state, const core::Names &names) const
   state["contacts"] = std::move(table);
   core::save_sum(state, "frictional_work", frictional_work_);
   core::save_sum(state, "contact_step_error", step_error_);
+  core::save_value(state, "contact_steps", "grip_at_touch", std::int64_t(grips_at_touch_));
 }
 
 template <int dim>
@@ -86,6 +87,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
   settle();
   frictional_work_ = core::load_sum(state, "frictional_work");
   step_error_ = core::load_sum(state, "contact_step_error");
+  grips_at_touch_ = state.count("contact_steps") && // which older checkpoints don't have
+                    core::load_integer(state, "contact_steps", "grip_at_touch") != 0;
 }
 
 template void Contacts<2>::save(core::State &, const core::Names &) const;

@@ -41,6 +41,8 @@ struct FractureLaw
   std::vector<FaceStrength> strengths = {};
   /// m^2, thickness included: the whole face of size factors, eq. (D12b); 0: size doesn't matter.
   double whole_face = 0;
+  /// Of each material; empty: that of all.
+  std::vector<double> whole_faces = {};
   /// Of each material; empty: `criterion` for all. Bonds between two obey both.
   std::vector<Criterion> criteria = {};
   /// G_c in J per m^2 of projected crack, theory.md section 1.13, of each material where a body has

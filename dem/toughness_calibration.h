@@ -31,7 +31,7 @@ struct CrackPatch
 };
 
 /// Raised whenever calibrate_toughness answers otherwise: what was kept before is found anew.
-inline constexpr int toughness_method = 4;
+inline constexpr int toughness_method = 5;
 
 /// c for mode I on a lattice at this orientation (LatticeParameters); strength = c K_Ic / sqrt(d)
 /// then lets a crack run at K_Ic whatever d (theory.md section 1.6).

@@ -14,6 +14,13 @@ namespace
 {
 constexpr double corner = 25 * M_PI / 180; // rad, from which on a turn is one
 
+constexpr auto meets_zone =
+                   "a curved or slanted side of the outline meets the discrete zone or its "
+                   "overlap, or has too little room for its cells",
+               remedy_of_meeting =
+                   "beside a zone only sides along x or y may: move the zone, or let it hold the "
+                   "whole side; elsewhere use smaller cells (/far_field/cell_size)";
+
 std::string at_text(const Vector<2> &x)
 {
   return fmt::format("({:.6g}, {:.6g}) m", x[0], x[1]);
@@ -81,8 +88,7 @@ OutlinePath::OutlinePath(const core::Solid<2> &outline, const std::function<bool
   start_.push_back(length);
   const bool is_loop = facet == first;
   if (is_loop && !is_closed)
-    fail("a curved or slanted side of the outline meets the discrete zone or its overlap",
-         "only sides along x or y may: move the zone, or let it hold the whole side");
+    fail(meets_zone, remedy_of_meeting);
   if (!is_loop && is_closed)
     fail("the cells beside a side of the outline end before it does",
          "use smaller cells along it (/far_field/outline_cell_size)");
@@ -97,8 +103,7 @@ OutlinePath::OutlinePath(const core::Solid<2> &outline, const std::function<bool
   for (const auto &[x, end] :
        {std::pair(places.front(), at(0)), std::pair(places.back(), at(length))})
     if ((x - end).norm() > reach)
-      fail("a curved or slanted side of the outline meets the discrete zone or its overlap",
-           "only sides along x or y may: move the zone, or let it hold the whole side");
+      fail(meets_zone, remedy_of_meeting);
 }
 
 std::size_t OutlinePath::side_at(double &place) const

@@ -34,7 +34,10 @@ void BondCriteria<dim>::reset(const BondedBody<dim> &body)
   of_.clear();
   for (std::size_t m = 0; m < materials.all().size(); ++m) {
     const auto chosen = law_.criteria.empty() ? law_.criterion : law_.criteria[m];
-    OfMaterial of{nullptr, law_.strengths.empty() ? law_.strength : law_.strengths[m], {}};
+    OfMaterial of{nullptr,
+                  law_.strengths.empty() ? law_.strength : law_.strengths[m],
+                  {},
+                  law_.whole_faces.empty() ? law_.whole_face : law_.whole_faces[m]};
     if (chosen != FractureLaw::Criterion::none) {
       of.criterion = &chosen.template in<dim>();
       of.measure.residual = BreakScreen::per_cosine(of.criterion->tangent);
@@ -47,7 +50,9 @@ void BondCriteria<dim>::reset(const BondedBody<dim> &body)
   one_criterion_ = all([&](const auto &o) { return o.criterion == of_[0].criterion; });
   one_measure_ = one_criterion_ && all([&](const auto &o) { return o.measure == of_[0].measure; });
   most_weakened_ = 1;
-  if (can_break() && (law_.whole_face > 0 || names_))
+  const bool size_matters =
+      std::any_of(of_.begin(), of_.end(), [](const auto &of) { return of.whole_face > 0; });
+  if (can_break() && (size_matters || names_))
     body.bonds().for_each_bond([&](BondId, const Bond<dim> &b) {
       for_each_of(b, materials, [&](const OfMaterial &of) {
         most_weakened_ = std::max(most_weakened_, size_factor(b, of) / scatter_of(b, of));
@@ -113,7 +118,7 @@ double BondCriteria<dim>::strength_of(const Bond<dim> &b, const OfMaterial &of) 
 template <int dim>
 double BondCriteria<dim>::size_factor(const Bond<dim> &b, const OfMaterial &of) const
 {
-  return law_.whole_face > 0 ? of.criterion->size_factor(b.area / law_.whole_face) : 1;
+  return of.whole_face > 0 ? of.criterion->size_factor(b.area / of.whole_face) : 1;
 }
 
 // With several criteria the table's bonds are those that bear what one of them asks at least, in

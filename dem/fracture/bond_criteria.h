@@ -59,6 +59,7 @@ private:
     const CriterionIn<dim> *criterion; // null: never breaks
     FaceStrength strength;
     StressMeasure measure;
+    double whole_face; // m^2, of its size factors; 0: none
   };
   /// visit(material) of those whose criteria a bond obeys.
   template <typename Visit>

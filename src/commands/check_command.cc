@@ -1,5 +1,6 @@
 #include "src/commands/commands.h"
 
+#include "core/tell.h"
 #include "packings/packing_file.h"
 #include "src/commands/check_volumes.h"
 #include "src/commands/cost_advice.h"
@@ -47,6 +48,8 @@ int check(const CommandLine &line, const ReadResult &input)
   core::Timers timers;
   auto body = make_body<dim>(scene, log, timers);
   const double setup_seconds = timers.total();
+  for (const std::string &text : log.warnings())
+    core::tell(stderr, fmt::format("warning: {}\n", text));
   if (line.draw) {
     const std::string folder = output_folder(line);
     std::filesystem::create_directories(folder);
@@ -54,7 +57,7 @@ int check(const CommandLine &line, const ReadResult &input)
     write_picture(file, scene_picture(body, scene));
     fmt::print("picture: {}\n", file);
     if (body.seeds) {
-      const std::string packing = RunFolder{folder}.packing();
+      const std::string packing = folder + "/check_packing.csv"; // that of a run stays
       packings::write_packing_file(packing, *body.seeds);
       fmt::print("packing: {}\n", packing);
     }

@@ -120,6 +120,10 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
     run.emplace(folder);
   ranks.any(false);
   Checkpoint checkpoint = newest_checkpoint(folder);
+  // Ranks read it for themselves, maybe not from the same machine.
+  ranks.agree_on("the newest checkpoint that can be read", double(checkpoint.manifest.number));
+  if (ranks.any(!checkpoint.reference_lost.empty()))
+    checkpoint.reference.clear();
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
   const ReadResult input = scene_of(line, folder, manifest);

@@ -19,6 +19,7 @@ constexpr const char *known_before_a_run[] = {"lock",
                                               "run.log",
                                               "packing.csv",
                                               "check.png",
+                                              "check_packing.csv",
                                               "fields",
                                               "pictures"};
 } // namespace

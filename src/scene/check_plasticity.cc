@@ -120,6 +120,10 @@ void check_plasticity(const Scene &scene, Findings &f)
     }
   if (first.empty())
     return;
+  if (scene.zone.extent == DiscreteZone::Extent::none && f.sound({"/discrete_zone"}))
+    f.warning(first, "\"plasticity\" is not used",
+              "without a discrete zone all is a mesh, which stays elastic",
+              "give a zone, or judge the stresses yourself");
   const auto refuse = [&](bool is_wrong, const std::string &with, const std::string &reason,
                           const std::string &remedy) {
     if (is_wrong)

@@ -99,6 +99,10 @@ void check_viscosity(const Scene &scene, Findings &f)
     }
   if (first.empty())
     return;
+  if (scene.zone.extent == DiscreteZone::Extent::none && f.sound({"/discrete_zone"}))
+    f.warning(first, "\"viscosity\" is not used",
+              "without a discrete zone all is a mesh, which stays elastic",
+              "give a zone, or judge the stresses yourself");
   compare_with_far_field(scene, f);
   const auto refuse = [&](bool is_wrong, const std::string &with, const std::string &reason,
                           const std::string &remedy) {

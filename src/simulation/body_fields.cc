@@ -383,15 +383,19 @@ std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body)
 }
 
 template <int dim>
-double crack_length(const CoupledBody<dim> &body, int axis)
+double crack_length(const CoupledBody<dim> &body)
 {
   if (!body.force())
     return 0;
-  core::ExactSum sum;
+  std::vector<core::ExactSum> seen_along(dim);
   for (const auto &broken : body.force()->broken_bonds())
     if (body.zone->state.part.owns(broken.i)) // else another rank counts it
-      sum.add(broken.area * std::abs(broken.normal[axis]));
-  return body.ranks.sum(sum).value() / body.thickness;
+      for (int axis = 0; axis < dim; ++axis)
+        seen_along[axis].add(broken.area * std::abs(broken.normal[axis]));
+  double most = 0;
+  for (const core::ExactSum &sum : body.ranks.sum(seen_along))
+    most = std::max(most, sum.value());
+  return most / body.thickness;
 }
 
 template ParticleFields particle_fields(const CoupledBody<2> &);
@@ -412,6 +416,6 @@ template Snapshot empty_snapshot(const CoupledBody<2> &);
 template Snapshot empty_snapshot(const CoupledBody<3> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<2> &);
 template std::vector<BrokenBond> broken_bonds(const CoupledBody<3> &);
-template double crack_length(const CoupledBody<2> &, int);
-template double crack_length(const CoupledBody<3> &, int);
+template double crack_length(const CoupledBody<2> &);
+template double crack_length(const CoupledBody<3> &);
 } // namespace ligament::program

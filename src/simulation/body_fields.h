@@ -59,7 +59,8 @@ Snapshot empty_snapshot(const CoupledBody<dim> &body);
 template <int dim>
 std::vector<BrokenBond> broken_bonds(const CoupledBody<dim> &body);
 
-/// Area of the broken faces seen along the axis over the thickness: m in 2D, m^2 in 3D.
+/// Area of the broken faces seen along that axis along which it is largest, over the thickness: m
+/// in 2D, m^2 in 3D.
 template <int dim>
-double crack_length(const CoupledBody<dim> &body, int axis);
+double crack_length(const CoupledBody<dim> &body);
 } // namespace ligament::program

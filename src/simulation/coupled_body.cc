@@ -145,9 +145,9 @@ void choose_step(const Scene &scene, double contact_rate, CoupledBody<dim> &body
   body.dt = scene.time.step.value_or(rounded_down(proposal));
   require(
       body.dt <= 0.99 * stable,
-      fmt::format("/time/step: {:.4g} s is above the stable step of {:.4g} s; give at most 0.95 "
-                  "of that, or leave it out",
-                  body.dt, stable));
+      fmt::format("/time/{}: {:.4g} s is more than 0.99 of the stable step of {:.4g} s; give at "
+                  "most 0.95 of that, or leave it out",
+                  scene.time.step ? "step" : "step_fraction", body.dt, stable));
   if (!body.zone || !body.far)
     return;
   const double most = 0.6 * body.dt_far;

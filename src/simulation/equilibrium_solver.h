@@ -33,6 +33,13 @@ public:
   /// What may stay out of balance, of the largest load: work and energy lack the square of it.
   static constexpr double exact = 1e-9;
 
+  /// What is out of balance in the present place at the loads of `time` (s), over the largest load.
+  double imbalance(double time)
+  {
+    double norm = 0;
+    balance(time, norm);
+    return largest_load_ > 0 ? norm / largest_load_ : 0;
+  }
   /// From the present place to equilibrium at the loads of `time` (s), held components being where
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.
   End find_equilibrium(double time, Eigen::VectorXd &moved, double tolerance = exact);

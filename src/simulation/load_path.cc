@@ -19,6 +19,24 @@ namespace ligament::program
 {
 namespace
 {
+enum class End
+{
+  low,
+  high
+};
+
+/// Of the body along the axis at which this coordinate lies, to within that share of its length.
+template <int dim>
+std::optional<End> end_at(const CoupledBody<dim> &body, int axis, double x, double share)
+{
+  const double close = share * (body.upper[axis] - body.lower[axis]);
+  if (std::abs(x - body.lower[axis]) < close)
+    return End::low;
+  if (std::abs(x - body.upper[axis]) < close)
+    return End::high;
+  return {};
+}
+
 /// Between two items, both ways.
 struct Link
 {
@@ -29,9 +47,9 @@ struct Link
 /// Faces that carry, and particles at the two sides, of all particles in their order.
 struct Faces
 {
-  std::vector<int> node;                // that carries the particle, -1: none
-  std::vector<Link> links;              // ascending
-  std::vector<std::array<int, 2>> held; // a particle, and whether it lies at the low side
+  std::vector<int> node;                 // that carries the particle, -1: none
+  std::vector<Link> links;               // ascending
+  std::vector<std::pair<int, End>> held; // particles at the two sides
 };
 
 /// Items that nothing can part are one: particles, then nodes, then the two sides.
@@ -53,9 +71,10 @@ public:
 
   int size() const { return low_ + 2; }
   int particle(int i) { return sets_.find(i); }
+  int node(int i) { return sets_.find(n_particles_ + i); }
   int low() { return sets_.find(low_); }
   int high() { return sets_.find(low_ + 1); }
-  void hold(int particle, bool at_low) { sets_.join(particle, low_ + !at_low); }
+  void hold(int particle, End end) { sets_.join(particle, low_ + (end == End::high)); }
 
 private:
   void join_mesh(const CoupledBody<dim> &body, int axis)
@@ -69,8 +88,8 @@ private:
       for (const auto &[master, weight] : hanging.masters)
         join(hanging.node, master);
     for (int i = 0; i < n_nodes_; ++i)
-      if (std::abs(std::abs(mesh.nodes[i][axis]) - body.upper[axis]) < 1e-9 * body.upper[axis])
-        sets_.join(n_particles_ + i, low_ + (mesh.nodes[i][axis] > 0));
+      if (const auto end = end_at(body, axis, mesh.nodes[i][axis], 1e-9))
+        sets_.join(n_particles_ + i, low_ + (*end == End::high));
   }
 
   int n_particles_, n_nodes_, low_;
@@ -139,8 +158,8 @@ Faces faces_at_first(const CoupledBody<dim> &body, const Faces &part)
   for (const Link &l : part.links)
     links.push_back({id[l.from], id[l.to], l.area});
   std::vector<std::array<std::int64_t, 2>> held;
-  for (const auto &[particle, at_low] : part.held)
-    held.push_back({id[particle], at_low});
+  for (const auto &[particle, end] : part.held)
+    held.push_back({id[particle], std::int64_t(end)});
   links = body.ranks.gather_at_first(links);
   held = body.ranks.gather_at_first(held);
   const core::Names names(names_at_first(*body.zone));
@@ -148,9 +167,44 @@ Faces faces_at_first(const CoupledBody<dim> &body, const Faces &part)
   all.node = at_first(*body.zone, part.node);
   for (const NamedLink &l : links)
     all.links.push_back({names.index(l.from), names.index(l.to), l.area});
-  for (const auto &[name, at_low] : held)
-    all.held.push_back({names.index(name), int(at_low)});
+  for (const auto &[name, end] : held)
+    all.held.emplace_back(int(names.index(name)), End(end));
   return all;
+}
+
+/// Each side of each face that carries and of which the particle is this rank's, and each outer
+/// face at the two sides.
+template <int dim, typename Carries, typename Holds>
+void look_at_faces(const CoupledBody<dim> &body, int axis, Carrying carrying, Carries &&carries,
+                   Holds &&holds)
+{
+  const auto &state = body.zone->state;
+  const double length = body.upper[axis] - body.lower[axis];
+  std::set<std::pair<int, int>> broken;
+  if (carrying == Carrying::at_start)
+    for (const auto &b : body.force()->broken_bonds())
+      broken.insert(std::minmax(b.i, b.j));
+  body.force()->for_each_face(state, [&](const particles::FaceView<dim> &face) {
+    if (!state.part.owns(face.i))
+      return; // another rank has it
+    if (face.j >= 0) {
+      if (face.bonded || broken.count(std::minmax(face.i, face.j)))
+        carries(face);
+    } else if (std::abs(face.normal[axis]) > 0.999)
+      if (const auto end = end_at(body, axis, face.centroid[axis], 1e-6 * body.spacing / length))
+        holds(face.i, *end);
+  });
+}
+
+/// The mesh node that carries the particle, -1: none.
+template <int dim>
+std::vector<int> nodes_of_particles(const CoupledBody<dim> &body)
+{
+  std::vector<int> node(body.zone->state.size(), -1);
+  if (const auto *overlap = body.coupler->overlap())
+    for (const auto &m : overlap->members)
+      node[m.particle] = overlap->near_nodes[m.nodes[0]];
+  return node;
 }
 
 /// Of the body; of several ranks the first one has them.
@@ -160,25 +214,14 @@ Faces carrying_faces(const CoupledBody<dim> &body, int axis, Carrying carrying)
   Faces faces;
   if (!body.zone)
     return faces;
-  const auto &state = body.zone->state;
-  std::set<std::pair<int, int>> broken;
-  if (carrying == Carrying::at_start)
-    for (const auto &b : body.force()->broken_bonds())
-      broken.insert(std::minmax(b.i, b.j));
-  body.force()->for_each_face(state, [&](const particles::FaceView<dim> &face) {
-    if (!state.part.owns(face.i))
-      return; // another rank has it
-    if (face.j >= 0) {
-      if (face.i < face.j && (face.bonded || broken.count({face.i, face.j})))
-        faces.links.push_back({face.i, face.j, face.area});
-    } else if (std::abs(face.normal[axis]) > 0.999 &&
-               std::abs(std::abs(face.centroid[axis]) - body.upper[axis]) < 1e-6 * body.spacing)
-      faces.held.push_back({face.i, face.centroid[axis] < 0});
-  });
-  faces.node.assign(state.size(), -1);
-  if (const auto *overlap = body.coupler->overlap())
-    for (const auto &m : overlap->members)
-      faces.node[m.particle] = overlap->near_nodes[m.nodes[0]];
+  look_at_faces(
+      body, axis, carrying,
+      [&](const auto &face) {
+        if (face.i < face.j)
+          faces.links.push_back({face.i, face.j, face.area});
+      },
+      [&](int particle, End end) { faces.held.emplace_back(particle, end); });
+  faces.node = nodes_of_particles(body);
   if (!body.ranks.is_one())
     faces = faces_at_first(body, faces);
   std::sort(faces.links.begin(), faces.links.end(), [](const Link &a, const Link &b) {
@@ -192,8 +235,8 @@ template <int dim>
 double smallest_section(const CoupledBody<dim> &body, int axis, Faces faces)
 {
   Items<dim> items(body, faces.node, axis);
-  for (const auto &[particle, at_low] : faces.held)
-    items.hold(particle, at_low);
+  for (const auto &[particle, end] : faces.held)
+    items.hold(particle, end);
   const int low = items.low(), high = items.high();
   if (low == high)
     return std::numeric_limits<double>::infinity();
@@ -211,7 +254,59 @@ double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carryin
   return body.ranks.gather_all(std::vector<double>{section}).front();
 }
 
+// A uniform field along the axis flows through all faces and needs no more than their areas. What
+// does not carry lets particles swallow a part of it (sum of the flows out of one below zero); the
+// rest comes from the low side, and goes to the high one.
+template <int dim>
+double section_at_least(const CoupledBody<dim> &body, int axis, Carrying carrying)
+{
+  Items<dim> mesh(body, {}, axis);
+  if (mesh.low() == mesh.high())
+    return std::numeric_limits<double>::infinity();
+  core::ExactSum section;
+  if (body.zone) {
+    const auto &state = body.zone->state;
+    std::vector<double> flow(state.size(), 0);
+    std::vector<int> item(state.size(), -1);
+    const std::vector<int> node = nodes_of_particles(body);
+    for (int i = 0; i < state.size(); ++i)
+      if (node[i] >= 0)
+        item[i] = mesh.node(node[i]);
+    look_at_faces(
+        body, axis, carrying,
+        [&](const auto &face) { flow[face.i] += face.area * face.normal[axis]; },
+        [&](int particle, End end) {
+          item[particle] = end == End::low ? mesh.low() : mesh.high();
+        });
+    for (int i = 0; i < state.size(); ++i)
+      if (state.part.owns(i) && (item[i] == mesh.low() || (item[i] != mesh.high() && flow[i] < 0)))
+        section.add(flow[i]);
+  }
+  return std::max(0., body.ranks.sum(section).value());
+}
+
+template <int dim>
+void LoadPath<dim>::start(const CoupledBody<dim> &body)
+{
+  is_bound_ = true;
+  // Sums of unit normals times areas are zero to round-off only.
+  at_least_ = at_start_ = (1 - 1e-6) * section_at_least(body, axis_, Carrying::at_start);
+  counted_ = 0;
+}
+
 // Breaking faces takes at most their area from any section.
+template <int dim>
+void LoadPath<dim>::count(const CoupledBody<dim> &body)
+{
+  const auto broken = body.force()->broken_bonds_of_body(body.zone->state);
+  at_least_ -= core::exact_sum(broken.size() - counted_, [&](std::size_t k) {
+                 return broken[counted_ + k].area;
+               }).value();
+  counted_ = broken.size();
+}
+
+// While less has broken than that share of a bound on the section of the start, the share of the
+// section itself is left, too.
 template <int dim>
 std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
 {
@@ -219,35 +314,44 @@ std::optional<double> LoadPath<dim>::lost(const CoupledBody<dim> &body)
   if (n_broken == 0)
     return {};
   if (at_start_ < 0)
-    at_least_ = at_start_ = smallest_section(body, axis_, Carrying::at_start);
-  if (std::isinf(at_start_)) // the mesh goes round the zone
+    start(body);
+  // The mesh goes round the zone, or no flat face lies at one of the ends.
+  const auto has_no_answer = [&] {
+    return std::isinf(at_start_) || (at_start_ == 0 && !is_bound_);
+  };
+  if (has_no_answer())
     return {};
-  const double least = lost_share * at_start_;
   if (counted_ < n_broken) {
-    const auto broken = body.force()->broken_bonds_of_body(body.zone->state);
-    at_least_ -= core::exact_sum(n_broken - counted_, [&](std::size_t k) {
-                   return broken[counted_ + k].area;
-                 }).value();
-    counted_ = n_broken;
-    if (at_least_ <= least)
+    count(body);
+    if (is_bound_ && !has_enough()) {
+      is_bound_ = false;
+      at_least_ = at_start_ = smallest_section(body, axis_, Carrying::at_start);
+      counted_ = 0;
+      if (has_no_answer())
+        return {};
+      count(body);
+    }
+    if (!has_enough())
       at_least_ = smallest_section(body, axis_, Carrying::now);
   }
-  if (at_least_ > least)
+  if (has_enough())
     return {};
-  return at_start_ > 0 ? at_least_ / at_start_ : 0;
+  return at_least_ / at_start_;
 }
 
+// A bound is as easily had again.
 template <int dim>
 void LoadPath<dim>::save(core::State &state) const
 {
-  core::save_value(state, "recorder", "section_at_start", at_start_);
-  core::save_value(state, "recorder", "section_at_least", at_least_);
-  core::save_value(state, "recorder", "section_counted", std::int64_t(counted_));
+  core::save_value(state, "recorder", "section_at_start", is_bound_ ? -1. : at_start_);
+  core::save_value(state, "recorder", "section_at_least", is_bound_ ? 0. : at_least_);
+  core::save_value(state, "recorder", "section_counted", is_bound_ ? 0 : std::int64_t(counted_));
 }
 
 template <int dim>
 void LoadPath<dim>::load(const core::State &state)
 {
+  is_bound_ = false; // a bound comes as none
   at_start_ = core::load_real(state, "recorder", "section_at_start");
   at_least_ = core::load_real(state, "recorder", "section_at_least");
   counted_ = std::size_t(core::load_integer(state, "recorder", "section_counted"));
@@ -255,6 +359,8 @@ void LoadPath<dim>::load(const core::State &state)
 
 template double smallest_section(const CoupledBody<2> &, int, Carrying);
 template double smallest_section(const CoupledBody<3> &, int, Carrying);
+template double section_at_least(const CoupledBody<2> &, int, Carrying);
+template double section_at_least(const CoupledBody<3> &, int, Carrying);
 template class LoadPath<2>;
 template class LoadPath<3>;
 } // namespace ligament::program

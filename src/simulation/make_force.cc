@@ -114,7 +114,11 @@ template <int dim>
 double toughness_factor(const Scene &scene, const MaterialParameters &parameters)
 {
   const auto criterion = criterion_of(parameters);
-  const dem::DemMaterial material = material_of(parameters, scene);
+  // The sample is elastic and has units of its own.
+  dem::DemMaterial material = material_of(parameters, scene);
+  material.plasticity = {};
+  material.viscosity = {};
+  material.friction = 0;
   const std::string key = toughness_key(scene, parameters.fracture.criterion, material);
   return ToughnessCache().factor(key, [&] {
     if (scene.zone.packing == PackingKind::random) {
@@ -209,13 +213,20 @@ dem::FractureLaw fracture_of(const Scene &scene, std::map<std::string, Figure> &
     law.rebonding.clear();
   law.criterion = law.criteria[0];
   law.strength = law.strengths[0];
-  if (law.criterion != dem::FractureLaw::Criterion::none && !scene.material.fracture.strength)
-    law.whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
-                     (dim == 2 ? scene.specimen.thickness : 1);
+  // What a toughness was calibrated with, and no given strength.
+  const double whole_face = dem::PrincipalTension<dim>::whole_face(scene.zone.spacing) *
+                            (dim == 2 ? scene.specimen.thickness : 1);
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    law.whole_faces.push_back(law.criteria[m] != dem::FractureLaw::Criterion::none &&
+                                      !materials[m]->fracture.strength
+                                  ? whole_face
+                                  : 0);
+  law.whole_face = law.whole_faces[0];
   law.energy = law.energies[0];
   law.softening = law.softenings[0];
   law.mode_ratio = law.mode_ratios[0];
   if (materials.size() == 1) {
+    law.whole_faces.clear();
     law.softenings.clear();
     law.mode_ratios.clear();
     law.energies.clear();

@@ -6,6 +6,7 @@
 #include "src/scene/geometry.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/tools/make_tools.h"
+#include "src/simulation/toughness_cache.h"
 
 #include <fmt/format.h>
 
@@ -163,6 +164,9 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.loaded_faces = loaded_areas(body, held);
   body.cut_faces = all_cut_faces(body, held);
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
+  if (!scene.specimen.cracks.empty() && !scene.atoms && body.n_cracked_faces == 0)
+    log.warning("no face is cut by /specimen/cracks: do they lie in the material, and are they "
+                "longer than a spacing?");
   const auto constants = elastic_constants_of<dim>(scene);
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};
@@ -173,8 +177,11 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   packings::Packing<dim> of_particles = without_faces(packing);
   auto force = make_force(scene, std::move(packing), body.loads, body.figures, log);
   for (const auto &[name, figure] : body.figures)
-    if (name.compare(0, calibrated.size(), calibrated) == 0)
+    if (name.compare(0, calibrated.size(), calibrated) == 0) {
+      body.ranks.agree_on("the " + name + " (kept in " + ToughnessCache::default_folder() + ")",
+                          figure.value); // a folder of each machine may hold another one's
       reference.value(name, [&value = figure.value] { return value; });
+    }
   require_same_solid(force->elastic_constants(), constants);
   particles::Particles<dim> state;
   packings::fill_particles(of_particles, scene.densities(), state);

@@ -85,8 +85,8 @@ double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_s
   GaugeSet<dim> gauges(scene, body);
   double reading = 0; // keeps the compiler from leaving them out
   const double read = seconds_of([&] {
-    reading += machine.read(body, 0).load + read_ledger(body, step, 0).residual() +
-               crack_length(body, machine.axis());
+    reading +=
+        machine.read(body, 0).load + read_ledger(body, step, 0).residual() + crack_length(body);
     for (const double value : gauges.read(body, 0))
       reading += value;
   });
@@ -172,8 +172,7 @@ EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
   next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
   const EnergyLedger ledger = read_ledger(body, step, damping);
-  const HistoryRow row = {r, ledger, n_broken(body), crack_length(body, machine_.axis()),
-                          in_static_phase_};
+  const HistoryRow row = {r, ledger, n_broken(body), crack_length(body), in_static_phase_};
   curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
@@ -332,7 +331,7 @@ ProgressState Recorder<dim>::progress_state(const CoupledBody<dim> &body,
   state.external_work = ledger.external_work;
   state.residual = ledger.residual();
   state.broken_bonds = n_broken(body);
-  state.crack_length = crack_length(body, machine_.axis());
+  state.crack_length = crack_length(body);
   return state;
 }
 
@@ -349,14 +348,16 @@ std::vector<std::string> Recorder<dim>::shown_fields() const
 }
 
 template <int dim>
-void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states,
+void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodyState> kept,
                                 RunRecord &record, std::optional<PictureTime> pictures_until)
 {
   if (!draws_pictures_)
     return;
   const auto bonds = broken_bonds(body);
   std::vector<const BodyState *> all;
-  for (BodyState &state : states) {
+  // Shared with the writer, which may be at work when memory ends here.
+  const auto states = std::make_shared<std::vector<BodyState>>(std::move(kept));
+  for (BodyState &state : *states) {
     const auto later = std::find_if(bonds.begin(), bonds.end(),
                                     [&](const BrokenBond &b) { return b.time > state.time; });
     state.bonds.assign(bonds.begin(), later);
@@ -370,8 +371,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
   }
   if (piece(body).of == 1 && writes_)
     attempt([&] {
-      writer_.submit([&] {
-        for (const BodyState &state : states)
+      writer_.submit([this, states] {
+        for (const BodyState &state : *states)
           fields_.write(state);
       });
     });
@@ -384,7 +385,7 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
                                    &missing, pictures_until);
   for (const std::string &reason : missing)
     log_.warning("a picture is missing: {}", reason);
-  attempt([&] { writer_.wait(); }); // it reads the states
+  attempt([&] { writer_.wait(); });
 }
 
 template <int dim>
@@ -441,7 +442,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.trusted_until = trusted_until_;
   record.broken_bonds = n_broken(body);
   record.broken_in_overlap = guard_.n_broken();
-  record.crack_length = crack_length(body, machine_.axis());
+  record.crack_length = crack_length(body);
   if (!work_.empty())
     record.external_work = *std::max_element(work_.begin(), work_.end());
   record.energy_residual = relative_residual(residual_, work_);

@@ -111,7 +111,7 @@ private:
   /// What a rank writes of them.
   Piece piece(const CoupledBody<dim> &body) const;
   /// Completes, writes and draws what the run keeps.
-  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> states, RunRecord &record,
+  void keep_states(const CoupledBody<dim> &body, std::vector<BodyState> kept, RunRecord &record,
                    std::optional<PictureTime> pictures_until);
   std::string report(const std::string &finding, const coupling::StepTime &step);
   void look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step);

@@ -151,12 +151,13 @@ std::optional<std::string> RegimeControl<dim>::excess() const
 
 template <int dim>
 std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
-                                                    const coupling::StepTime &step, core::Log &log)
+                                                    const coupling::StepTime &step, core::Log &log,
+                                                    bool each)
 {
   const int ratio = body.coupler->step_ratio();
   if (body.far && step.step % ratio == 0)
     follow(body, ratio * step.dt);
-  if (!body.far || step.step % (ratio * look_interval) != 0)
+  if (!body.far || (!each && step.step % (ratio * look_interval) != 0))
     return {};
   measure(body);
   const Regime needed = automatic_ ? this->needed() : regime_;
@@ -165,6 +166,8 @@ std::optional<std::string> RegimeControl<dim>::look(CoupledBody<dim> &body,
     const double before = motion_energy(body, step);
     set(needed, body);
     body.coupler->compute_forces(bodies, step);
+    if (body.tools)
+      body.tools->push_again(bodies);
     const double jump = motion_energy(body, step) - before;
     body.regime_change -= jump;
     history_.emplace_back(regime_, step.time);

@@ -19,9 +19,10 @@ public:
 
   /// Between forces and kick of a step in which the far field acts: may change the regime and
   /// compute the forces again; what the energy changes by is booked in the body. Returns why the
-  /// body leaves the range of its regime, once.
+  /// body leaves the range of its regime, once. Measures every 50 steps of the far field only,
+  /// unless `each`: as of equilibria, which many steps lie between.
   std::optional<std::string> look(CoupledBody<dim> &body, const coupling::StepTime &step,
-                                  core::Log &log);
+                                  core::Log &log, bool each = false);
 
   /// Which regime acted, and since when: "linear, corotated from 0.0012 s"; empty without mesh.
   std::string history() const;

@@ -139,9 +139,9 @@ void Simulation<dim>::compute_forces()
 }
 
 template <int dim>
-std::optional<Stop> Simulation<dim>::look()
+std::optional<Stop> Simulation<dim>::look(bool is_equilibrium)
 {
-  if (const auto reason = regime_.look(body_, clock_.now, log_))
+  if (const auto reason = regime_.look(body_, clock_.now, log_, is_equilibrium))
     if (const auto stop = recorder_.report_excess(*reason, clock_.now))
       return stop;
   const auto stop = recorder_.observe(body_, clock_.now, damping_.energy());
@@ -158,7 +158,7 @@ std::optional<Stop> Simulation<dim>::skip_steps()
       return stop;
   const auto timing = timers_.scope(timers_.section("equilibria"));
   recorder_.in_static_phase(true);
-  return phases_.advance(body_, clock_, damping_.energy(), [&] { return look(); });
+  return phases_.advance(body_, clock_, damping_.energy(), [&] { return look(true); });
 }
 
 template <int dim>
@@ -198,7 +198,7 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     const bool far_acts = clock_.now.step % ratio == 0;
     if (far_acts && stop_)
       return stop_;
-    const bool is_calm = far_acts && phases_.are_due(body_, clock_);
+    const bool is_calm = far_acts && asked_by_.empty() && phases_.are_due(body_, clock_);
     if (is_calm && !ranks_.is_one()) {
       if (!skip_steps_at_first())
         return stop_;
@@ -211,8 +211,9 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     }
     if (clock_.now.step % ratio == 0)
       look_at_the_clock(request);
-    if (const auto weights = new_weights())
-      build_anew(*weights);
+    if (!stop_ && asked_by_.empty())
+      if (const auto weights = new_weights())
+        build_anew(*weights);
     keep_for_phases();
     balance_.begin();
     compute_forces();

@@ -74,7 +74,7 @@ private:
   /// Of both halves and of the tools, at the present time.
   void compute_forces();
   /// Between forces and kick of a step in which the far field acts: what ends the run, or nothing.
-  std::optional<Stop> look();
+  std::optional<Stop> look(bool is_equilibrium = false);
   /// The same of all steps that an equilibrium stands for; at its end in the last of them.
   std::optional<Stop> skip_steps();
   /// What comes between forces and kick of a step in which the far field acts: false where that

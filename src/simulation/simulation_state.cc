@@ -53,6 +53,8 @@ template <int dim>
 void Simulation<dim>::give(const core::State &body, const core::State &run)
 {
   let_rest(); // what moves comes with the state
+  if (scene_.time.loading == Loading::sequential && body_.force())
+    body_.force()->break_one_by_one(); // as from the first equilibrium on
   give_state(body, body_);
   regime_.load(run, body_);
 }

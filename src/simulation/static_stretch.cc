@@ -227,7 +227,8 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
 }
 
 // Along a parabola, on which forces stay in balance to the third order in the loads: they do the
-// work that the ledger books. Where faces soften a response has corners, and every row is balanced.
+// work that the ledger books. Where faces soften a response has corners, and every row is balanced;
+// so are rows that large rotations take off the parabola.
 template <int dim>
 std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit, const Look &look)
 {
@@ -254,7 +255,8 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
     else {
       move(at, share);
       system.displace(bend_, bent(share) - bent(at));
-      if (softens) {
+      constexpr double off_balance = 1e-4; // work and energy lack the square of it
+      if (softens || solver_.imbalance(clock.now.time) > off_balance) {
         Eigen::VectorXd moved;
         solver_.find_equilibrium(clock.now.time, moved);
       }

@@ -92,10 +92,13 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
     return;
   }
   const auto side = core::side_corners<dim>(body.lower, body.upper, body.loads[load_].boundary);
-  area_ = body.loads[load_].part.is_whole()
-              ? size.prod() / size_ * body.thickness
-              : core::face_area<dim>(body.loads[load_].part.clip(side)) *
-                    (dim == 2 ? body.thickness : 1);
+  area_ = size.prod() / size_ * body.thickness;
+  if (body.loads[load_].part.is_whole())
+    return;
+  const double part =
+      core::face_area<dim>(body.loads[load_].part.clip(side)) * (dim == 2 ? body.thickness : 1);
+  if (part > 1e-3 * area_) // else a point or a line, which has no stress of its own
+    area_ = part;
 }
 
 // The first one that is not zero, before tractions.

@@ -84,15 +84,13 @@ StressGauge<dim>::StressGauge(const GaugeParameters &gauge, const GaugePlaces<di
   double mesh_volume = 0, volume = 0;
   std::map<int, Vector<dim>> gradients;
   if (body.far)
-    for_each_cell_part<dim>(
-        body.far->mesh(), lower, upper, [&](int cell, const auto &from, const auto &to) {
-          for_each_gauss_point<dim>(from, to, [&](const Vector<dim> &place, double part) {
-            mesh_volume += part * body.thickness;
-            for (const auto &term : interpolate(body.far->mesh(), cell, place).nodes)
-              gradients.try_emplace(term.item, Vector<dim>::Zero()).first->second +=
-                  part * body.thickness * term.gradient;
-          });
-        });
+    for_each_mesh_point(body.far->mesh(), lower, upper,
+                        [&](int cell, const Vector<dim> &place, double part) {
+                          mesh_volume += part * body.thickness;
+                          for (const auto &term : interpolate(body.far->mesh(), cell, place).nodes)
+                            gradients.try_emplace(term.item, Vector<dim>::Zero()).first->second +=
+                                part * body.thickness * term.gradient;
+                        });
   volume = mesh_volume;
   if (body.zone) {
     const auto &state = body.zone->state;

@@ -263,27 +263,10 @@ MotionReading<dim> fit_box(const GaugePlaces<dim> &places, const Vector<dim> &lo
   const auto &body = places.body;
   std::vector<Sample> samples;
   if (body.far)
-    for_each_cell_part<dim>(
-        body.far->mesh(), lower, upper, [&](int cell, const auto &from, const auto &to) {
-          const auto add = [&](const Vector<dim> &place, double volume) {
-            samples.push_back({-1, cell, place, volume * body.thickness});
-          };
-          const auto &mesh = body.far->mesh();
-          if (mesh.is_box(cell)) {
-            for_each_gauss_point<dim>(from, to, add);
-            return;
-          }
-          // A cell that the box cuts counts by its points inside; affine motion stays exact.
-          const bool is_cut =
-              (mesh.cell_lower[cell].array() < lower.array()).any() ||
-              ((mesh.cell_lower[cell] + mesh.cell_size[cell]).array() > upper.array()).any();
-          for_each_gauss_point(mesh, cell, is_cut ? 4 : 1,
-                               [&](const Vector<dim> &place, double volume) {
-                                 if ((place.array() >= lower.array()).all() &&
-                                     (place.array() <= upper.array()).all())
-                                   add(place, volume);
-                               });
-        });
+    for_each_mesh_point(body.far->mesh(), lower, upper,
+                        [&](int cell, const Vector<dim> &place, double volume) {
+                          samples.push_back({-1, cell, place, volume * body.thickness});
+                        });
   if (body.zone) {
     const auto &state = body.zone->state;
     const auto *overlap = body.coupler->overlap();

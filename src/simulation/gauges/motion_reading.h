@@ -146,6 +146,28 @@ void for_each_gauss_point(const fem::Mesh<dim> &mesh, int cell, int parts, Visit
   }
 }
 
+/// visit(cell, place, volume) for points of the mesh in the box that stand for its volume there
+/// (m^dim). Of a general cell that the box cuts those of its points count that lie inside.
+template <int dim, typename Visit>
+void for_each_mesh_point(const fem::Mesh<dim> &mesh, const Vector<dim> &lower,
+                         const Vector<dim> &upper, Visit &&visit)
+{
+  for_each_cell_part<dim>(mesh, lower, upper, [&](int cell, const auto &from, const auto &to) {
+    if (mesh.is_box(cell)) {
+      for_each_gauss_point<dim>(
+          from, to, [&](const Vector<dim> &place, double volume) { visit(cell, place, volume); });
+      return;
+    }
+    const bool is_cut =
+        (from.array() != mesh.cell_lower[cell].array()).any() ||
+        (to.array() != (mesh.cell_lower[cell] + mesh.cell_size[cell]).array()).any();
+    for_each_gauss_point(mesh, cell, is_cut ? 4 : 1, [&](const Vector<dim> &place, double volume) {
+      if ((place.array() >= lower.array()).all() && (place.array() <= upper.array()).all())
+        visit(cell, place, volume);
+    });
+  });
+}
+
 /// The bonds at hand broken since number `known`, which is brought up to date.
 template <int dim, typename Visit>
 void for_each_new_break(const CoupledBody<dim> &body, std::size_t &known, Visit &&visit)

@@ -59,7 +59,8 @@ void RigidTools<dim>::act(coupling::Bodies<dim> bodies, const coupling::StepTime
       contacts_[k].begin(first, tool, surface_, bodies);
     const bool leaves = step.time >= tool.definition().release && step.step % ratio == 0;
     const auto answer = contacts_[k].act(tool, surface_, bodies, step.dt, far_acts, !leaves);
-    require_heavy(int(k), answer.stiffness, step.dt);
+    // What acts on the far field does so every `ratio` steps, for as long.
+    require_heavy(int(k), answer.stiffness + ratio * ratio * answer.far_stiffness, step.dt);
     tool.finish(step.dt, answer.zone, far_acts ? &answer.far : nullptr, ratio);
     zone_force_[k] = -answer.zone.force;
     if (far_acts)
@@ -72,6 +73,13 @@ void RigidTools<dim>::act(coupling::Bodies<dim> bodies, const coupling::StepTime
     zone_force_[k].setZero();
     far_force_[k].setZero();
   }
+}
+
+template <int dim>
+void RigidTools<dim>::push_again(coupling::Bodies<dim> bodies) const
+{
+  for (const auto &contact : contacts_)
+    contact.push_again(surface_, bodies);
 }
 
 template <int dim>

@@ -16,6 +16,7 @@ public:
              const SearchLimits &limits, double reach);
 
   void act(coupling::Bodies<dim> bodies, const coupling::StepTime &step, int ratio) override;
+  void push_again(coupling::Bodies<dim> bodies) const override;
   ToolEnergy energy() const override;
   int size() const override { return int(tools_.size()); }
   const std::string &name(int tool) const override { return tools_[tool].definition().name; }

@@ -77,6 +77,14 @@ Vector<dim> ToolContact<dim>::friction_force(Memory &memory, const Vector<dim> &
 }
 
 template <int dim>
+void ToolContact<dim>::push_again(const ContactSurface<dim> &surface,
+                                  coupling::Bodies<dim> &bodies) const
+{
+  for (const auto &[point, force] : pushed_)
+    surface.push(point, force, bodies);
+}
+
+template <int dim>
 auto ToolContact<dim>::act(const RigidTool<dim> &tool, const ContactSurface<dim> &surface,
                            coupling::Bodies<dim> &bodies, double dt, bool far_acts, bool pushes)
     -> Answer
@@ -84,6 +92,7 @@ auto ToolContact<dim>::act(const RigidTool<dim> &tool, const ContactSurface<dim>
   look_around(tool, surface, bodies, dt);
   Answer answer;
   zone_ = {};
+  pushed_.clear();
   if (far_acts)
     far_ = {};
   for (const int k : near_) {
@@ -110,16 +119,17 @@ auto ToolContact<dim>::act(const RigidTool<dim> &tool, const ContactSurface<dim>
     if (friction_ > 0)
       force += friction_force(memory_[k], y, touch, depth, stiffness, sums);
     force = tool.rotation() * force;
-    answer.stiffness += stiffness;
+    (point.is_far() ? answer.far_stiffness : answer.stiffness) += stiffness;
     Wrench<dim> &wrench = point.is_far() ? answer.far : answer.zone;
     wrench.force -= force;
     if constexpr (dim == 2)
       wrench.torque[0] -= arm[0] * force[1] - arm[1] * force[0];
     else
       wrench.torque -= arm.cross(force);
-    if (pushes)
+    if (pushes) {
       surface.push(k, force, bodies);
-    else
+      pushed_.emplace_back(k, force);
+    } else
       sums.power += force.dot(surface.velocity(k, bodies));
   }
   return answer;

@@ -26,12 +26,15 @@ public:
   struct Answer
   {
     Wrench<dim> zone, far;
-    double stiffness = 0; // N/m, of all layers that are pressed
+    double stiffness = 0, far_stiffness = 0; // N/m, of all layers of either that are pressed
   };
   /// At the present places. With `pushes` the body gets its share. Points of the far field take
   /// part where it acts.
   Answer act(const RigidTool<dim> &tool, const ContactSurface<dim> &surface,
              coupling::Bodies<dim> &bodies, double dt, bool far_acts, bool pushes);
+  /// What the last act() pushed, once more: for forces that are computed anew in the same step, in
+  /// which the far field acts.
+  void push_again(const ContactSurface<dim> &surface, coupling::Bodies<dim> &bodies) const;
   /// Surface that is there since the last step: points from this one on. Those inside the tool
   /// press only when they go deeper.
   void begin(int first, const RigidTool<dim> &tool, const ContactSurface<dim> &surface,
@@ -88,6 +91,7 @@ private:
   std::vector<Memory> memory_;
   std::map<int, double> offset_; // m, depth at which these points begin to press
   Sums zone_, far_;
+  std::vector<std::pair<int, Vector<dim>>> pushed_; // points, N
   double heat_ = 0;
 };
 

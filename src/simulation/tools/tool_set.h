@@ -41,6 +41,10 @@ public:
   /// are free. `ratio`: far-field steps of so many steps.
   virtual void act(coupling::Bodies<dim> bodies, const coupling::StepTime &step, int ratio) = 0;
 
+  /// The forces of the last act() once more, where those of the body are computed anew in the same
+  /// step, in which the far field acts.
+  virtual void push_again(coupling::Bodies<dim> bodies) const = 0;
+
   /// At the last act().
   virtual ToolEnergy energy() const = 0;
   virtual int size() const = 0;

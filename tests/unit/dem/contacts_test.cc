@@ -53,6 +53,26 @@ void check_order()
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
 }
 
+/// What touches without overlap grips behind an equilibrium, also where the run goes on elsewhere.
+TEST(Contacts, GripsAtTouchAreSaved)
+{
+  const core::Names names({0, 1});
+  for (const bool is_behind_equilibrium : {false, true}) {
+    Contacts<2> contacts(DemMaterial(), {}, 2), other(DemMaterial(), {}, 2);
+    other.forget_steps();
+    if (is_behind_equilibrium)
+      contacts.forget_steps();
+    core::State state, taken;
+    state["particles"] = core::Table(std::vector<std::int64_t>{0, 1});
+    contacts.save(state, names);
+    other.load(state, names, PeriodicImages<2>(Vector<2>::Zero()),
+               [](int i, int, double) { return face_of<2>(i); });
+    other.save(taken, names);
+    EXPECT_EQ(core::load_integer(taken, "contact_steps", "grip_at_touch"), is_behind_equilibrium);
+    EXPECT_EQ(state["contact_steps"], taken["contact_steps"]);
+  }
+}
+
 TEST(Contacts, ManyAtOnceAreInOrder)
 {
   check_order<2>();

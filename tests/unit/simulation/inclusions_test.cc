@@ -81,6 +81,31 @@ TEST(Inclusions, ThePackingFileNamesThem)
   }
 }
 
+// A toughness is calibrated with size factors (D12b), a given strength is the one of each face: in
+// one body, too, whichever of the two materials has which.
+TEST(Inclusions, AGivenStrengthIsThatOfItsFaces)
+{
+  const std::string given = R"("fracture": {"criterion": "maximum_tension", "strength": 1e-3})",
+                    tough = R"("fracture": {"criterion": "maximum_tension", "toughness": 1})",
+                    body = R"("youngs_modulus": 1, "poissons_ratio": 0, "density": 1, )";
+  const std::string boxes = R"(, "boxes": [{"lower": [-5, -5], "upper": [5, 5]}])";
+  for (const bool is_inclusion : {true, false})
+    for (const double share : {0.98, 1.02}) {
+      SCOPED_TRACE(fmt::format("{} {}", is_inclusion, share));
+      SmallBody small(small_scene(
+          {"/material={" + body + (is_inclusion ? tough : given) + "}",
+           "/inclusions=[{" + body + (is_inclusion ? given : tough) + boxes + "}]",
+           R"(/discrete_zone/packing="square")", "/far_field=none", "/discrete_zone/extent=all"}));
+      small.deform(Eigen::Vector2d(0, share * 1e-3).asDiagonal());
+      auto &zone = *small.body.zone;
+      zone.force->compute(zone.state, 1);
+      EXPECT_EQ(zone.force->broken_bonds().size() > 0, share > 1);
+      for (const auto &bond : zone.force->broken_bonds())
+        EXPECT_TRUE((zone.force->material(bond.i) == 1) == is_inclusion ||
+                    (zone.force->material(bond.j) == 1) == is_inclusion);
+    }
+}
+
 // Coupled and undamped: the invariant of the whole body, interfaces included, is kept to round-off
 // of a strain of 1e-6.
 TEST(Inclusions, EnergyIsKept)

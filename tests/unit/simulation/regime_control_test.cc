@@ -69,6 +69,17 @@ TEST(RegimeControl, FiniteStrainBecomesNonlinear)
   EXPECT_EQ(plate.control.history(), "linear, nonlinear from 0 s");
 }
 
+// Between two equilibria lie as many steps as there may be: each of them is looked at.
+TEST(RegimeControl, EquilibriaAreMeasuredInAnyStep)
+{
+  WatchedPlate plate(RegimeChoice::automatic, 0.3, 0);
+  plate.step.step = 7 * plate.small.body.coupler->step_ratio();
+  EXPECT_FALSE(plate.look());
+  EXPECT_EQ(plate.control.history(), "linear");
+  EXPECT_FALSE(plate.control.look(plate.small.body, plate.step, *plate.small.log, true));
+  EXPECT_EQ(plate.control.history(), "linear, corotated from 0 s");
+}
+
 TEST(RegimeControl, RegimesAreNotTakenBack)
 {
   WatchedPlate plate(RegimeChoice::automatic, 0.3, 0);

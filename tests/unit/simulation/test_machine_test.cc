@@ -92,6 +92,25 @@ TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
   }
 }
 
+// A point has no area: the side's stands for it. A part of a side has its own.
+TEST(TestMachine, StressOfAPointIsThatOverTheSide)
+{
+  for (const auto &[part, area] :
+       {std::pair(R"("from": 0, "to": 0)", 24.), std::pair(R"("from": -3, "to": 3)", 6.)})
+  {
+    SmallBody small(
+        small_scene({"/discrete_zone=none", "/far_field/cell_size=4",
+                     fmt::format(R"(/loads=[{{"boundary": "top", {}, "force": [null, -0.5]}},
+                                                {{"boundary": "bottom", "displacement": [0, 0]}}])",
+                                 part)}));
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    EXPECT_NEAR(r.load, -0.5, 1e-12) << part;
+    EXPECT_NEAR(r.stress, -0.5 / area, 1e-12) << part;
+  }
+}
+
 // The mean over the side, whatever its cells: that of x^2 is W^2/12 but for the chords of the
 // cells.
 TEST(TestMachine, MeansOverTheAreaOfTheSide)

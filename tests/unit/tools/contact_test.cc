@@ -232,6 +232,24 @@ TEST(ToolContact, ASpringNeedsItsMass)
   }
 }
 
+// Forces that are computed anew in a step, as where the regime changes, keep those of the tools.
+TEST(ToolContact, PushesAgainWhatItPushed)
+{
+  for (const auto &far : {"/far_field=none", "/discrete_zone=none"}) {
+    ToolBody<2> b({far, R"(/tools=[{"name": "a", "shape": "plate", "size": [20, 2],
+      "place": [0, 61], "friction": 0.3, "velocity": [0, 0]}])"});
+    shift<2>(b.body, {0, 0.1});
+    b.compute();
+    const Vector<2> pushed = force_on(b.body);
+    EXPECT_LT(pushed[1], -1e-6) << far;
+    auto bodies = b.body.bodies();
+    b.body.coupler->compute_forces(bodies, b.now);
+    EXPECT_GT(force_on(b.body)[1], 0.1 * pushed[1]) << far;
+    b.tools().push_again(bodies);
+    EXPECT_NEAR((force_on(b.body) - pushed).norm(), 0, 1e-12 * pushed.norm()) << far;
+  }
+}
+
 // A tool lighter than the layer that it presses on would swing faster than the step.
 TEST(ToolContact, AToolThatIsTooLightStopsTheRun)
 {
