@@ -33,12 +33,14 @@ public:
   /// What may stay out of balance, of the largest load: work and energy lack the square of it.
   static constexpr double exact = 1e-9;
 
-  /// What is out of balance in the present place at the loads of `time` (s), over the largest load.
+  /// What is out of balance in the present place at the loads of `time` (s), over the load there,
+  /// or a thousandth of the largest so far.
   double imbalance(double time)
   {
     double norm = 0;
     balance(time, norm);
-    return largest_load_ > 0 ? norm / largest_load_ : 0;
+    const double load = std::max(system_.load_force(), 1e-3 * largest_load_);
+    return load > 0 ? norm / load : 0;
   }
   /// From the present place to equilibrium at the loads of `time` (s), held components being where
   /// these have them. `moved`: by how much, y; the body is put back where it was when that fails.

@@ -335,9 +335,9 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   }
   // How far at once: less where no equilibrium was found so far away, or none that is stable.
   long reach = clock.n_steps;
-  int n_halvings = 0;
+  int n_halvings = 0, n_strayed = 0;
   double regime = body.regime_change;
-  constexpr int most_halvings = 5;
+  constexpr int most_halvings = 5, most_strayed = 10;
   bool settles = true;
   // Where the kinematics of the overlap have changed the body is no longer in balance.
   const auto balance_again = [&] {
@@ -385,9 +385,15 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       return stop;
     }
     const auto commit_here = [&](const Eigen::VectorXd &v) { commit(body, clock, v); };
-    if ((stop = stretch.walk(clock, commit_here, look))) {
+    const bool may_halve = n_strayed < most_strayed && stretch.n_steps() >= 4 * ratio;
+    if ((stop = stretch.walk(clock, commit_here, look, may_halve))) {
       finish(PhaseEnd::stopped);
       return stop;
+    }
+    if (stretch.leads_astray()) {
+      ++n_strayed;
+      reach = clock.now.step + stretch.n_steps() / (2 * ratio) * ratio;
+      continue;
     }
     if (n_broken(body) > broken_before) {
       constexpr double nothing = 1e-6;
@@ -405,7 +411,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
       finish(PhaseEnd::stopped);
       return stop;
     }
-    n_halvings = 0;
+    n_halvings = n_strayed = 0;
     reach = std::min(clock.n_steps, clock.now.step + 4 * stretch.n_steps());
     if (body.regime_change != regime)
       if (const End end = balance_again(); end != End::converged) {

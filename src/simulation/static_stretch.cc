@@ -230,7 +230,8 @@ typename StaticStretch<dim>::End StaticStretch<dim>::find_end()
 // work that the ledger books. Where faces soften a response has corners, and every row is balanced;
 // so are rows that large rotations take off the parabola.
 template <int dim>
-std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit, const Look &look)
+std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit, const Look &look,
+                                             bool may_end_early)
 {
   auto &system = solver_.system();
   system.put_back(start_);
@@ -248,6 +249,7 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
     const long step = row == n_rows ? end_ : step_of(share_ * row / n_rows);
     if (step <= clock.now.step)
       continue;
+    const Clock then = clock;
     clock.advance(step - clock.now.step);
     const double share = growth_.share(clock.now.time);
     if (step == end_)
@@ -255,10 +257,21 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
     else {
       move(at, share);
       system.displace(bend_, bent(share) - bent(at));
-      constexpr double off_balance = 1e-4; // work and energy lack the square of it
-      if (softens || solver_.imbalance(clock.now.time) > off_balance) {
-        Eigen::VectorXd moved;
-        solver_.find_equilibrium(clock.now.time, moved);
+      constexpr double off_balance = 1e-4, // of the load; work and energy lack the square of it
+          astray = 1e-2;
+      const double off = softens ? 0 : solver_.imbalance(clock.now.time);
+      Eigen::VectorXd moved;
+      const bool is_near = !may_end_early || off < astray;
+      const bool is_found =
+          softens || off > off_balance
+              ? is_near && solver_.find_equilibrium(clock.now.time, moved) == End::converged
+              : true;
+      if (!is_found && !softens && may_end_early) {
+        system.displace(bend_, bent(at) - bent(share));
+        move(share, at);
+        clock = then;
+        leads_astray_ = true;
+        return {};
       }
     }
     at = share;

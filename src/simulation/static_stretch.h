@@ -36,8 +36,11 @@ public:
   long n_steps() const { return end_ - begin_; }
 
   /// Takes body and clock to the end, or to where something breaks or the kinematics of the overlap
-  /// change before; looks at all states but the last one.
-  std::optional<Stop> walk(Clock &clock, const Commit &commit, const Look &look);
+  /// change before; looks at all states but the last one. Where it may end early it does so before
+  /// a state that lies far off its way: leads_astray() then.
+  std::optional<Stop> walk(Clock &clock, const Commit &commit, const Look &look,
+                           bool may_end_early = false);
+  bool leads_astray() const { return leads_astray_; }
 
 private:
   LoadGrowth<dim> growth_to(long step) const
@@ -69,5 +72,6 @@ private:
   Eigen::MatrixXd courses_at_responses_; // shares of each course, one column a response
   Eigen::VectorXd bend_;                 // y
   double share_ = 0;                     // of the growth, at the end
+  bool leads_astray_ = false;
 };
 } // namespace ligament::program
