@@ -348,7 +348,7 @@ TEST_F(Faults, LateErrorsArePlacedLikeAllOthers)
     std::string set, key, message;
   } cases[] = {
       {"--set /coupling/step_ratio=64", "/coupling/step_ratio", "far field's stable step"},
-      {"--set '/time/step=1 us'", "/time/step", "above the stable step"},
+      {"--set '/time/step=1 us'", "/time/step", "of the stable step"},
       {"--set '/far_field/cell_size=2.6 mm'", "/coupling/overlap_cells", "close the packing"},
       {file + "missing.csv", "/discrete_zone/packing_file", "No such file"},
       {file + "bad.csv", "/discrete_zone/packing_file", "bad.csv:3: "},

@@ -185,7 +185,7 @@ TEST_F(RanksEnds, AStepAboveTheStableOneIsRefusedByAll)
     EXPECT_EQ(outcome.code, 2);
     errors.push_back(outcome.errors);
   }
-  EXPECT_NE(errors[0].find("is above the stable step of"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[0].find("of the stable step of"), std::string::npos) << errors[0];
   EXPECT_EQ(errors[0], errors[1]);
 }
 
@@ -203,7 +203,7 @@ TEST_F(RanksEnds, AnErrorOfOneRankEndsAllWithItsReason)
   const Outcome outcome = run_shell(start + "2 " + run + " : -n 1 " + wrong);
   EXPECT_LT(Clock::now() - alone_begin, alone_begin - all_begin + std::chrono::seconds(10));
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.errors.find("is above the stable step of"), std::string::npos)
+  EXPECT_NE(outcome.errors.find("of the stable step of"), std::string::npos)
       << outcome.errors;
   EXPECT_EQ(solvers_of(name).size(), 0u);
   const auto record = file_json("out/run.json"); // the first rank could not say so
