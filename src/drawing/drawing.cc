@@ -120,7 +120,8 @@ void Drawing::add_path(const std::vector<Spot> &line)
 }
 
 // Cairo's time for a path grows faster than its length: the 300 000 outlines of a body that fell to
-// pieces took most of a picture as one. In parts, one over the other, they are as dark only where opaque.
+// pieces took most of a picture as one. In parts, one over the other, they are as dark only where
+// opaque.
 void Drawing::lines(const std::vector<std::vector<Spot>> &lines, const Pen &pen)
 {
   constexpr std::size_t at_once = 256;
