@@ -30,7 +30,6 @@ constexpr int shortest_run = 6; // below it lanes would idle: better filled up i
 constexpr int fewest_equal = 4;
 
 using Lanes = double __attribute__((vector_size(64), may_alias));
-using LanesMask = long long __attribute__((vector_size(64)));
 using UnalignedLanes = double __attribute__((vector_size(64), aligned(8), may_alias));
 
 /// r = K u for one cell per lane.
@@ -52,7 +51,6 @@ LIGAMENT_INLINE void subtract_run(const typename CellKernel<dim>::Run &run, cons
                                   const double *const *u, double *const *f)
 {
   constexpr int n = CellKernel<dim>::n_dofs, n_rows = CellKernel<dim>::n_rows;
-  constexpr LanesMask shift = {8, 0, 1, 2, 3, 4, 5, 6};
   Lanes cell_u[n], cell_r[n];
   // What the last cell of a vector adds to the first node of the next one. Adding both sides of a
   // node in a register avoids overlapping writes, which would stall.
@@ -70,7 +68,8 @@ LIGAMENT_INLINE void subtract_run(const typename CellKernel<dim>::Run &run, cons
       for (int c = 0; c < dim; ++c) {
         auto *p = reinterpret_cast<UnalignedLanes *>(f[c] + run.node[row] + first);
         const Lanes right = cell_r[(2 * row + 1) * dim + c];
-        *p -= cell_r[2 * row * dim + c] + __builtin_shuffle(right, carry[row * dim + c], shift);
+        *p -= cell_r[2 * row * dim + c] +
+              __builtin_shufflevector(right, carry[row * dim + c], 8, 0, 1, 2, 3, 4, 5, 6);
         carry[row * dim + c][0] = right[lanes - 1];
       }
   }

@@ -225,12 +225,12 @@ void ParticleSolver<dim>::drift(double dt)
         angle[i] += dt * w[i];
     });
   } else {
-    auto &[qw, qx, qy, qz] = state.rotation;
-    const auto &[wx, wy, wz] = state.spin;
+    auto &q = state.rotation;
+    const auto &w = state.spin;
     for_each_awake([&, dt](int begin, int end) {
       turn_orientations(
-          {qw.data() + begin, qx.data() + begin, qy.data() + begin, qz.data() + begin},
-          {wx.data() + begin, wy.data() + begin, wz.data() + begin}, dt, end - begin);
+          {q[0].data() + begin, q[1].data() + begin, q[2].data() + begin, q[3].data() + begin},
+          {w[0].data() + begin, w[1].data() + begin, w[2].data() + begin}, dt, end - begin);
     });
   }
 }

@@ -201,7 +201,8 @@ template <int dim>
 void CohesiveFaces<dim>::book(const Particles &p)
 {
   is_booked_ = true;
-  for (auto &[name, face] : faces_) {
+  for (auto &item : faces_) {
+    auto &face = item.second;
     const double shear = OpenedBond::of(face.bond).shear;
     const auto bending_share = [&](const Opening<dim> &o) {
       return SofteningFace<dim>::bending_share(face, shear, o);

@@ -95,7 +95,8 @@ std::vector<Result> balance()
   const auto space =
       packings::make_random_packing<3>(bar<3, packings::RandomParameters<3>>(space_length, 4));
   std::vector<Result> results;
-  for (const auto &[law, flow] : laws()) {
+  for (const auto &[name, flow] : laws()) {
+    const std::string law = name;
     const auto add = [&](const std::string &packing, double value) {
       results.push_back({"law_flow_balance/" + packing + "_" + law, value, 1e-8, 1e-10});
     };
