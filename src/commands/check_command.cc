@@ -122,7 +122,8 @@ int check(const CommandLine &line, const ReadResult &input)
   for (const auto &part : body.skipped)
     fmt::print("  not needed: {} ({})\n", part.what, part.why);
   if (line.json) {
-    nlohmann::ordered_json json = {{"particles", particles},
+    nlohmann::ordered_json json = {{"status", "done"},
+                                   {"particles", particles},
                                    {"cells", cells},
                                    {"overlap_particles", overlap},
                                    {"equivalent_particles", body.equivalent_particles},

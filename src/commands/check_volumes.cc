@@ -47,7 +47,8 @@ std::string memory_text(double needed)
 Json json_of(const Scene &scene, const SizeEstimate &size)
 {
   const auto whole = [](double number) { return std::llround(number); };
-  Json json = {{"particles", whole(size.particles)},
+  Json json = {{"status", "done"},
+               {"particles", whole(size.particles)},
                {"cells", whole(size.cells)},
                {"overlap_particles", whole(size.overlap_particles)},
                {"equivalent_particles", whole(size.equivalent_particles)}};

@@ -84,7 +84,10 @@ int verify_command(const CommandLine &line)
                                             : fmt::format("{} of {} figures fail", n_failed, n);
   fmt::print("{}\n", verdict);
   if (line.json)
+  {
+    json["status"] = n_failed == 0 ? "done" : "stopped";
     fmt::print("{}\n", json.dump());
+  }
   return n_failed == 0 ? 0 : 3;
 }
 } // namespace ligament::program

@@ -57,7 +57,7 @@ void print_explanation(const CommandLine &line)
   else if (line.markdown && !line.json)
     fmt::print("{}", reference_markdown());
   else if (line.json)
-    fmt::print("{}\n", json_text({{"keys", explain_json(line.key)}}));
+    fmt::print("{}\n", json_text({{"status", "done"}, {"keys", explain_json(line.key)}}));
   else
     fmt::print("{}", explain(line.key));
 }
@@ -82,8 +82,11 @@ ExitCode print_comparison(const CommandLine &line)
     core::tell(stderr, fmt::format("warning: no plot: {}; give a folder for it with --output\n",
                                    error.what()));
   }
-  if (line.json)
-    fmt::print("{}\n", json_text(to_json(result)));
+  if (line.json) {
+    nlohmann::ordered_json json = to_json(result);
+    json["status"] = result.complete ? "done" : "stopped";
+    fmt::print("{}\n", json_text(json));
+  }
   return code_of(result.complete);
 }
 

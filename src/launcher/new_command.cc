@@ -24,7 +24,7 @@ int list_kinds(const CommandLine &line)
   for (const SceneKind &kind : scene_kinds())
     json.push_back({{"kind", kind.name}, {"summary", summary(kind)}});
   if (line.json)
-    fmt::print("{}\n", json_text({{"kinds", json}}));
+    fmt::print("{}\n", json_text({{"status", "done"}, {"kinds", json}}));
   return int(ExitCode::done);
 }
 

@@ -34,7 +34,7 @@ int list_cases(const CommandLine &line, const CaseList &list, const std::string 
     json.push_back({{"name", c.name}, {"id", c.id}, {"state", state}, {"reason", c.refused}});
   }
   if (line.json)
-    fmt::print("{}\n", json_text({{"cases", json}, {"output", folder}}));
+    fmt::print("{}\n", json_text({{"status", "done"}, {"cases", json}, {"output", folder}}));
   return int(ExitCode::done);
 }
 
