@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -323,7 +324,8 @@ bool same_dimension(const UnitExponents &a, const UnitExponents &b)
 
 std::string to_string(const UnitExponents &exponents)
 {
-  static constexpr std::string_view names[] = {"kg", "m", "s", "rad"};
+  static constexpr std::string_view names[] = {"kg", "m", "s", "rad", "K"};
+  static_assert(std::size(names) == std::tuple_size_v<UnitExponents>);
   std::string above, below;
   int n_below = 0;
   for (std::size_t k = 0; k < exponents.size(); ++k) {

@@ -130,6 +130,7 @@ TEST(Units, TextOfADimension)
   EXPECT_EQ(to_string(parse_unit("1/s").exponents), "1/s");
   EXPECT_EQ(to_string(parse_unit("m").exponents), "m");
   EXPECT_EQ(to_string(parse_unit("%").exponents), "1");
+  EXPECT_EQ(to_string(parse_unit("J/K").exponents), "kg*m^2/(s^2*K)");
 }
 
 // Where no locale with a decimal comma is installed this repeats the case above.
