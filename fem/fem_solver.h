@@ -51,6 +51,7 @@ public:
   /// Whether every cell turns with its material (theory.md eq. (F6)); else rotations must stay
   /// small. Takes effect with the next compute_forces.
   void set_corotated(bool corotated);
+  bool is_corotated() const { return corotated_ != nullptr; }
   /// Every cell turns and bears finite strain by this law of the body (eq. (C31)).
   void set_strain_law(std::shared_ptr<const core::HyperelasticLaw<dim>> law);
 

@@ -58,6 +58,22 @@ void align(const std::vector<std::array<int, 4>> &quads, std::vector<Vector<2>> 
   }
 }
 
+/// Two nodes in one place would be a slit without width, which is free.
+void require_one_node_each(const std::vector<std::array<int, 4>> &quads,
+                           const std::vector<Vector<2>> &places)
+{
+  std::map<std::pair<double, double>, int> node_at;
+  for (const auto &quad : quads)
+    for (const int node : quad) {
+      const Vector<2> &x = places[node];
+      const int first = node_at.emplace(std::pair(x[0], x[1]), node).first->second;
+      core::require(first == node,
+                    fmt::format("two nodes lie at ({:.6g}, {:.6g}) m, so that the cells beside "
+                                "them are not joined; merge them (gmsh: Coherence)",
+                                x[0], x[1]));
+    }
+}
+
 /// Whether the boxes hold the cell; throws where one of them cuts it.
 bool is_left_out(const CellVectors<2> &corners, const std::vector<InnerBox<2>> &inner)
 {
@@ -86,6 +102,7 @@ Mesh<2> import_mesh(const std::vector<Vector<2>> &given,
 {
   std::vector<Vector<2>> places = given;
   align(quads, places);
+  require_one_node_each(quads, places);
   Mesh<2> mesh;
   std::vector<int> number(places.size(), -1);
   for (const auto &quad : quads) {

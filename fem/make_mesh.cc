@@ -170,13 +170,11 @@ Grid<dim> make_grid(const MeshParameters<dim> &p, int levels, double base_size,
   Grid<dim> grid;
   double n_base = 1;
   for (int k = 0; k < dim; ++k) {
-    n_base *= std::max(1., (p.upper[k] - p.lower[k]) / base_size);
-    core::require(n_base < 1e8, fmt::format("far-field mesh: more than 1e8 cells of {:.6g} m; use "
-                                            "larger cells or more levels",
-                                            base_size));
     std::vector<double> cuts;
-    SectionedAxis::Growth growth = {
-        p.growth, std::max(1, p.fine_cells), std::ldexp(p.cell_size, p.levels), {}};
+    SectionedAxis::Growth growth = {boxes.empty() ? 1 : p.growth,
+                                    std::max(1, p.fine_cells),
+                                    std::ldexp(p.cell_size, p.levels),
+                                    {}};
     for (const auto &box : boxes) {
       core::require(box.lower[k] < p.upper[k] && box.upper[k] > p.lower[k],
                     fmt::format("far-field mesh: the discrete zone ({:.6g} m to {:.6g} m in {}) "
@@ -190,6 +188,10 @@ Grid<dim> make_grid(const MeshParameters<dim> &p, int levels, double base_size,
     if (k < 2)
       lines[k] = taken;
     grid.axes.emplace_back(p.lower[k], p.upper[k], cuts, base_size, levels, growth);
+    n_base *= double(grid[k].n() >> levels);
+    core::require(n_base < 1e8, fmt::format("far-field mesh: more than 1e8 cells of {:.6g} m; use "
+                                            "larger cells or more levels",
+                                            base_size));
   }
   for (const auto &box : boxes) {
     auto &part = grid.inner.emplace_back();

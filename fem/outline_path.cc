@@ -149,12 +149,16 @@ double OutlinePath::turn(int facet, int next) const
   return std::atan2(n[0] * m[1] - n[1] * m[0], n.dot(m));
 }
 
+// Where one named side ends and the next begins loads do, too.
 std::vector<double> OutlinePath::corners() const
 {
   std::vector<double> places;
-  for (std::size_t k = is_closed_ ? 0 : 1; k < facets_.size(); ++k)
-    if (std::abs(turn(facets_[k == 0 ? facets_.size() - 1 : k - 1], facets_[k])) > corner)
+  for (std::size_t k = is_closed_ ? 0 : 1; k < facets_.size(); ++k) {
+    const int before = facets_[k == 0 ? facets_.size() - 1 : k - 1], facet = facets_[k];
+    if (std::abs(turn(before, facet)) > corner ||
+        outline_.facets()[before].boundary != outline_.facets()[facet].boundary)
       places.push_back(start_[k]);
+  }
   return places;
 }
 
@@ -202,7 +206,7 @@ std::vector<double> OutlinePath::evened(std::vector<Fixed> fixed,
     fixed.push_back({0, wish[0]});
   if (is_closed_)
     fixed.push_back({fixed[0].node + n, fixed[0].place + length()});
-  std::vector<double> place(2 * n + 1);
+  std::vector<double> place(std::size_t(fixed.back().node) + 1);
   for (std::size_t s = 0; s + 1 < fixed.size(); ++s) {
     const auto [first, low] = fixed[s];
     const auto [last, high] = fixed[s + 1];

@@ -244,4 +244,45 @@ TEST(FitOutline, PrismsHaveTheSameCellsAllAlong)
   expect_closed(ring);
   EXPECT_NEAR(area(mesh) - area(ring), 6 * 6 * 4, 1e-9);
 }
+// Where a name ends a load does: there must be a node, also where nothing turns.
+TEST(FitOutline, NamedPartsOfStraightSidesAreMeshedExactly)
+{
+  for (const double lean : {0., 2.}) {
+    Polygon p;
+    const Vector<2> left(-50, 50 + lean), right(50, 50 - lean);
+    const auto on_top = [&](double x) { return Vector<2>(left + (x + 50) / 100 * (right - left)); };
+    for (const auto &[x, b] : std::vector<std::pair<Vector<2>, int>>{{{-50, -50}, 2},
+                                                                     {{50, -50}, 1},
+                                                                     {right, 3},
+                                                                     {on_top(5), 7},
+                                                                     {on_top(-5), 3},
+                                                                     {left, 0}})
+      p.push_back({x, b});
+    const auto mesh = make_mesh(parameters(solid_of({p}), 4));
+    expect_closed(mesh);
+    EXPECT_NEAR(surfaces(mesh).at(7), 10 * std::hypot(1, lean / 50), 1e-6) << lean;
+  }
+}
+
+// The first corner may lie at any node of the path: the last one, too.
+TEST(FitOutline, TriangularHolesAtAnyAngle)
+{
+  int n_meshed = 0;
+  for (int k = 0; k < 60; ++k) {
+    Polygon hole;
+    for (int c = 0; c < 3; ++c) {
+      const double angle = 4.197 + 0.1 * k - 2 * M_PI / 3 * c;
+      hole.push_back({{10.3 + 4 * std::cos(angle), 10.1 + 4 * std::sin(angle)}, 7});
+    }
+    const auto outline = solid_of({box({0, 0}, {20, 20}), hole});
+    try {
+      const auto mesh = make_mesh(parameters(outline, 1));
+      EXPECT_NEAR(area(mesh) / outline->volume(), 1, 1e-9);
+      ++n_meshed;
+    } catch (const core::InputError &) { // sharp corners may not go with these cells
+    }
+  }
+  EXPECT_GT(n_meshed, 20);
+}
+
 } // namespace

@@ -82,4 +82,23 @@ TEST(ImportMesh, WhatDoesNotFitIsRefusedWithItsPlace)
   EXPECT_NE(message(gap, {{4, 1}, {5, 3}}).find("end inside the body"), std::string::npos);
   EXPECT_NE(message(q.cells, {{-1, -1}, {9, 9}}).find("no cells"), std::string::npos);
 }
+TEST(ImportMesh, SeamsThatAreNotMergedAreRefused)
+{
+  Quads q(6, 4, 0);
+  const int twin = int(q.places.size());
+  q.places.push_back(q.places[10]);
+  for (auto &cell : q.cells)
+    if (const auto found = std::find(cell.begin(), cell.end(), 10); found != cell.end()) {
+      *found = twin;
+      break;
+    }
+  try {
+    import_mesh(q.places, q.cells, *q.outline, {});
+    ADD_FAILURE() << "two nodes in one place";
+  } catch (const core::InputError &error) {
+    EXPECT_NE(std::string(error.what()).find("two nodes lie at (3, 1) m"), std::string::npos)
+        << error.what();
+  }
+}
+
 } // namespace

@@ -254,6 +254,20 @@ TEST(Mesh, without_inner_box_is_uniform)
   EXPECT_DOUBLE_EQ(mesh.cell_size[0][1], 0.52 / 5);
   // Rows: nodes and cells are numbered along x first.
   EXPECT_EQ(mesh.cells[3], (std::array<int, 4>{{3, 4, 14, 15}}));
+  p.growth = 1.2; // away from what?
+  EXPECT_EQ(make_mesh(p).n_cells(), 10 * 5);
+}
+
+// Cells that grow are counted as they are.
+TEST(Mesh, growing_cells_fill_large_bodies)
+{
+  auto p = box<2>({20000, 20000}, 1);
+  p.inner = {{{-10, -10}, {10, 10}}};
+  p.lower = {-10000, -10000};
+  p.upper = {10000, 10000};
+  p.levels = 12;
+  p.growth = 1.3;
+  EXPECT_LT(make_mesh(p).n_cells(), 40000);
 }
 
 TEST(Mesh, refuses_what_cannot_be_meshed)
