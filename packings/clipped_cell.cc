@@ -146,8 +146,14 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
     SolidPiece<dim> piece;
     if (near_solid) {
       piece = in_solid(convex, shape, x, spacing);
-      for (const auto &face : piece.faces())
-        add(face.id, face.normal, face.distance, sign * face.area, sign * face.moment);
+      const auto faces = piece.faces();
+      for (std::size_t k = 0; k < faces.size(); ++k) {
+        const auto &face = faces[k];
+        const auto [sum, is_first] =
+            add(face.id, face.normal, face.distance, sign * face.area, sign * face.moment);
+        if (dim == 3 && is_facet(face.id))
+          sum->corners = is_first && sign > 0 ? piece.corners(k) : std::vector<Vector<dim>>();
+      }
     } else {
       const auto faces = convex.faces();
       for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -177,7 +183,7 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
       is_open = true;
     else if (is_facet(sum.id)) // its plane may be the one of a neighbour's facet, but not its name
       parts.push_back({-1, shape.solid->facets()[first_facet - sum.id].boundary, sum.normal,
-                       sum.distance, sum.area, sum.moment});
+                       sum.distance, sum.area, sum.moment, std::move(sum.corners)});
     else if (sum.id > first_void_plane)
       parts.push_back({-1, first_side_plane - sum.id, sum.normal, sum.distance, sum.area,
                        sum.moment, std::move(sum.corners)});

@@ -35,12 +35,12 @@ PowerDiagram<dim>::PowerDiagram(const Seeds<dim> &seeds, double bin) : seeds_(se
   }
   const auto place = [&](int i) {
     const Index k = bin_of(seeds.centre[i]);
-    int bin_number = k[dim - 1];
+    std::int64_t bin_number = k[dim - 1];
     for (int a = dim - 2; a >= 0; --a)
       bin_number = bin_number * n_bins_[a] + k[a];
     return bin_number;
   };
-  first_.assign(n_bins_.prod() + 1, 0);
+  first_.assign(n_bins_.template cast<std::int64_t>().prod() + 1, 0);
   for (int i = 0; i < seeds.size(); ++i)
     ++first_[place(i) + 1];
   for (std::size_t b = 1; b < first_.size(); ++b)
@@ -93,7 +93,7 @@ void PowerDiagram<dim>::for_each_near(int i, GoOn &&go_on, Visit &&visit) const
     }
     if ((k.array() < 0).any() || (k.array() >= n_bins_.array()).any() || !go_on(std::sqrt(square)))
       continue;
-    int bin_number = k[dim - 1];
+    std::int64_t bin_number = k[dim - 1];
     for (int a = dim - 2; a >= 0; --a)
       bin_number = bin_number * n_bins_[a] + k[a];
     for (int n = first_[bin_number]; n < first_[bin_number + 1]; ++n)

@@ -148,6 +148,26 @@ auto SolidPiece<dim>::faces() const -> std::vector<Face>
 }
 
 template <int dim>
+std::vector<Vector<dim>> SolidPiece<dim>::corners(std::size_t k) const
+{
+  const std::vector<Edge> &edges = faces_[k].edges;
+  std::map<int, int> next;
+  for (const auto &[from, to] : edges)
+    if (!next.emplace(from, to).second)
+      return {};
+  std::vector<Vector<dim>> corners;
+  int at = edges[0][0];
+  do {
+    corners.push_back(vertices_[at]);
+    const auto found = next.find(at);
+    if (found == next.end())
+      return {};
+    at = found->second;
+  } while (at != edges[0][0] && corners.size() < edges.size());
+  return at == edges[0][0] && corners.size() == edges.size() ? corners : std::vector<Vector<dim>>();
+}
+
+template <int dim>
 SolidPieces<dim>::SolidPieces(const core::Solid<dim> &solid, int first_id, double reach)
     : bin_(reach), lower_(solid.lower())
 {

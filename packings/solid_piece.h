@@ -35,6 +35,8 @@ public:
 
   /// Faces of no area may be among them.
   std::vector<Face> faces() const;
+  /// In turn, of 3D face number k, in m; empty where it is not one loop.
+  std::vector<Vector<dim>> corners(std::size_t k) const;
   const std::vector<Vector<dim>> &vertices() const { return vertices_; } // m
 
 private:

@@ -1,5 +1,6 @@
 #include "core/check.h"
 #include "core/outline.h"
+#include "core/part.h"
 #include "packings/random_packing.h"
 #include "tests/unit/packings/packing_checks.h"
 
@@ -237,4 +238,27 @@ TEST(Outline, CrossingsAndGapsAreFound)
     std::swap(edge[0], edge[1]);
   EXPECT_THROW(S(ball.vertices(), turned), InputError);
 }
+/// Loads act on parts of sides by the corners of faces.
+TEST(SolidPackings, FacesOnPlaneSidesHaveTheirCorners)
+{
+  auto p = specimen<3>(LatticeKind::simple_cubic, 10);
+  const auto prism =
+      std::make_shared<Solid<3>>(extrude(odd_polygons(p.spacing), 0.02, 0.075, {4, 5}));
+  put<3>(prism, p);
+  for (const auto &angle : orientations<3>()) {
+    p.orientation = angle;
+    const auto packing = make_lattice_packing(p);
+    double with = 0, all = 0;
+    for (const auto &face : packing.boundary_faces) {
+      all += face.area;
+      if (face.corners.empty())
+        continue;
+      with += face.area;
+      EXPECT_NEAR(core::face_area<3>(face.corners) / face.area, 1, 1e-6);
+      EXPECT_LT((core::face_centroid<3>(face.corners) - face.lever).norm(), 1e-6 * p.spacing);
+    }
+    EXPECT_GT(with, 0.95 * all);
+  }
+}
+
 } // namespace
