@@ -158,6 +158,9 @@ void ContactForces<dim>::join(std::shared_ptr<particles::Owners> owners, const P
   contacts_.join(*guests_);
   search_.join(*guests_, p);
   any_ = guests_->ranks().any(!all().empty());
+  may_meet_ = guests_->ranks().any(may_meet_);
+  if (may_meet_)
+    search_.watch_from_reference();
 }
 
 template <int dim>

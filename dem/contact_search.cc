@@ -70,8 +70,10 @@ ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double 
       face_area_(face_area), largest_(packings::largest_diameter(packing)),
       diameter_(packing.diameter), on_surface_(packing.size(), 0)
 {
-  for (const auto &face : packing.boundary_faces)
+  for (const auto &face : packing.boundary_faces) {
     add_surface_particle(face.i);
+    may_meet_ = may_meet_ || face.boundary >= inner_surface<dim>;
+  }
   for (const auto &face : packing.faces)
     if (face.cracked)
       add_surface_particle(face.i), add_surface_particle(face.j);

@@ -40,6 +40,14 @@ public:
   /// from particle to particle. Of a body in parts: those of other ranks that come near come first.
   void update(Particles &particles, const BondNetwork<dim> &bonds, Contacts<dim> &contacts);
 
+  /// Whether free surfaces may meet before anything breaks: those of a box never do. Of what is at
+  /// hand of the body.
+  bool may_meet() const { return may_meet_; }
+  /// has_moved() counts from the reference until the first search; else it says no until then.
+  void watch_from_reference() { searched_at_.assign(surface_.size(), Vector<dim>::Zero()); }
+  /// Whether a surface particle has moved by the skin since the last search, or the reference.
+  bool has_moved(const Particles &particles) const;
+
   /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
   /// proportion to the diameters; its normal is not known.
   Bond<dim> face_between(int i, int j, double distance,
@@ -58,7 +66,6 @@ private:
     const PeriodicImage<dim> *image;
   };
 
-  bool has_moved(const Particles &particles) const;
   bool is_own(int i) const { return !guests_ || guests_->is_own(i); }
   /// Of a body in parts: particles of other ranks that come near those whose contacts are kept.
   void meet_others(Particles &particles, Contacts<dim> &contacts);
@@ -77,8 +84,9 @@ private:
   std::vector<double> diameter_;
   std::vector<bool> on_surface_;
   std::vector<int> surface_;             // particles on surfaces
-  std::vector<Vector<dim>> searched_at_; // of the first of them, displacements at the last search
-  bool due_ = true;
+  // Of the first of them, displacements at the last search; before it none.
+  std::vector<Vector<dim>> searched_at_;
+  bool due_ = true, may_meet_ = false;
   ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
 };
 } // namespace ligament::dem

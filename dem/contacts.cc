@@ -127,6 +127,14 @@ template <int dim>
 double Contacts<dim>::update_slip(Contact<dim> &c, const State &s, const Particles &p) const
 {
   const double stored = c.slip.norm();
+  if constexpr (dim == 3)
+    if (c.known && stored > 0) { // turned with the two about their normal
+      const double angle =
+          0.5 * s.normal.dot(turned_since(p, c.face.i, c.last_turn_i, c.last_angle_i) +
+                             turned_since(p, c.face.j, c.last_turn_j, c.last_angle_j));
+      c.slip +=
+          std::sin(angle) * s.normal.cross(c.slip) - (1 - std::cos(angle)) * Vector<dim>(c.slip);
+    }
   // The slip follows the face: turned into its plane, of the same length.
   c.slip -= s.normal * s.normal.dot(c.slip);
   if (stored > 0 && c.slip.norm() > 0)

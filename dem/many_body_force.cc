@@ -442,8 +442,9 @@ std::vector<core::SkippedPart> ManyBodyForce<dim>::skipped_parts() const
                        can_break() ? "the criterion reads tractions; tensors are computed for "
                                      "output only"
                                    : "nothing reads them but the output"});
-  if (contacts_.none())
-    skipped.push_back({"contacts until a bond breaks", "no initial crack"});
+  if (!contacts_.may_touch())
+    skipped.push_back(
+        {"contacts until a bond breaks", "no initial crack, surfaces of a box alone"});
   return skipped;
 }
 

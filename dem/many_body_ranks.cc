@@ -56,7 +56,7 @@ void ManyBodyForce<dim>::invite(const core::State &state, Particles &p)
 template <int dim>
 void ManyBodyForce<dim>::look_for_breaks_in_parts(const StressedBody<dim> &state, Particles &p)
 {
-  if (!search_.can_break() && contacts_.none())
+  if (!search_.can_break() && !contacts_.may_touch())
     return;
   const auto exceeding = search_.exceeding_bonds(state);
   std::vector<std::int64_t> seen = contacts_.seen();

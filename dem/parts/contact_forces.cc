@@ -9,7 +9,7 @@ ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const M
                                   const PeriodicImages<dim> &images)
     : contacts_(materials, packing.global_id, packing.size()),
       search_(packing, packings::mean_face_area(packing), &images), images_(images),
-      spacing_(packing.spacing)
+      spacing_(packing.spacing), may_meet_(search_.may_meet())
 {
   for (const auto &face : packing.faces)
     if (face.cracked) {
@@ -26,6 +26,8 @@ ContactForces<dim>::ContactForces(const packings::Packing<dim> &packing, const M
       contacts_.add(b, true);
     }
   contacts_.settle();
+  if (may_meet_)
+    search_.watch_from_reference();
 }
 
 template <int dim>
@@ -72,12 +74,12 @@ template <int dim>
 void ContactForces<dim>::search(Particles &p, const BondNetwork<dim> &bonds, double time,
                                 particles::RestBlocks<dim> *rest)
 {
-  if (none() || looked_at_ == time)
+  if (!may_touch() || looked_at_ == time)
     return;
   looked_at_ = time;
   searching_ = searching_ || has_slid_;
   if (!searching_) {
-    has_slid_ = contacts_.has_slid(p, spacing_ / 4);
+    has_slid_ = contacts_.has_slid(p, spacing_ / 4) || (may_meet_ && search_.has_moved(p));
     return;
   }
   search_.update(p, bonds, contacts_);

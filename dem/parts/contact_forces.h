@@ -36,6 +36,8 @@ public:
   }
   /// No part of the body has any.
   bool none() const { return guests_ ? !any_ : all().empty(); }
+  /// Whether faces may begin to touch though no bond breaks.
+  bool may_touch() const { return !none() || may_meet_; }
   /// What ranks have to agree on behind each step, before the next one searches: whether there are
   /// contacts, whether they slid, whether a search is due; 1 where one rank sees it.
   std::vector<std::int64_t> seen() const;
@@ -94,11 +96,13 @@ private:
   Contacts<dim> contacts_;
   ContactSearch<dim> search_;
   const PeriodicImages<dim> &images_;
-  double spacing_;                            // m
-  bool searching_ = false, has_slid_ = false; // the second is seen in one step, acts in the next
+  double spacing_; // m
+  // Faces have slid, or surfaces have moved: seen in one step, it acts in the next.
+  bool searching_ = false, has_slid_ = false;
   std::optional<double> looked_at_;           // s
   // Of a body in parts.
   std::unique_ptr<ContactGuests<dim>> guests_;
   bool any_ = false; // some part has contacts
+  bool may_meet_;    // free surfaces of some part, see ContactSearch
 };
 } // namespace ligament::dem

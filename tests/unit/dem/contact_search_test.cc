@@ -2,6 +2,7 @@
 #include "dem/contact_search.h"
 
 #include "tests/unit/dem/body.h"
+#include "tests/unit/dem/run.h"
 
 #include <gtest/gtest.h>
 
@@ -68,4 +69,55 @@ TEST(ContactSearch, DistancesFollowTheSizes)
   check_sizes<2>();
   check_sizes<3>();
 }
+/// Two blocks a spacing apart, one thrown at the other: nothing can break.
+template <int dim>
+void check_blocks_meet(packings::LatticeKind kind)
+{
+  constexpr double d = 0.1, speed = 0.01;
+  packings::LatticeParameters<dim> lattice;
+  lattice.kind = kind;
+  lattice.spacing = d;
+  lattice.upper = Vector<dim>::Constant(0.6);
+  lattice.upper[1] = 1.6;
+  packings::BoxNotch<dim> gap;
+  gap.lower = Vector<dim>::Constant(-1);
+  gap.upper = Vector<dim>::Constant(2);
+  gap.lower[1] = 0.75;
+  gap.upper[1] = 0.9;
+  lattice.notches = {gap};
+  DemMaterial material;
+  Run<dim> run(packings::make_lattice_packing(lattice), material, {});
+  auto &p = run.solver->state;
+  double mass = 0, other = 0;
+  for (int i = 0; i < p.size(); ++i) {
+    const bool is_upper = p.reference[1][i] > 0.82;
+    p.velocity[1][i] = is_upper ? -speed : 0;
+    (is_upper ? mass : other) += p.mass[i];
+  }
+  const double before = run.mechanical();
+  const double wave = run.force->elastic_constants().wave_speed_p;
+  while (run.time < 0.15 / speed + 4 * 0.75 / wave)
+    run.step();
+  double momentum = 0, lowest = 1e300, highest = -1e300;
+  for (int i = 0; i < p.size(); ++i) {
+    const double y = p.reference[1][i] + p.displacement[1][i];
+    if (p.reference[1][i] > 0.82) {
+      momentum += p.mass[i] * p.velocity[1][i];
+      lowest = std::min(lowest, y);
+    } else
+      highest = std::max(highest, y);
+  }
+  // Else the one would have all of its momentum still.
+  EXPECT_GT(momentum, -0.6 * mass * speed);
+  EXPECT_GT(lowest, highest + 0.5 * d);
+  EXPECT_NEAR(run.residual() / before, 1, 1e-3);
+}
+
+TEST(ContactSearch, BlocksMeetThoughNothingBreaks)
+{
+  check_blocks_meet<2>(packings::LatticeKind::hexagonal);
+  check_blocks_meet<2>(packings::LatticeKind::square);
+  check_blocks_meet<3>(packings::LatticeKind::simple_cubic);
+}
+
 } // namespace ligament::dem::testing

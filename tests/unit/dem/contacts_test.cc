@@ -78,4 +78,49 @@ TEST(Contacts, ManyAtOnceAreInOrder)
   check_order<2>();
   check_order<3>();
 }
+/// A contact that friction holds, its two particles turned about its normal: the force turns, too.
+TEST(Contacts, FrictionTurnsAboutTheNormal)
+{
+  Packing<3> packing;
+  packing.spacing = 1;
+  packing.volume = {1, 1};
+  packing.global_id = {0, 1};
+  for (auto &x : packing.centre)
+    x.assign(2, 0.);
+  packing.centre[0][1] = 1;
+  DemMaterial material;
+  material.friction = 1;
+  Particles<3> p = at_rest(packing, material);
+  Contacts<3> contacts(material, {}, 2);
+  contacts.add(face_of<3>(0), true);
+  const auto force = [&] {
+    for (auto *values : {&p.force, &p.torque})
+      for (auto &component : *values)
+        component.assign(2, 0.);
+    contacts.add_forces(p, 1);
+    return get(p.force, 0);
+  };
+  const Vector<3> press(-0.01, 0, 0), slip(0, 0.003, 0);
+  set(p.displacement, 1, press);
+  force();
+  set(p.displacement, 1, Vector<3>(press + slip));
+  const Vector<3> before = force();
+  ASSERT_GT(before[1], 0.1 * std::abs(before[0]));
+  constexpr int n = 200;
+  for (int k = 1; k <= n; ++k) {
+    const double angle = M_PI / 2 * k / n;
+    for (const int i : {0, 1}) {
+      p.rotation[0][i] = std::cos(angle / 2);
+      p.rotation[1][i] = std::sin(angle / 2);
+    }
+    set(p.displacement, 1,
+        Vector<3>(press + slip[1] * Vector<3>(0, std::cos(angle), std::sin(angle))));
+    force();
+  }
+  const Vector<3> after = force();
+  EXPECT_NEAR(after[0], before[0], 1e-4 * before.norm());
+  EXPECT_NEAR(after[1], 0, 1e-2 * before[1]);
+  EXPECT_NEAR(after[2], before[1], 1e-2 * before[1]);
+}
+
 } // namespace ligament::dem::testing
