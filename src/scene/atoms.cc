@@ -5,6 +5,7 @@
 #include "md/atomic_units.h"
 #include "md/table_file.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -178,6 +179,19 @@ void derive(Scene &scene)
   }
   const auto crystal = crystal_of<dim>(scene);
   const auto constants = crystal.elastic_constants();
+  using Stiffness = Eigen::Matrix<double, n_strains<dim>, n_strains<dim>>;
+  const auto resistance =
+      Eigen::SelfAdjointEigenSolver<Stiffness>(constants.stiffness, Eigen::EigenvaluesOnly)
+          .eigenvalues()
+          .eval();
+  if (!(resistance.minCoeff() > 1e-3 * resistance.maxCoeff()))
+    throw core::KeyedError(
+        "/discrete_zone/packing", "this lattice of the potential in /atoms is not stable",
+        fmt::format("the least of its elastic constants is {:.3g} Pa, the largest "
+                    "{:.3g} Pa",
+                    resistance.minCoeff(), resistance.maxCoeff()),
+        "choose the packing in which the element crystallises, or another "
+        "potential");
   scene.zone.spacing = crystal.spacing();
   scene.material = MaterialParameters();
   scene.material.youngs_modulus = constants.youngs_modulus;
@@ -279,6 +293,10 @@ md::Crystal<dim> crystal_of(const Scene &scene)
   md::CrystalParameters<dim> p;
   p.kind = kind_of(scene);
   const md::Potential potential = read_potential(a, species_of(scene));
+  // A mesh alone needs no packing, but its constants are those of some lattice.
+  const std::string &own = potential.species(0).lattice;
+  if (dim == 3 && !scene.zone.packing && (own == "bcc" || own == "BCC"))
+    p.kind = md::CrystalKind::bcc;
   p.orientation = core::at_key(section + "/along_x", "give two directions at a right angle",
                                [&] { return orientation_of<dim>(scene); });
   p.thickness = dim == 2 ? scene.specimen.thickness : 1;

@@ -26,6 +26,11 @@ void refuse_other_laws(const Scene &scene, Findings &f)
     refuse("/tools", "atoms have no surface that a tool could touch");
   if (scene.time.rest_threshold > 0)
     refuse("/time/rest_threshold", "atoms never rest");
+  if (scene.dimension == 2 && scene.plane == PlaneMode::stress)
+    refuse("/plane", "a plane of atoms has no thickness to strain: its constants are its own");
+  if (scene.zone.extent == DiscreteZone::Extent::all &&
+      scene.time.stop_when == StopWhen::specimen_broken)
+    refuse("/time/stop_when", "crystals have no faces at their ends, by which one would see it");
 }
 
 void refuse_loads(const Scene &scene, Findings &f)
@@ -97,6 +102,9 @@ void check_temperature(const Scene &scene, Findings &f)
     refuse("/coupling/regime", "\"regime\" in /coupling is \"nonlinear\"",
            "cells under finite strain do not know the stress that heat makes",
            "choose \"automatic\", which is \"corotated\" then");
+  if (scene.damping.local > 0 || scene.damping.mass > 0 || scene.damping.kinetic)
+    refuse("/damping", "\"damping\"", "it takes the heat of all atoms, and nothing gives it back",
+           "remove it; /atoms/zone_friction is a friction with its noise");
   if (!scene.initial_motion.empty())
     refuse("/initial_motion", "\"initial_motion\"", "atoms start with the velocities of their heat",
            "remove one of the two");

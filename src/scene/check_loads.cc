@@ -30,10 +30,10 @@ std::vector<std::string> kinds_of(const LoadParameters &load)
   return kinds;
 }
 
-bool acts_on(const LoadParameters &load, int c)
+bool acts_on(const LoadParameters &load, int c, int dim)
 {
   // A pressure may act beside what holds the side along itself.
-  const bool presses = load.pressure && (load.boundary >= 6 || load.boundary / 2 == c);
+  const bool presses = load.pressure && (load.boundary >= 2 * dim || load.boundary / 2 == c);
   return load.velocity[c] || load.displacement[c] || load.traction[c] || load.force[c] || presses;
 }
 
@@ -79,8 +79,9 @@ void check_twice(const Scene &scene, std::size_t k, const std::string &key, Find
   const LoadParameters &load = scene.loads[k];
   for (std::size_t j = 0; j < k; ++j)
     for (int c = 0; c < scene.dimension; ++c)
-      if (scene.loads[j].boundary == load.boundary && acts_on(load, c) &&
-          acts_on(scene.loads[j], c) && act_on_common_area(scene, load, scene.loads[j]))
+      if (scene.loads[j].boundary == load.boundary && acts_on(load, c, scene.dimension) &&
+          acts_on(scene.loads[j], c, scene.dimension) &&
+          act_on_common_area(scene, load, scene.loads[j]))
         return f.error(
             key + "/boundary",
             fmt::format("\"boundary\" in {}: component {} of side \"{}\" is loaded twice", key,
