@@ -238,10 +238,12 @@ def compare(args, base, scene, draw):
     if now == 0 and not scene["time"].get("loading"):
         now = call(args, half, ["resume", str(half), "-n", str(draw.one_of(1, 2, 3)), "--set",
                                 f"/time/duration={scene['time']['duration']}"])
-        if now in (0, 3):
+        if now != 2:  # nothing to go on with
             found["goes_on"] = differences(one, half) if now == code else [f"exit codes {code} and {now}"]
         if "viscosity" in scene["material"]:  # it says how much softer the zone will be, by the duration
             found["goes_on"] = [name for name in found.get("goes_on", []) if name != "warnings"]
+    elif now not in (0, 2, 3):
+        found["goes_on"] = [f"exit code {now}"]
     return {name: what for name, what in found.items() if what}, broken_in(one)
 
 

@@ -52,6 +52,11 @@ ComparedSide read_reference(const std::string &path)
   core::require(unknown_columns(side).size() < side.curve.columns().size(),
                 path + ": none of its columns is one that compare knows: " +
                     core::listed({std::begin(known_columns), std::end(known_columns)}, "and"));
+  core::require(side.values("load", "N") || side.values("stress", "Pa") ||
+                    (side.values("time", "s") &&
+                     (side.values("displacement", "m") || side.values("external_work", "J"))),
+                path + ": it has no numbers to compare; give load (N) or stress (Pa), or time (s) "
+                       "beside displacement (m) or external_work (J)");
   return side;
 }
 
@@ -111,6 +116,22 @@ std::optional<TimeSeries> ComparedSide::series(const std::vector<const char *> &
   return result;
 }
 
+namespace
+{
+/// Leaves out rows of a measured curve in which one of the two is missing.
+void keep_whole_rows(std::vector<double> &x, std::vector<double> &y)
+{
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) {
+      x[kept] = x[i];
+      y[kept++] = y[i];
+    }
+  x.resize(kept);
+  y.resize(kept);
+}
+} // namespace
+
 bool has(const ComparedSide &side, const Measure &m)
 {
   return side.values(m.x, m.x_unit) && side.values(m.y, m.y_unit);
@@ -121,6 +142,8 @@ std::optional<double> stiffness(const ComparedSide &side, const Measure &m)
   if (!has(side, m))
     return {};
   auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
+  if (!side.record)
+    keep_whole_rows(x, y);
   const auto row = side.largest_row(y);
   return row ? fit_stiffness(x, y, *row) : std::nullopt;
 }
@@ -148,12 +171,16 @@ std::optional<double> work_at_largest(const ComparedSide &side)
     return {};
   if (const auto work = side.values("external_work", "J"))
     return std::isfinite((*work)[*index]) ? std::optional((*work)[*index]) : std::nullopt;
-  const auto displacement = side.values("displacement", "m");
-  if (!displacement)
+  auto x = side.values("displacement", "m");
+  if (!x)
     return {};
+  std::vector<double> y(load->begin(), load->begin() + std::ptrdiff_t(*index) + 1);
+  x->resize(y.size());
+  if (!side.record)
+    keep_whole_rows(*x, y);
   double area = 0;
-  for (std::size_t i = 1; i <= *index; ++i)
-    area += 0.5 * ((*load)[i] + (*load)[i - 1]) * ((*displacement)[i] - (*displacement)[i - 1]);
+  for (std::size_t i = 1; i < y.size(); ++i)
+    area += 0.5 * (y[i] + y[i - 1]) * ((*x)[i] - (*x)[i - 1]);
   return area;
 }
 

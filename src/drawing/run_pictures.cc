@@ -1,6 +1,7 @@
 #include "src/drawing/run_pictures.h"
 
 #include "core/check.h"
+#include "core/parameters/spelling.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
 #include "src/output/vtk_reader.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <functional>
 
 namespace ligament::program
 {
@@ -22,6 +24,31 @@ std::string caption(const ShownField &field, const BodyState &state)
       fmt::format("{} {}, {}", field.label(), state.caption, quantity(state.time, "s"));
   text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
+}
+
+bool has_field(const BodyState &state, const std::string &name)
+{
+  return find_field(state.particles.fields, name) || find_field(state.cells.node_fields, name) ||
+         find_field(state.cells.cell_fields, name);
+}
+
+/// A picture of a field that the run has not kept would show the body in grey.
+void require_fields(const std::vector<const BodyState *> &states,
+                    const std::vector<std::string> &words, int dimension, const std::string &run)
+{
+  const auto is_there = [&](const std::string &word) {
+    const std::string name = shown_field(word, dimension).field;
+    return std::any_of(states.begin(), states.end(),
+                       [&](const BodyState *state) { return has_field(*state, name); });
+  };
+  for (const std::string &word : words) {
+    if (is_there(word))
+      continue;
+    std::vector<std::string> there = shown_field_words(dimension);
+    there.erase(std::remove_if(there.begin(), there.end(), std::not_fn(is_there)), there.end());
+    throw core::InputError(
+        fmt::format("{}: the run has kept no \"{}\"; choose {}", run, word, core::listed(there)));
+  }
 }
 } // namespace
 
@@ -73,6 +100,7 @@ std::vector<PictureEntry> write_pictures(const RunFolder &folder, const RunRecor
   std::vector<const BodyState *> all;
   for (const BodyState &state : states)
     all.push_back(&state);
+  require_fields(all, fields, record.dimension, folder.path);
   make_folder(target.pictures());
   return write_pictures(target, all, fields, record.dimension, record.magnification);
 }
@@ -83,6 +111,7 @@ BodyState read_state(const RunFolder &folder, const StateEntry &entry)
   state.name = entry.name;
   state.caption = entry.caption;
   state.time = entry.time;
+  state.tools = entry.tools;
   if (!entry.particles.empty()) {
     const std::string file = folder.path + "/" + entry.particles;
     state.particles = std::filesystem::path(file).extension() == ".pvtp" ? read_particles_pvtp(file)

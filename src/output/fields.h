@@ -71,8 +71,8 @@ struct BrokenBond
 /// A rigid tool as pictures show it.
 struct ToolOutline
 {
-  std::vector<double> points; // m, two ends of x, y, z per edge, where the run began
-  double displacement[3];     // m
+  std::vector<double> points;         // m, two ends of x, y, z per edge, where the run began
+  std::array<double, 3> displacement; // m
 };
 
 /// A body at one time that is worth keeping: what pictures are drawn from, during a run and later.

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/tell.h"
+#include "src/output/table.h"
 
 #include <fmt/format.h>
 
@@ -31,6 +32,20 @@ void refuse_what_is_no_run(const RunFolder &folder)
                             folder.path, foreign));
 }
 
+/// Rows of results, or checkpoints; a run that was ended from outside its loop does not know its
+/// steps.
+bool has_taken_steps(const RunFolder &folder)
+{
+  if (std::filesystem::exists(folder.checkpoints()))
+    return true;
+  try {
+    return std::filesystem::exists(folder.history()) &&
+           read_csv(folder.history(), TableEnd::may_be_torn).n_rows() > 0;
+  } catch (const core::InputError &) {
+    return true;
+  }
+}
+
 /// False when nothing in it is worth keeping: it failed before its first step.
 bool holds_results(const RunFolder &folder)
 {
@@ -38,7 +53,7 @@ bool holds_results(const RunFolder &folder)
     return false;
   try {
     const RunRecord record = read_run_record(folder.record());
-    return record.status != "failed" || record.steps > 0;
+    return record.status != "failed" || record.steps > 0 || has_taken_steps(folder);
   } catch (const core::InputError &) {
     return true; // damaged: for its owner to look at
   }
@@ -108,7 +123,9 @@ void complete(const RunFolder &folder, RunRecord record, const std::string &stat
 void OpenRun::end(const std::string &status, const std::string &reason) noexcept
 {
   try {
-    complete(folder_, read_run_record(folder_.record()), status, reason);
+    // A run that has ended stays so: a signal may come while its report is written.
+    if (const RunRecord record = read_run_record(folder_.record()); record.status == "running")
+      complete(folder_, record, status, reason);
   } catch (const std::exception &error) {
     core::tell(stderr, fmt::format("warning: the record of the run could not be completed: {}\n",
                                    error.what()));

@@ -11,16 +11,8 @@ namespace
 {
 /// What lies in a folder before the record of its run: left by `check --draw`, by a run that was
 /// killed at once, or by a run that was refused at once.
-constexpr const char *known_before_a_run[] = {"lock",
-                                              "run.json.part",
-                                              "run.json.reserve",
-                                              "scene.resolved.json",
-                                              "scene.resolved.json.part",
-                                              "run.log",
-                                              "packing.csv",
-                                              "check.png",
-                                              "check_packing.csv",
-                                              "fields",
+constexpr const char *known_before_a_run[] = {"lock",      "run.json.part",     "run.json.reserve",
+                                              "check.png", "check_packing.csv", "fields",
                                               "pictures"};
 } // namespace
 

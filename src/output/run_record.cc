@@ -77,6 +77,13 @@ void for_each_field(GaugeEntry &r, Visit &&visit)
 }
 
 template <typename Visit>
+void for_each_field(ToolOutline &r, Visit &&visit)
+{
+  visit("points", r.points);
+  visit("displacement", r.displacement);
+}
+
+template <typename Visit>
 void for_each_field(StateEntry &r, Visit &&visit)
 {
   visit("name", r.name);
@@ -84,6 +91,7 @@ void for_each_field(StateEntry &r, Visit &&visit)
   visit("time", r.time);
   visit("particles", r.particles);
   visit("cells", r.cells);
+  visit.if_any("tools", r.tools);
 }
 
 template <typename Visit>
@@ -140,7 +148,8 @@ void for_each_field(RunRecord &r, Visit &&visit)
 }
 
 template <typename T>
-inline constexpr bool is_value = std::is_arithmetic_v<T> || std::is_same_v<T, std::string>;
+inline constexpr bool is_value = std::is_arithmetic_v<T> || std::is_same_v<T, std::string> ||
+                                 std::is_same_v<T, std::array<double, 3>>;
 
 struct Writer
 {
@@ -181,6 +190,13 @@ struct Writer
     Json &object = json[name] = Json::object();
     for (auto &[key, value] : values)
       object[key] = converted(value);
+  }
+  /// Records of before have no such list.
+  template <typename T>
+  void if_any(const char *name, std::vector<T> &values) const
+  {
+    if (!values.empty())
+      (*this)(name, values);
   }
 };
 
@@ -225,6 +241,12 @@ struct Reader
     for (const auto &[key, entry] : json.at(name).items())
       values[key] = converted<T>(entry);
   }
+  template <typename T>
+  void if_any(const char *name, std::vector<T> &values) const
+  {
+    if (json.contains(name))
+      (*this)(name, values);
+  }
 };
 } // namespace
 
@@ -234,10 +256,8 @@ void write_run_record(const std::string &path, const RunRecord &record)
   RunRecord copy = record;
   for_each_field(copy, Writer{json});
   Writer{json}("ranks", copy.ranks);
-  if (!copy.phases.empty())
-    Writer{json}("phases", copy.phases);
-  if (!copy.gauges.empty())
-    Writer{json}("gauges", copy.gauges);
+  Writer{json}.if_any("phases", copy.phases);
+  Writer{json}.if_any("gauges", copy.gauges);
   json["complete"] = record.is_complete();
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   try {
@@ -266,10 +286,8 @@ RunRecord read_run_record(const std::string &path)
     for_each_field(record, Reader{json});
     if (json.contains("ranks")) // records of before have none
       Reader{json}("ranks", record.ranks);
-    if (json.contains("phases"))
-      Reader{json}("phases", record.phases);
-    if (json.contains("gauges"))
-      Reader{json}("gauges", record.gauges);
+    Reader{json}.if_any("phases", record.phases);
+    Reader{json}.if_any("gauges", record.gauges);
   } catch (const core::EnvironmentError &error) {
     throw core::InputError(std::string(error.what()) + " (not the output folder of a run?)");
   } catch (const Json::exception &error) {

@@ -3,6 +3,7 @@
 
 #include "core/skipped_part.h"
 #include "core/timers.h"
+#include "src/output/fields.h"
 
 #include <cstdint>
 #include <map>
@@ -42,6 +43,7 @@ struct StateEntry
   std::string caption;          // "near the peak load"
   double time = 0;              // s
   std::string particles, cells; // files, relative to the output folder; empty: none of these
+  std::vector<ToolOutline> tools = {};
 };
 
 /// A gauge of the scene, whose readings are columns of the history.

@@ -173,8 +173,11 @@ Table read_csv(const std::string &path, TableEnd end_of_table)
       if (const auto value = number(cells[c]))
         table.values_[c].push_back(*value);
       else
-        throw wrong(line_number, fmt::format("column '{}': '{}' is not a number",
-                                             table.columns_[c].name, cells[c]));
+        throw wrong(line_number, fmt::format("column '{}': '{}' is not a number{}",
+                                             table.columns_[c].name, cells[c],
+                                             cells[c].find(',') == std::string::npos
+                                                 ? ""
+                                                 : "; write decimals with a point"));
   }
   if (expected != Row::values)
     throw wrong(line_number, "a row of names and a row of units are wanted");

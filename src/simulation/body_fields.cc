@@ -2,6 +2,7 @@
 
 #include "core/exact_sum.h"
 #include "fem/cell_map.h"
+#include "src/simulation/far_stress.h"
 #include "src/simulation/kept_tables.h"
 #include "src/simulation/whole_body.h"
 
@@ -128,14 +129,14 @@ CellFields cell_fields(const CoupledBody<dim> &body)
       fields.reference[3 * i + c] = mesh.nodes[i][c];
   std::vector<double> tensor(6 * mesh.n_nodes(), 0.), count(mesh.n_nodes(), 0.);
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-    const auto b = fem::strain_matrix<dim>(fem::centre_gradients(mesh, cell));
-    Vec<dim * nc> u;
+    const auto gradients = fem::centre_gradients(mesh, cell);
+    Eigen::Matrix<double, dim, dim> gradient = Eigen::Matrix<double, dim, dim>::Zero();
     for (int a = 0; a < nc; ++a) {
       fields.connectivity.push_back(mesh.cells[cell][ring[a]]);
-      u.template segment<dim>(a * dim) = get(body.far->displacement, mesh.cells[cell][a]);
+      gradient += get(body.far->displacement, mesh.cells[cell][a]) * gradients.col(a).transpose();
     }
     double stress[6];
-    put_tensor<dim>(body.far->body().stiffness * (b * u), body, stress);
+    put_tensor<dim>(far_stress<dim>(*body.far, gradient), body, stress);
     for (const int node : mesh.cells[cell]) {
       count[node] += 1;
       for (int k = 0; k < 6; ++k)

@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/keyed_error.h"
+#include "core/outline.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/fine_scale_split.h"
 #include "coupling/heated_particles.h"
@@ -72,6 +73,12 @@ fem::Mesh<dim> make_cells(const Scene &scene, const fem::MeshParameters<dim> &p)
                             x[0], x[1]));
         quads.push_back({face.corners[0], face.corners[1], face.corners[2], face.corners[3]});
       }
+      double of_file = 0;
+      for (const auto &polygon : scene.specimen.body->polygons)
+        of_file += core::signed_area(polygon);
+      require(std::abs(p.outline->volume() - of_file) <= 1e-9 * std::abs(of_file),
+              "/far_field/cells_from_file: \"holes\", \"cutouts\" and \"slots\" of the scene "
+              "would be filled by the file's cells; leave the openings to the file");
       return fem::import_mesh(places, quads, *p.outline, p.inner);
     }
   return fem::make_mesh(p);
@@ -99,7 +106,8 @@ void make_far(const Scene &scene, Reference &reference, CoupledBody<dim> &body, 
   p.growth = scene.far_field->growth;
   p.fine_cells = fine_cells(scene);
   const double overlap = scene.coupling.overlap_cells * p.cell_size;
-  if (scene.zone.extent == DiscreteZone::Extent::box) {
+  const bool is_coupled = scene.zone.extent == DiscreteZone::Extent::box;
+  if (is_coupled) {
     p.inner = zone_shape<dim>(scene).eroded(overlap).boxes;
     require(!p.inner.empty(), "the discrete zone is nowhere wider than its two overlaps; widen it "
                               "or lower /coupling/overlap_cells");
@@ -111,7 +119,7 @@ void make_far(const Scene &scene, Reference &reference, CoupledBody<dim> &body, 
   fem::Body<dim> material;
   material.stiffness =
       scene.is_warm() ? thermal_stiffness<dim>(scene, reference, log) : constants.stiffness;
-  material.density = scene.coupling.coarse_mass * constants.density;
+  material.density = (is_coupled ? scene.coupling.coarse_mass : 1) * constants.density;
   material.thickness = body.thickness;
   body.far = std::make_unique<fem::FemSolver<dim>>(joined(scene, p, make_cells(scene, p)), material,
                                                    body.loads);
@@ -266,9 +274,10 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
   for (std::size_t l = 0; l < scene.loads.size(); ++l) {
     const auto &load = body.loads[l];
     const bool is_force = scene.loads[l].kind == LoadKind::force;
-    if (load.part.is_whole() && !is_force)
-      continue;
     const bool is_held = load.kind != core::BoundaryLoad<dim>::Kind::traction;
+    const bool has_name = load.boundary > inner_surface<dim>;
+    if (load.part.is_whole() && !is_force && (is_held || !has_name) && !(scene.atoms && has_name))
+      continue; // crystals have faces on the sides of the box alone
     const std::string key = fmt::format("/loads/{}", l);
     double area = body.zone ? body.loaded_faces[l] : 0;
     const double whole = loaded_area<dim>(scene, load);
@@ -289,7 +298,12 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
     if (body.far)
       area += body.far->loaded_area(int(l));
     // The straight sides that stand for an arc are longer than it by up to (pi/n)^2/6.
-    const double slack = load.boundary > inner_surface<dim> ? 0.02 : 1e-6;
+    const double slack = has_name ? 0.02 : 1e-6;
+    if (!is_force && load.part.is_whole() && area > 0 && std::abs(area / whole - 1) > slack)
+      log.warning(
+          "load {} acts on {:.4g} m^2 where its side has {:.4g} m^2: cells reach beyond its "
+          "ends; give smaller ones along it (/far_field/outline_cell_size)",
+          l, area, whole);
     if (area == 0 || (is_force && std::abs(area / whole - 1) > slack))
       throw core::KeyedError(
           key, "the load does not find its part of the side",

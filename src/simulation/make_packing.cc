@@ -1,6 +1,7 @@
 #include "src/simulation/make_packing.h"
 
 #include "core/check.h"
+#include "core/exact_sum.h"
 #include "core/keyed_error.h"
 #include "core/sums.h"
 #include "packings/gathered_part.h"
@@ -177,6 +178,26 @@ packings::Seeds<dim> find_seeds(const Scene &scene, Reference &reference,
   });
 }
 
+/// Equal radii give the same cells whatever they are, but contacts behind a break go by them.
+template <int dim>
+void require_radii_of_cells(const Scene &scene, const packings::Seeds<dim> &seeds)
+{
+  core::ExactSum sum;
+  for (const double radius : seeds.radius)
+    sum.add(std::pow(2 * radius / scene.zone.spacing, dim));
+  const double size = std::pow(sum.value() / double(seeds.size()), 1. / dim);
+  if (size > 0.5 && size < 2)
+    return;
+  throw core::KeyedError(
+      "/discrete_zone/packing_file",
+      "the radii of " + scene.zone.packing_file + " do not belong to its particles",
+      fmt::format(
+          "they are {:.3g} of half of \"spacing\" in the mean; fragments would touch at that "
+          "distance",
+          size),
+      "check the unit of the column r, and \"spacing\" in /discrete_zone");
+}
+
 template <int dim>
 packings::RandomPacking<dim> pack_file(const Scene &scene, packings::Seeds<dim> seeds)
 {
@@ -184,6 +205,7 @@ packings::RandomPacking<dim> pack_file(const Scene &scene, packings::Seeds<dim> 
   const std::vector<int> material = std::move(seeds.material);
   seeds.material.clear();
   require_cover(scene, parameters, seeds);
+  require_radii_of_cells(scene, seeds);
   auto packing = packings::pack_seeds<dim>(parameters, std::move(seeds));
   for (const auto row : packing.packing.global_id) // the name of a seed is the number of its row
     if (!material.empty())

@@ -363,7 +363,8 @@ void Recorder<dim>::keep_states(const CoupledBody<dim> &body, std::vector<BodySt
     state.bonds.assign(bonds.begin(), later);
     state_fields_.complete(body, state);
     const StateFiles files = FieldSeries::files(state, state.name, piece(body));
-    record.states.push_back({state.name, state.caption, state.time, files.particles, files.cells});
+    record.states.push_back(
+        {state.name, state.caption, state.time, files.particles, files.cells, state.tools});
     if (piece(body).of > 1)
       attempt([&] { writer_.submit([this, state, p = piece(body)] { fields_.write(state, p); }); });
     gather_at_first(body, state);

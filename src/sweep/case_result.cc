@@ -35,11 +35,14 @@ void compare_all(const std::string &reference, bool CaseResult::*is_reference,
 {
   if (reference.empty())
     return;
+  bool is_incomplete = false;
   for (CaseResult &r : results) {
     if (!r.end.run || r.*is_reference || r.end.run->path == reference)
       continue;
     try {
       r.*target = compare(r.end.run->path, reference);
+      is_incomplete =
+          is_incomplete || (!(r.*target)->complete && r.end.status == CaseEnd::Status::done);
       write_comparison(*(r.*target), r.end.run->path);
     } catch (const core::InputError &error) {
       notes.push_back(r.scene->name + ": " + error.what());
@@ -47,6 +50,10 @@ void compare_all(const std::string &reference, bool CaseResult::*is_reference,
       notes.push_back(r.scene->name + ": no plot: " + error.what());
     }
   }
+  if (is_incomplete)
+    notes.push_back("the reference \"" + reference +
+                    "\" is not complete: errors against it mean little; finish it with `ligament "
+                    "resume`");
 }
 
 void compare_with_figures(const TotalReference &total, std::vector<CaseResult> &results)

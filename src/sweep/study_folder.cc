@@ -13,6 +13,24 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
+/// Whether one of the files that the scene names has changed since the run began: its text does not
+/// say so.
+bool names_newer_files(const Json &scene, const RunFolder &run)
+{
+  std::error_code none;
+  const auto begun = std::filesystem::last_write_time(run.resolved_scene(), none);
+  for (const char *key : {"/discrete_zone/packing_file", "/specimen/file", "/atoms/file"}) {
+    const Json::json_pointer pointer(key);
+    if (!scene.contains(pointer) || !scene.at(pointer).is_string())
+      continue;
+    const auto changed =
+        std::filesystem::last_write_time(scene.at(pointer).get<std::string>(), none);
+    if (!none && changed > begun)
+      return true;
+  }
+  return false;
+}
+
 /// Text of the scene when the run ended by itself.
 std::optional<std::string> finished_scene(const RunFolder &run)
 {
@@ -22,7 +40,10 @@ std::optional<std::string> finished_scene(const RunFolder &run)
     const RunRecord record = read_run_record(run.record());
     if (record.status != "done" && record.status != "stopped")
       return {};
-    return scene_text(Json::parse(core::read_file(run.resolved_scene())));
+    const Json scene = Json::parse(core::read_file(run.resolved_scene()));
+    if (names_newer_files(scene, run))
+      return {};
+    return scene_text(scene);
   } catch (const core::InputError &) {
     return {}; // damaged: the run is done again, this folder is kept
   } catch (const Json::exception &) {

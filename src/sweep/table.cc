@@ -100,6 +100,8 @@ std::string value(const Case &c, const std::string &key)
 
 std::string unit(const std::string &key)
 {
+  if (key.size() > 1 && key.compare(key.size() - 2, 2, "/-") == 0)
+    return "1"; // an element more: no key that could be explained
   const auto found = explain_json(key);
   const std::string name = found.at(0).at("unit");
   return found.size() == 1 && !name.empty() ? name : "1";

@@ -1,5 +1,6 @@
 #include "src/simulation/gauges/field_gauges.h"
 
+#include "src/simulation/far_stress.h"
 #include "src/simulation/gauges/small_strain.h"
 #include "src/simulation/gauges/tensor_columns.h"
 
@@ -144,8 +145,7 @@ void StressGauge<dim>::read(GaugeLook<dim> &look, double *values)
       stress[c] = sums[c].value();
   }
   if (mesh_share_ > 0)
-    stress += mesh_share_ *
-              (look.body.far->body().stiffness * small_strain<dim>(mesh_.gradient(look.body)));
+    stress += mesh_share_ * far_stress<dim>(*look.body.far, mesh_.gradient(look.body));
   put_turned<dim>(tensor_of<dim>(stress), angle_, values);
 }
 

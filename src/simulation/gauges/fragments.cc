@@ -50,7 +50,8 @@ Vector<3> velocity_of(const CoupledBody<dim> &body, const Carrier &c)
 template <int dim>
 FragmentGauge<dim>::FragmentGauge(const GaugeParameters &gauge, const Scene &scene,
                                   const CoupledBody<dim> &)
-    : name_(gauge.name), least_mass_(gauge.mass), density_(scene.densities())
+    : name_(gauge.name), least_mass_(gauge.mass), rebonds_(scene.rebonds()),
+      density_(scene.densities())
 {
 }
 
@@ -58,7 +59,7 @@ template <int dim>
 void FragmentGauge<dim>::follow(const CoupledBody<dim> &body)
 {
   const std::int64_t n = body.force() ? body.force()->n_broken() : 0;
-  if (n == n_broken_)
+  if (n == n_broken_ && !rebonds_) // faces that are bonded again, and tear again, count once
     return;
   n_broken_ = n;
   std::vector<double> particle_mass(body.zone ? body.zone->state.size() : 0, 0.),

@@ -47,6 +47,7 @@ private:
 
   std::string name_;
   double least_mass_;              // kg
+  bool rebonds_;
   std::vector<double> density_;    // kg/m^3, by material
   std::int64_t n_broken_ = -1;     // in the body, of which these are the pieces; -1: not sought yet
   std::vector<Carrier> carriers_;  // of this rank, by pieces

@@ -50,6 +50,7 @@ public:
   const Matrix &rotation() const { return now_.rotation; }
   /// Of the step that led here, m.
   double way() const { return (now_.centre - last_centre_).norm(); }
+  const Spin<dim> &spin() const { return now_.spin; } // rad/s
   Vector<dim> displacement() const { return now_.centre - definition_.place; }
   Vector<dim> velocity() const { return now_.velocity; }
   const Vector<dim> &drive_place() const { return drive_place_; }

@@ -20,12 +20,15 @@ template <int dim>
 void ToolContact<dim>::look_around(const RigidTool<dim> &tool, const ContactSurface<dim> &surface,
                                    const coupling::Bodies<dim> &bodies, double dt)
 {
-  way_left_ -= tool.way();
+  way_left_ -= tool.way() + dt * tool.spin().norm() * farthest_;
   if (steps_left_-- > 0 && way_left_ > 0)
     return;
   near_.clear();
+  farthest_ = 0;
   for (int k = 0; k < surface.size(); ++k) {
     const Vector<dim> y = tool.rotation().transpose() * (surface.place(k, bodies) - tool.centre());
+    if (tool.definition().shape.touch(y).depth > -2 * limits_.margin)
+      farthest_ = std::max(farthest_, y.norm()); // of what a turn may bring near
     if (tool.definition().shape.touch(y).depth > -limits_.margin)
       near_.push_back(k);
   }

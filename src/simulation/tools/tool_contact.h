@@ -87,6 +87,7 @@ private:
   SearchLimits limits_;
   std::vector<int> near_; // points, ascending
   double way_left_ = -1;  // m, that the tool may go before the next look
+  double farthest_ = 0;   // m, from its centre, of what it may come to until then
   int steps_left_ = 0;    // before the next look
   std::vector<Memory> memory_;
   std::map<int, double> offset_; // m, depth at which these points begin to press
