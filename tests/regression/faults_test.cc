@@ -262,6 +262,20 @@ TEST_F(Faults, ARunThatIsRefusedLateSaysWhyAndMakesWay)
   EXPECT_FALSE(fs::exists("out.1"));
 }
 
+// A run that was ended from outside its loop does not know how many steps it took: its rows do.
+TEST_F(Faults, ARunThatFailedBehindItsFirstRowsIsKept)
+{
+  ASSERT_EQ(ligament("run scene.json -o out").code, 0);
+  auto record = file_json("out/run.json");
+  record["status"] = "failed";
+  record["steps"] = 0;
+  std::ofstream("out/run.json") << record.dump();
+  const std::string table = file_text("out/history.csv");
+  EXPECT_EQ(ligament("run scene.json -o out").code, 0);
+  ASSERT_TRUE(fs::exists("out.1"));
+  EXPECT_EQ(file_text("out.1/history.csv"), table);
+}
+
 TEST_F(Faults, TornTablesAreReadInUnfinishedRuns)
 {
   ASSERT_EQ(ligament("run scene.json -o out").code, 0);

@@ -235,6 +235,32 @@ TEST(Compare, CurveWithUnitsAsReference)
   EXPECT_EQ(r.file_name, "compare_paper");
 }
 
+// A cell that is empty, or a number that is none, is a row that nobody measured.
+TEST(Compare, RowsWithGapsAreLeftOut)
+{
+  SyntheticRun run;
+  run.write("run");
+  const auto curve = [&](bool has_gaps) {
+    std::string text = "displacement,load\nmm,kN\n";
+    for (int i = 0; i <= 100; ++i) {
+      const std::string x = std::to_string(1e3 * i / 100. * run.peak_strain() * run.length),
+                        y = std::to_string(1e-3 * i / 100. * run.peak_load());
+      text += (has_gaps && i % 7 == 3 ? "" : x) + "," + (has_gaps && i % 7 == 5 ? "" : y) + "\n";
+    }
+    return text;
+  };
+  core::write_file("whole.csv", curve(false));
+  core::write_file("gaps.csv", curve(true));
+  const CompareResult whole = compare("run", "whole.csv"), gaps = compare("run", "gaps.csv");
+  EXPECT_NEAR(gaps.peak_load_error.value(), whole.peak_load_error.value(), rounding);
+  EXPECT_NEAR(gaps.stiffness_error.value(), whole.stiffness_error.value(), 1e-3);
+  EXPECT_NEAR(gaps.energy_error.value(), whole.energy_error.value(), 1e-3);
+  core::write_file("none.csv", "displacement,load\nmm,kN\n");
+  EXPECT_THROW(compare("run", "none.csv"), core::InputError);
+  core::write_file("strain_alone.csv", "strain\n1\n0.1\n");
+  EXPECT_THROW(compare("run", "strain_alone.csv"), core::InputError);
+}
+
 TEST(Compare, RefusesWhatIsNeither)
 {
   SyntheticRun().write("good");

@@ -35,7 +35,8 @@ TEST(RunRecord, ComesBackWhole)
   r.peak_load = -1e5;
   r.figures = {{"strength", {2.5e7, "Pa"}}, {"c", {0.82, ""}}};
   r.magnification = 500;
-  r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""}};
+  r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""},
+              {"end", "at the end", 2e-3, "", "", {{{0, 0, 0, 1, 0, 0}, {0, -0.25, 0}}, {}}}};
   r.pictures = {{"pictures/peak.png", "at the peak"}};
   r.trusted_until = 2e-4;
   r.broken_in_overlap = 7;
@@ -57,6 +58,11 @@ TEST(RunRecord, ComesBackWhole)
   EXPECT_EQ(back.timing[0].name, "forces");
   EXPECT_EQ(back.timing[0].seconds, 1.5);
   EXPECT_EQ(back.timing[0].calls, 40000);
+  ASSERT_EQ(back.states.size(), 2u);
+  EXPECT_TRUE(back.states[0].tools.empty());
+  ASSERT_EQ(back.states[1].tools.size(), 2u);
+  EXPECT_EQ(back.states[1].tools[0].points, r.states[1].tools[0].points);
+  EXPECT_EQ(back.states[1].tools[0].displacement, r.states[1].tools[0].displacement);
   EXPECT_EQ(back.skipped.at(0).why, "nothing is broken");
   EXPECT_EQ(back.figures.at("strength").value, 2.5e7);
   EXPECT_EQ(back.figures.at("strength").unit, "Pa");
@@ -121,6 +127,13 @@ TEST(RunFolder, IsMadeAndRecognised)
   EXPECT_FALSE(folder.holds_a_run());
   write_run_record(folder.record(), {});
   EXPECT_TRUE(folder.holds_a_run());
+  EXPECT_EQ(folder.foreign_entry(), "");
+  std::filesystem::remove_all("not_of_a_run");
+  std::filesystem::create_directories("not_of_a_run");
+  core::write_file("not_of_a_run/check_packing.csv", ""); // of `check --draw`
+  EXPECT_EQ(RunFolder{"not_of_a_run"}.foreign_entry(), "");
+  core::write_file("not_of_a_run/packing.csv", "somebody's own");
+  EXPECT_EQ(RunFolder{"not_of_a_run"}.foreign_entry(), "packing.csv");
   core::write_file("a_file", "");
   EXPECT_THROW(RunFolder{"a_file/folder"}.create(), core::EnvironmentError);
 }

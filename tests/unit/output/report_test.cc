@@ -74,6 +74,16 @@ TEST(Report, DrawsOtherFieldsFromTheKeptStates)
   EXPECT_EQ(text.find("of the run<"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder.pictures() + "/peak_velocity.png"));
   EXPECT_THROW(write_report("redrawn", {"veloctiy"}), core::InputError);
+  // A field of the table that this run has not kept.
+  try {
+    write_report("redrawn", {"velocity", "plastic_strain"});
+    ADD_FAILURE() << "a grey picture";
+  } catch (const core::InputError &error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("no \"plastic_strain\""), std::string::npos) << message;
+    EXPECT_NE(message.find("velocity_x"), std::string::npos) << message;
+    EXPECT_EQ(message.find("stress_yy"), std::string::npos) << message;
+  }
 }
 
 // One row per phase; the page says how many steps were done. Long tables are folded.

@@ -101,6 +101,32 @@ TEST(StateFields, FlowLeavesItsStrain)
   EXPECT_NEAR(along.dot(in_plane * across), 0, 1e-12);
 }
 
+// Cells that turn bear no stress from that, and turn the one that they have.
+TEST(StateFields, StressOfTheMeshTurnsWithIt)
+{
+  constexpr double angle = 0.4, strain = 1e-3;
+  SmallBody small(small_scene({"/discrete_zone=none"}));
+  small.body.far->set_corotated(true);
+  Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();
+  stretch(1, 1) += strain;
+  small.deform(stretch - Eigen::Matrix2d::Identity());
+  const auto straight = find_field(cell_fields(small.body).node_fields, "stress")->values;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
+  small.deform(turn * stretch - Eigen::Matrix2d::Identity());
+  const auto turned = find_field(cell_fields(small.body).node_fields, "stress")->values;
+  for (std::size_t k = 0; k < straight.size(); k += 6) {
+    Eigen::Matrix2d own;
+    own << straight[k], straight[k + 3], straight[k + 3], straight[k + 1];
+    ASSERT_GT(own(1, 1), 0);
+    const Eigen::Matrix2d expected = turn * own * turn.transpose();
+    const double round_off = 1e-9 * own(1, 1);
+    ASSERT_NEAR(turned[k], expected(0, 0), round_off);
+    ASSERT_NEAR(turned[k + 1], expected(1, 1), round_off);
+    ASSERT_NEAR(turned[k + 2], straight[k + 2], round_off);
+    ASSERT_NEAR(turned[k + 3], expected(0, 1), round_off);
+  }
+}
+
 // Particles say where they are in the coupling as the overlap does.
 TEST(StateFields, ZonesAreThoseOfTheOverlap)
 {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 
 using namespace ligament;
@@ -48,6 +49,23 @@ TEST(StudyFolder, FindsRunsByTheirScene)
   EXPECT_TRUE(folder.finished(text(R"({"a": 2})")));
   EXPECT_FALSE(folder.finished(text(R"({"a": 1})")));
   EXPECT_FALSE(folder.finished(text(R"({"a": 1, "b": 2.5})")));
+}
+
+// A scene names its packing, not what is in it.
+TEST(StudyFolder, ChangedFilesMakeRunsOld)
+{
+  namespace fs = std::filesystem;
+  const std::string path = fresh("changed");
+  core::write_file("seeds.csv", "x");
+  const std::string scene = R"({"discrete_zone": {"packing_file": "seeds.csv"}})";
+  write_run(path + "/runs/one", scene, "done");
+  const auto begun = fs::last_write_time(path + "/runs/one/scene.resolved.json");
+  fs::last_write_time("seeds.csv", begun - std::chrono::seconds(5));
+  EXPECT_TRUE(StudyFolder(path).finished(text(scene.c_str())));
+  fs::last_write_time("seeds.csv", begun + std::chrono::seconds(5));
+  EXPECT_FALSE(StudyFolder(path).finished(text(scene.c_str())));
+  fs::remove("seeds.csv");
+  EXPECT_TRUE(StudyFolder(path).finished(text(scene.c_str())));
 }
 
 TEST(StudyFolder, UnfinishedAndDamagedRunsDoNotCount)
