@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -111,7 +113,7 @@ private:
       names_[{dim, tag}] = name.substr(first + 1, last - first - 1);
     }
   }
-  /// Which physical group each curve, surface and volume is in.
+  /// Which physical groups each curve, surface and volume is in; numbers below 0 turn it over.
   void read_entities()
   {
     std::array<int, 4> n;
@@ -123,7 +125,7 @@ private:
         for (int c = 0; c < (dim == 0 ? 3 : 6); ++c)
           real();
         for (int p = number(); p > 0; --p)
-          group_of_entity_[{dim, tag}] = number();
+          groups_of_entity_[{dim, tag}].push_back(std::abs(number()));
         if (dim > 0)
           for (int b = number(); b > 0; --b)
             number();
@@ -158,7 +160,8 @@ private:
         add_node(tag);
     }
   }
-  void add_element(int type, int group)
+  /// Its name is that of the first group that has one. Version 2.2 repeats an element for each.
+  void add_element(int type, const std::vector<int> &groups)
   {
     const auto kind = kinds.find(type);
     if (kind == kinds.end())
@@ -177,9 +180,17 @@ private:
     }
     if (dim > 0 && n_nodes > n_corners)
       mesh_.was_second_order = true;
-    if (const auto name = names_.find({dim, group}); name != names_.end()) {
-      element.name = name->second;
-      used_.insert(name->first);
+    for (const int group : groups)
+      if (const auto name = names_.find({dim, group}); name != names_.end()) {
+        if (element.name.empty())
+          element.name = name->second;
+        used_.insert(name->first);
+      }
+    if (!is_new_) {
+      std::vector<int> corners = element.corners;
+      std::sort(corners.begin(), corners.end());
+      if (!seen_.insert(std::move(corners)).second)
+        return;
     }
     if (dim > 0)
       (dim == 1   ? mesh_.lines
@@ -195,7 +206,7 @@ private:
       int group = 0;
       for (int t = number(), k = 0; k < t; ++k)
         (k == 0 ? group : last_) = number();
-      add_element(type, group);
+      add_element(type, {group});
     }
   }
   void read_elements_4()
@@ -205,10 +216,10 @@ private:
       number();
     for (int b = 0; b < n_blocks; ++b) {
       const int dim = number(), tag = number(), type = number();
-      const auto group = group_of_entity_.find({dim, tag});
+      const std::vector<int> &groups = groups_of_entity_[{dim, tag}];
       for (int n = number(); n > 0; --n) {
         number();
-        add_element(type, group == group_of_entity_.end() ? 0 : group->second);
+        add_element(type, groups);
       }
     }
   }
@@ -216,10 +227,11 @@ private:
   const std::string file_, key_;
   std::ifstream in_;
   bool is_new_ = true;
-  int last_ = 0;                                       // a number that counts nothing
-  std::map<std::pair<int, int>, std::string> names_;   // dimension and tag of a group
-  std::map<std::pair<int, int>, int> group_of_entity_; // dimension and tag of an entity
+  int last_ = 0;                                                     // a number that counts nothing
+  std::map<std::pair<int, int>, std::string> names_;                 // dimension and tag of a group
+  std::map<std::pair<int, int>, std::vector<int>> groups_of_entity_; // dimension and tag of it
   std::set<std::pair<int, int>> used_;
+  std::set<std::vector<int>> seen_; // corners of elements
   std::map<int, int> number_of_; // of nodes, by tag
   GmshMesh mesh_;
 };
