@@ -170,6 +170,13 @@ void Overlap<dim>::find_members(const particles::Particles<dim> &particles,
       depth = std::min(depth, distance - parameters.spacing / 2);
   }
   require_width(force.range());
+  for (int c = 0; c < dim; ++c)
+    core::require(
+        parameters.period[c] == 0 || parameters.period[c] > 2 * force.range(),
+        fmt::format("the body repeats itself after {:.3g} m, within twice the range of the "
+                    "force, {:.3g} m: the overlap sees the nearest image of a particle "
+                    "alone; make the specimen wider there",
+                    parameters.period[c], force.range()));
 }
 
 // Weights need room to rise between the pads and the margin: two spacings where particles see
