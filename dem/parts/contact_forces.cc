@@ -83,6 +83,7 @@ void ContactForces<dim>::search(Particles &p, const BondNetwork<dim> &bonds, dou
     return;
   }
   search_.update(p, bonds, contacts_);
+  any_ = true; // perhaps; ranks agree on it behind the step
   wake(bonds, rest);
 }
 
