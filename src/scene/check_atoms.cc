@@ -143,32 +143,6 @@ void doubt_step(const Scene &scene, Findings &f)
             scene.is_warm() ? fmt::format("give at most {}", largest)
                             : fmt::format("give at most {}, unless nothing is to break", largest));
 }
-
-/// The cut is where the scene says, not at its images: pairs across a joined side see one another
-/// through it.
-void doubt_cracks(const Scene &scene, Findings &f)
-{
-  for (std::size_t k = 0; k < scene.specimen.cracks.size(); ++k) {
-    const std::string key = fmt::format("/specimen/cracks/{}", k);
-    for (int c = 0; c < scene.dimension && f.sound({key}); ++c) {
-      if (!scene.specimen.is_periodic(c))
-        continue;
-      const double side = scene.specimen.size[c] / 2, reach = scene.atoms->disturbance;
-      double lower = 0, upper = 0;
-      for (const Point &x : scene.specimen.cracks[k].points) {
-        lower = std::min(lower, x[c]);
-        upper = std::max(upper, x[c]);
-      }
-      const auto ends_near = [&](double end) {
-        return end > side - scene.zone.spacing && end < side + reach;
-      };
-      if (ends_near(upper) || ends_near(-lower))
-        f.warning(key, fmt::format("{} ends near the joined sides across {}", key, "xyz"[c]),
-                  "atoms on either side of it stay bonded to one another's images there",
-                  fmt::format("let its points lie {:.3g} m or more beyond these sides", reach));
-    }
-  }
-}
 } // namespace
 
 void check_atoms(const Scene &scene, Findings &f)
@@ -180,7 +154,6 @@ void check_atoms(const Scene &scene, Findings &f)
   refuse_couplings(scene, f);
   check_temperature(scene, f);
   doubt_step(scene, f);
-  doubt_cracks(scene, f);
   for (std::size_t k = 0; k < scene.gauges.size(); ++k)
     if (const std::string key = fmt::format("/gauges/{}", k);
         scene.gauges[k].kind == GaugeKind::j_integral && f.sound({key}))

@@ -80,7 +80,7 @@ void add_griffith(const Scene &scene, const md::Crystal<3> &crystal,
                   const std::vector<packings::CrackPlane<3>> &cuts,
                   std::map<std::string, Figure> &figures)
 {
-  if (cuts.size() != 1 || scene.specimen.cracks.size() != 1 || scene.is_warm())
+  if (cuts.empty() || scene.specimen.cracks.size() != 1 || scene.is_warm())
     return;
   std::vector<Vector<3>> fronts;
   for (int c = 0; c < 3; ++c) {
@@ -101,13 +101,45 @@ void add_griffith(const Scene &scene, const md::Crystal<3> &crystal,
     figures["griffith_k"] = {crack->stress_intensity, "Pa*m^0.5"};
   }
 }
+/// Openings and cracks go on across joined sides: their images lie a period away. The scene's own
+/// ones stay in front.
+template <int dim>
+void add_images(packings::SpecimenParameters<dim> &specimen)
+{
+  for (int c = 0; c < dim; ++c) {
+    if (!specimen.periodic[c])
+      continue;
+    const Vector<dim> period = (specimen.upper[c] - specimen.lower[c]) * Vector<dim>::Unit(c);
+    const auto repeat = [&](auto &things, auto &&moved) {
+      const auto own = things;
+      for (const double side : {-1., 1.})
+        for (const auto &thing : own)
+          things.push_back(moved(thing, Vector<dim>(side * period)));
+    };
+    repeat(specimen.holes, [](packings::DiscHole<dim> hole, const Vector<dim> &by) {
+      hole.centre += by;
+      return hole;
+    });
+    repeat(specimen.notches, [](packings::BoxNotch<dim> notch, const Vector<dim> &by) {
+      notch.lower += by;
+      notch.upper += by;
+      return notch;
+    });
+    repeat(specimen.cracks, [](packings::CrackPoints<dim> crack, const Vector<dim> &by) {
+      for (Vector<dim> &x : crack)
+        x += by;
+      return crack;
+    });
+  }
+}
 } // namespace
 
 template <int dim>
 packings::Packing<dim> make_crystal_packing(const Scene &scene, core::Log &log)
 {
   const auto crystal = crystal_of<dim>(scene);
-  const auto specimen = packed_specimen_of<dim>(scene);
+  auto specimen = packed_specimen_of<dim>(scene);
+  add_images(specimen);
   const packings::SpecimenShape<dim> body(specimen);
   md::CrystalShape<dim> shape;
   shape.specimen_lower = specimen.lower;

@@ -1,0 +1,57 @@
+// Cracks and openings of crystals go on across joined sides.
+#include "tests/support/atom_bodies.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+/// In J, of a bar with a crack from one z to another that is drawn apart across it.
+double stretched_energy(double lower, double upper)
+{
+  AtomsOfScene<3> unit(
+      copper_bar, {fmt::format(R"(/specimen/cracks=[{{"points": [["-1.5 nm", "0.05 nm", {0:.17g}],
+                                  ["1.5 nm", "0.05 nm", {0:.17g}], ["1.5 nm", "0.05 nm", {1:.17g}],
+                                  ["-1.5 nm", "0.05 nm", {1:.17g}]]}}])",
+                               lower, upper)});
+  auto &state = unit.atoms();
+  for (int i = 0; i < state.size(); ++i)
+    state.displacement[1][i] = 0.01 * state.reference[1][i];
+  unit.body.force()->compute(state, 1);
+  return unit.body.force()->potential_energy(state);
+}
+
+TEST(AtomsAtJoinedSides, CracksPartPairsAcrossThem)
+{
+  const double side = AtomsOfScene<3>(copper_bar).scene.specimen.size[2] / 2;
+  const double beyond = stretched_energy(-5e-9, 5e-9);
+  EXPECT_NEAR(stretched_energy(-side, side) / beyond, 1, 1e-12);
+  // One that covers half of the thickness is another crack.
+  EXPECT_GT(std::abs(stretched_energy(0, side) / beyond - 1), 1e-3);
+}
+
+TEST(AtomsAtJoinedSides, HolesHaveTheirOtherHalfAtTheOtherEnd)
+{
+  const std::vector<std::string> joined = {R"(/specimen/periodic=["x"])"};
+  const auto with_hole = [&](double x) {
+    auto overrides = joined;
+    overrides.push_back(
+        fmt::format(R"(/specimen/holes=[{{"centre": [{:.17g}, 0], "radius": "3 nm"}}])", x));
+    return overrides;
+  };
+  AtomsOfScene<2> whole(plane_of_atoms, joined);
+  const double side = whole.scene.specimen.size[0] / 2;
+  AtomsOfScene<2> middle(plane_of_atoms, with_hole(0)), seam(plane_of_atoms, with_hole(side));
+  const int missing = whole.atoms().size() - middle.atoms().size();
+  ASSERT_GT(missing, 100);
+  EXPECT_NEAR(whole.atoms().size() - seam.atoms().size(), missing, 0.05 * missing);
+  const auto &state = seam.atoms();
+  for (int i = 0; i < state.size(); ++i)
+    EXPECT_GT(std::hypot(std::abs(state.reference[0][i]) - side, state.reference[1][i]), 2.99e-9);
+}
+} // namespace
