@@ -4,6 +4,7 @@
 #include "packings/absorbing_sides.h"
 #include "packings/outer_face.h"
 #include "src/scene/geometry.h"
+#include "src/simulation/make_loads.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/tools/make_tools.h"
 #include "src/simulation/toughness_cache.h"
@@ -91,6 +92,21 @@ std::vector<double> loaded_areas(const CoupledBody<dim> &body,
   return values;
 }
 
+/// Atoms near a side share all of it alike, those near a part of it have its area to a spacing: the
+/// forces of scenes are met all the same.
+template <int dim>
+void fit_forces(const Scene &scene, CoupledBody<dim> &body)
+{
+  for (std::size_t l = 0; l < scene.loads.size(); ++l) {
+    if (scene.loads[l].kind != LoadKind::force || body.loaded_faces[l] <= 0)
+      continue;
+    const double share = loaded_area<dim>(scene, body.loads[l]) / body.loaded_faces[l];
+    for (auto &component : body.loads[l].value)
+      if (component)
+        *component *= share;
+  }
+}
+
 /// Faces that initial cracks cut, of the body.
 template <int dim>
 std::vector<BrokenBond> all_cut_faces(const CoupledBody<dim> &body,
@@ -162,6 +178,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     body.figures["healed_radii"] = {double(*n_healed), ""};
   body.n_particles = held.n_whole;
   body.loaded_faces = loaded_areas(body, held);
+  if (scene.atoms && !body.far)
+    fit_forces(scene, body);
   body.cut_faces = all_cut_faces(body, held);
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   if (!scene.specimen.cracks.empty() && !scene.atoms && body.n_cracked_faces == 0)

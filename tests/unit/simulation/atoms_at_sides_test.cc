@@ -1,4 +1,4 @@
-// Cracks and openings of crystals go on across joined sides.
+// Cracks and openings of crystals go on across joined sides; forces act on parts of others.
 #include "tests/support/atom_bodies.h"
 
 #include <fmt/format.h>
@@ -53,5 +53,21 @@ TEST(AtomsAtJoinedSides, HolesHaveTheirOtherHalfAtTheOtherEnd)
   const auto &state = seam.atoms();
   for (int i = 0; i < state.size(); ++i)
     EXPECT_GT(std::hypot(std::abs(state.reference[0][i]) - side, state.reference[1][i]), 2.99e-9);
+}
+
+// Those near a part of a side have its area to a spacing only; the force is met all the same.
+TEST(AtomsUnderLoad, ForcesOnPartsOfSidesAreMet)
+{
+  for (const double half : {1.1e-9, 2e-9, 5.3e-9}) {
+    AtomsOfScene<2> unit(
+        plane_of_atoms,
+        {fmt::format(R"(/loads=[{{"boundary": "top", "force": [0, "1 nN"], "from": {:.17g}, "to": {:.17g}}},
+                            {{"boundary": "bottom", "velocity": [0, 0]}}])",
+                     -half, half)});
+    auto &state = unit.atoms();
+    unit.body.force()->compute(state, 0);
+    const double before = unit.body.force()->reaction(0)[1];
+    EXPECT_NEAR(std::abs(before), 1e-9, 1e-15) << half;
+  }
 }
 } // namespace
