@@ -30,7 +30,8 @@ constexpr int shortest_run = 6; // below it lanes would idle: better filled up i
 constexpr int fewest_equal = 4;
 
 using Lanes = double __attribute__((vector_size(64), may_alias));
-using UnalignedLanes = double __attribute__((vector_size(64), aligned(8), may_alias));
+// Clang hears of an alignment in a typedef only.
+typedef double UnalignedLanes __attribute__((vector_size(64), aligned(8), may_alias));
 
 /// r = K u for one cell per lane.
 template <int n>
