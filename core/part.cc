@@ -112,13 +112,21 @@ Vector<dim> face_centroid(const FaceCorners<dim> &corners)
   if constexpr (dim == 2)
     return (corners[0] + corners[1]) / 2;
   else {
-    Vector<3> moment = Vector<3>::Zero(), middle = Vector<3>::Zero();
+    Vector<3> moment = Vector<3>::Zero(), middle = Vector<3>::Zero(), normal = moment;
     double area = 0;
+    const auto triangle = [&](std::size_t k) {
+      return std::pair<Vector<3>, Vector<3>>(corners[k - 1] - corners[0], corners[k] - corners[0]);
+    };
     for (std::size_t k = 0; k < corners.size(); ++k)
       middle += corners[k] / double(corners.size());
     for (std::size_t k = 2; k < corners.size(); ++k) {
-      const Vector<3> a = corners[k - 1] - corners[0], b = corners[k] - corners[0];
-      const double part = a.cross(b).norm() / 2;
+      const auto [a, b] = triangle(k);
+      normal += a.cross(b);
+    }
+    normal.normalize();
+    for (std::size_t k = 2; k < corners.size(); ++k) { // below 0 beside a re-entrant corner
+      const auto [a, b] = triangle(k);
+      const double part = normal.dot(a.cross(b)) / 2;
       area += part;
       moment += part * (a + b) / 3;
     }

@@ -148,16 +148,21 @@ std::vector<double> add_outline_cuts(const MeshParameters<dim> &p, int axis, dou
   const double tolerance = 1e-9 * (p.upper[axis] - p.lower[axis]);
   std::vector<double> lines = {p.lower[axis], p.upper[axis]}, taken;
   lines.insert(lines.end(), cuts.begin(), cuts.end());
-  for (const double place : straight_sides(*p.outline, axis, 0.75 * p.cell_size)) {
+  const auto becomes_line = [&](double place) {
     double nearest = 1e300;
     for (const double line : lines)
       nearest = std::min(nearest, std::abs(place - line));
     if (nearest > tolerance && nearest < 0.75 * base_size)
-      continue;
-    taken.push_back(place);
+      return false;
     if (nearest > tolerance)
       lines.push_back(place), cuts.push_back(place);
-  }
+    return true;
+  };
+  for (const double place : straight_sides(*p.outline, axis, 0.75 * p.cell_size))
+    if (becomes_line(place))
+      taken.push_back(place);
+  for (const double place : ends_of_names(*p.outline, axis))
+    becomes_line(place);
   return taken;
 }
 

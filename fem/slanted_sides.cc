@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ligament::fem
 {
@@ -28,6 +29,25 @@ std::vector<double> straight_sides(const core::Solid<2> &outline, int axis, doub
   for (const auto &[place, length] : sides)
     if (length >= shortest)
       places.push_back(place);
+  return places;
+}
+
+std::vector<double> ends_of_names(const core::Solid<2> &outline, int axis)
+{
+  const double tolerance = 1e-9 * (outline.upper() - outline.lower()).maxCoeff();
+  const auto is_along = [&](const auto &facet) {
+    const auto &[a, b] = facet.edges[0];
+    return std::abs(outline.vertices()[a][1 - axis] - outline.vertices()[b][1 - axis]) <= tolerance;
+  };
+  std::map<int, int> boundary_behind; // by the vertex at which a side along the axis ends
+  for (const auto &facet : outline.facets())
+    if (is_along(facet))
+      boundary_behind[facet.edges[0][1]] = facet.boundary;
+  std::vector<double> places;
+  for (const auto &facet : outline.facets())
+    if (const auto before = boundary_behind.find(facet.edges[0][0]);
+        before != boundary_behind.end() && is_along(facet) && before->second != facet.boundary)
+      places.push_back(outline.vertices()[facet.edges[0][0]][axis]);
   return places;
 }
 

@@ -11,6 +11,10 @@ namespace ligament::fem
 /// in all (m), the longest first: where lines of the mesh may lie.
 std::vector<double> straight_sides(const core::Solid<2> &outline, int axis, double shortest);
 
+/// Coordinates along the axis at which one named part of a straight side along it ends and another
+/// begins: loads do, too.
+std::vector<double> ends_of_names(const core::Solid<2> &outline, int axis);
+
 /// Whether a side of the outline that lies on none of the lines comes nearer to the box than a
 /// distance in m.
 class SlantedSides

@@ -95,8 +95,7 @@ void check_blocks_meet(packings::LatticeKind kind)
     (is_upper ? mass : other) += p.mass[i];
   }
   const double before = run.mechanical();
-  const double wave = run.force->elastic_constants().wave_speed_p;
-  while (run.time < 0.15 / speed + 4 * 0.75 / wave)
+  while (run.time < (0.15 + d) / speed) // by then all centres of one would have met the other's
     run.step();
   double momentum = 0, lowest = 1e300, highest = -1e300;
   for (int i = 0; i < p.size(); ++i) {

