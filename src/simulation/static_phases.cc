@@ -75,16 +75,21 @@ template <int dim>
 double largest_extent(const CoupledBody<dim> &body)
 {
   double largest = 0;
-  for (int c = 0; c < dim; ++c)
-    if (body.zone) {
-      const auto &x = body.zone->state.reference[c];
-      const auto [least, most] = std::minmax_element(x.begin(), x.end());
-      const auto ends = body.ranks.gather_all(x.empty() ? std::vector<double>()
-                                                        : std::vector<double>{*least, *most});
-      const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
-      largest = std::max(largest, *last - *first);
-    } else
+  for (int c = 0; c < dim; ++c) {
+    if (!body.zone) {
       largest = std::max(largest, body.upper[c] - body.lower[c]);
+      continue;
+    }
+    const auto &x = body.zone->state.reference[c];
+    std::vector<double> ends;
+    if (!x.empty()) {
+      const auto [least, most] = std::minmax_element(x.begin(), x.end());
+      ends = {*least, *most};
+    }
+    ends = body.ranks.gather_all(ends);
+    const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
+    largest = std::max(largest, *last - *first);
+  }
   return largest;
 }
 
@@ -108,8 +113,10 @@ template <int dim>
 double last_break(const CoupledBody<dim> &body)
 {
   const auto &broken = body.force()->broken_bonds();
-  const auto times = body.ranks.gather_all(broken.empty() ? std::vector<double>()
-                                                          : std::vector{broken.back().time});
+  std::vector<double> times;
+  if (!broken.empty())
+    times.push_back(broken.back().time);
+  times = body.ranks.gather_all(times);
   return *std::max_element(times.begin(), times.end());
 }
 } // namespace
