@@ -254,12 +254,15 @@ void ContactSearch<dim>::load(const core::State &state, const core::Names &names
       if (const int i = names.index(table.keys()[r]); i >= 0)
         places[i][c] = values[r];
   }
-  searched_at_.clear();
   due_ = core::load_integer(state, "search", "due") != 0;
+  // Nobody has searched yet, and older states don't say where from: the reference.
+  if (places.empty())
+    return;
+  searched_at_.clear();
   for (const int i : surface_) {
     const auto place = places.find(i);
     if (place == places.end() && is_own(i)) {
-      due_ = due_ || !places.empty();
+      due_ = true;
       break;
     }
     searched_at_.push_back(place == places.end() ? Vector<dim>(Vector<dim>::Zero())

@@ -27,9 +27,10 @@ void ToolContact<dim>::look_around(const RigidTool<dim> &tool, const ContactSurf
   farthest_ = 0;
   for (int k = 0; k < surface.size(); ++k) {
     const Vector<dim> y = tool.rotation().transpose() * (surface.place(k, bodies) - tool.centre());
-    if (tool.definition().shape.touch(y).depth > -2 * limits_.margin)
+    const double depth = tool.definition().shape.touch(y).depth;
+    if (depth > -2 * limits_.margin)
       farthest_ = std::max(farthest_, y.norm()); // of what a turn may bring near
-    if (tool.definition().shape.touch(y).depth > -limits_.margin)
+    if (depth > -limits_.margin)
       near_.push_back(k);
   }
   if (friction_ > 0)
