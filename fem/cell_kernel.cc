@@ -30,8 +30,12 @@ constexpr int shortest_run = 6; // below it lanes would idle: better filled up i
 constexpr int fewest_equal = 4;
 
 using Lanes = double __attribute__((vector_size(64), may_alias));
-// Clang hears of an alignment in a typedef only.
-typedef double UnalignedLanes __attribute__((vector_size(64), aligned(8), may_alias));
+// Lanes at any double. A packed struct, as alignments of vector types get lost: Clang ignores them
+// in an alias, GCC drops those of a typedef where a template names them.
+struct __attribute__((packed, aligned(8), may_alias)) UnalignedLanes
+{
+  Lanes value;
+};
 
 /// r = K u for one cell per lane.
 template <int n>
@@ -61,16 +65,16 @@ LIGAMENT_INLINE void subtract_run(const typename CellKernel<dim>::Run &run, cons
     for (int row = 0; row < n_rows; ++row)
       for (int c = 0; c < dim; ++c) {
         const double *p = u[c] + run.node[row] + first;
-        cell_u[2 * row * dim + c] = *reinterpret_cast<const UnalignedLanes *>(p);
-        cell_u[(2 * row + 1) * dim + c] = *reinterpret_cast<const UnalignedLanes *>(p + 1);
+        cell_u[2 * row * dim + c] = reinterpret_cast<const UnalignedLanes *>(p)->value;
+        cell_u[(2 * row + 1) * dim + c] = reinterpret_cast<const UnalignedLanes *>(p + 1)->value;
       }
     multiply<n>(k, cell_u, cell_r);
     for (int row = 0; row < n_rows; ++row)
       for (int c = 0; c < dim; ++c) {
         auto *p = reinterpret_cast<UnalignedLanes *>(f[c] + run.node[row] + first);
         const Lanes right = cell_r[(2 * row + 1) * dim + c];
-        *p -= cell_r[2 * row * dim + c] +
-              __builtin_shufflevector(right, carry[row * dim + c], 8, 0, 1, 2, 3, 4, 5, 6);
+        p->value -= cell_r[2 * row * dim + c] +
+                    __builtin_shufflevector(right, carry[row * dim + c], 8, 0, 1, 2, 3, 4, 5, 6);
         carry[row * dim + c][0] = right[lanes - 1];
       }
   }
