@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -161,6 +162,7 @@ private:
     }
   }
   /// Its name is that of the first group that has one. Version 2.2 repeats an element for each.
+  /// Points are read and left.
   void add_element(int type, const std::vector<int> &groups)
   {
     const auto kind = kinds.find(type);
@@ -178,25 +180,23 @@ private:
       if (k < n_corners)
         element.corners.push_back(node->second);
     }
-    if (dim > 0 && n_nodes > n_corners)
-      mesh_.was_second_order = true;
     for (const int group : groups)
       if (const auto name = names_.find({dim, group}); name != names_.end()) {
         if (element.name.empty())
           element.name = name->second;
         used_.insert(name->first);
       }
-    if (!is_new_) {
-      std::vector<int> corners = element.corners;
-      std::sort(corners.begin(), corners.end());
-      if (!seen_.insert(std::move(corners)).second)
-        return;
-    }
-    if (dim > 0)
-      (dim == 1   ? mesh_.lines
-       : dim == 2 ? mesh_.faces
-                  : mesh_.volumes)
-          .push_back(std::move(element));
+    if (dim == 0)
+      return;
+    mesh_.was_second_order |= n_nodes > n_corners;
+    auto &elements = dim == 1 ? mesh_.lines : dim == 2 ? mesh_.faces : mesh_.volumes;
+    std::vector<int> corners = element.corners;
+    std::sort(corners.begin(), corners.end());
+    const auto [seen, is_new] = seen_[dim - 1].emplace(std::move(corners), elements.size());
+    if (is_new)
+      elements.push_back(std::move(element));
+    else if (std::string &name = elements[seen->second].name; name.empty())
+      name = element.name;
   }
   void read_elements_2()
   {
@@ -231,7 +231,7 @@ private:
   std::map<std::pair<int, int>, std::string> names_;                 // dimension and tag of a group
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity_; // dimension and tag of it
   std::set<std::pair<int, int>> used_;
-  std::set<std::vector<int>> seen_; // corners of elements
+  std::array<std::map<std::vector<int>, std::size_t>, 3> seen_; // by dimension: corners, element
   std::map<int, int> number_of_; // of nodes, by tag
   GmshMesh mesh_;
 };
