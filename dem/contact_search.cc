@@ -141,6 +141,7 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
     searched_at_.push_back(get(p.displacement, i));
   const double reach = largest_ + 2 * skin_;
   contacts.drop_distant(p, reach);
+  flanks_.leave_where_turned(p, contacts);
   if (guests_)
     pass_on_joints(p, contacts);
   else
@@ -239,6 +240,7 @@ void ContactSearch<dim>::save(core::State &state, const core::Names &names) cons
     table.add("displacement_" + std::to_string(c), displacement[c]);
   state["searched"] = std::move(table);
   core::save_value(state, "search", "due", std::int64_t(due_));
+  flanks_.save(state);
 }
 
 // Particles that came to the surface after the last search are the last ones in the list, and a
@@ -246,6 +248,7 @@ void ContactSearch<dim>::save(core::State &state, const core::Names &names) cons
 template <int dim>
 void ContactSearch<dim>::load(const core::State &state, const core::Names &names)
 {
+  flanks_.load(state, names);
   const core::Table &table = core::table(state, "searched");
   std::map<int, Vector<dim>> places;
   for (int c = 0; c < dim; ++c) {

@@ -50,6 +50,8 @@ void CutFlanks<dim>::join(const ContactGuests<dim> &guests, const Particles &p)
 template <int dim>
 void CutFlanks<dim>::append(int i, std::int64_t name)
 {
+  if (has_left(name))
+    return;
   const auto [begin, end] = told_.equal_range(name);
   for (auto of = begin; of != end; ++of) {
     const Told &t = of->second;

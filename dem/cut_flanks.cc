@@ -5,6 +5,20 @@
 
 namespace ligament::dem
 {
+namespace
+{
+constexpr double least_cosine = 0.906; // of 25 degrees, between the normals of two flanks
+
+template <int dim>
+bool has_turned(const Contact<dim> &c, const particles::Particles<dim> &p)
+{
+  const auto normal = [&](int k) -> Vector<dim> {
+    return c.cut_normal + Turn<dim>::of(p, k).change(c.cut_normal);
+  };
+  return normal(c.face.i).dot(normal(c.face.j)) < least_cosine;
+}
+} // namespace
+
 template <int dim>
 CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
     : spacing_(packing.spacing), largest_(packings::largest_diameter(packing)),
@@ -51,11 +65,49 @@ bool CutFlanks<dim>::face_each_other(int i, int j) const
   });
 }
 
+template <int dim>
+void CutFlanks<dim>::leave(int i, std::int64_t name)
+{
+  left_.insert(name);
+  for (Flanks &flanks : cuts_) {
+    flanks.positive.erase(i);
+    for (auto &facing : flanks.facing)
+      facing.erase(std::remove_if(facing.begin(), facing.end(),
+                                  [&](const Facing &f) { return f.name == name; }),
+                   facing.end());
+  }
+}
+
+template <int dim>
+void CutFlanks<dim>::leave_where_turned(const Particles &p, const Contacts<dim> &contacts)
+{
+  if (cuts_.empty())
+    return;
+  std::vector<std::int64_t> leaving;
+  for (const Contact<dim> &c : contacts.all())
+    if (c.is_joint() && p.part.owns(c.face.i) && has_turned(c, p))
+      for (const int k : {c.face.i, c.face.j})
+        if (!has_left(p.global_id[k]))
+          leaving.push_back(p.global_id[k]);
+  if (guests_)
+    leaving = guests_->ranks().gather_all(leaving);
+  if (leaving.empty())
+    return;
+  const std::set<std::int64_t> names(leaving.begin(), leaving.end());
+  for (int k = 0; k < p.size(); ++k)
+    if (names.count(p.global_id[k]) > 0)
+      leave(k, p.global_id[k]);
+  for (const std::int64_t name : names)
+    leave(-1, name); // where it is not at hand
+}
+
 // In the reference of i's flank: where the other flank's particles have slid to, against the place
 // of the partner that the packing gave.
 template <int dim>
 auto CutFlanks<dim>::next(const Contact<dim> &c, const Particles &p) const -> Next
 {
+  if (has_left(p.global_id[c.face.i]) || has_left(p.global_id[c.face.j]))
+    return {false, nullptr};
   const Vector<dim> slide = Contacts<dim>::slide(c, p), home = c.home, n = c.cut_normal;
   const auto distance = [&](const Vector<dim> &place) {
     const Vector<dim> x = place + slide - home;
@@ -83,6 +135,23 @@ void CutFlanks<dim>::pass_on_joints(const Particles &p, Contacts<dim> &contacts)
     if (const Next to = next(c, p); !to.stays)
       contacts.pass_on(k, to.to ? to.to->particle : -1, p);
   }
+}
+
+template <int dim>
+void CutFlanks<dim>::save(core::State &state) const
+{
+  if (!cuts_.empty())
+    state["left_flanks"] = core::Table(std::vector<std::int64_t>(left_.begin(), left_.end()));
+}
+
+template <int dim>
+void CutFlanks<dim>::load(const core::State &state, const core::Names &names)
+{
+  const auto table = state.find("left_flanks"); // which older states don't have
+  if (table == state.end())
+    return;
+  for (const std::int64_t name : table->second.keys())
+    leave(names.index(name), name);
 }
 
 template class CutFlanks<2>;

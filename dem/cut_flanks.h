@@ -6,6 +6,7 @@
 #include "packings/packing.h"
 
 #include <map>
+#include <set>
 
 namespace ligament::dem
 {
@@ -23,12 +24,17 @@ public:
   /// Particle i has come, of this name.
   void append(int i, std::int64_t name);
 
-  /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it: they never
-  /// interlock.
+  /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it, and neither
+  /// has left it: they never interlock.
   bool face_each_other(int i, int j) const;
 
+  /// The particles of joints whose flanks have turned against each other by more than 25 degrees
+  /// leave the cut for good: there is no plane any more that both would lie on. All ranks call it.
+  void leave_where_turned(const Particles &particles, const Contacts<dim> &contacts);
+
   /// Joints whose flanks have slid by more than half a spacing since go on to the particle of the
-  /// same flank that has come nearest to where the partner was; those that slid off its end end.
+  /// same flank that has come nearest to where the partner was; those that slid off its end end, as
+  /// do those of particles that have left.
   void pass_on_joints(const Particles &particles, Contacts<dim> &contacts) const;
 
   /// Such a joint of a body in parts: particle i keeps it.
@@ -40,6 +46,10 @@ public:
   };
   /// Of the joints whose particle i is one's own.
   std::vector<Passing> passings(const Particles &particles, const Contacts<dim> &contacts) const;
+
+  /// Who has left, as the table "left_flanks"; nothing where there are no cuts.
+  void save(core::State &state) const;
+  void load(const core::State &state, const core::Names &names);
 
 private:
   /// A particle with faces of a cut; it may be another rank's.
@@ -56,6 +66,9 @@ private:
     const Facing *to; // null: it ends
   };
   Next next(const Contact<dim> &c, const Particles &particles) const;
+  bool has_left(std::int64_t name) const { return left_.count(name) > 0; }
+  /// `i` is below 0 where the particle is not at hand.
+  void leave(int i, std::int64_t name);
 
   struct Flanks
   {
@@ -74,6 +87,7 @@ private:
 
   double spacing_, largest_; // m, of particles
   std::vector<Flanks> cuts_;
+  std::set<std::int64_t> left_;                // names of particles, on all ranks
   const ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
   std::multimap<std::int64_t, Told> told_;     // by names, of all ranks
 };

@@ -37,7 +37,7 @@ public:
   /// No part of the body has any.
   bool none() const { return guests_ ? !any_ : all().empty(); }
   /// Whether faces may begin to touch though no bond breaks.
-  bool may_touch() const { return !none() || may_meet_; }
+  bool may_touch() const { return !none() || may_meet_ || searching_; }
   /// What ranks have to agree on behind each step, before the next one searches: whether there are
   /// contacts, whether they slid, whether a search is due; 1 where one rank sees it.
   std::vector<std::int64_t> seen() const;

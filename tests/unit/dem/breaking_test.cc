@@ -85,8 +85,9 @@ struct Body
         make({FractureLaw::Criterion::face_tension, 0.4 * intact->max_tension(p, all)});
     const Forces<dim> mean = at(*breaking, p);
     ASSERT_GT(breaking->broken_bonds().size(), 1u);
-    if (flows)
+    if (flows) {
       ASSERT_GT(breaking->plastic_dissipation(), 0);
+    }
     ASSERT_LT(long(breaking->broken_bonds().size()), intact->n_bonds() / 2);
 
     // Nothing moved before it; over the next step, half as long, its half is half as large.

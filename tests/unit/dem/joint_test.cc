@@ -65,6 +65,28 @@ struct CutBody
     }
     force.compute(p, time += 1e-9);
   }
+  /// Turns the upper part about the axis out of the plane and its own middle, to this angle (rad)
+  /// in all, lifts it by this many spacings, and computes until a search has seen it.
+  void place_turned(double angle, double lift)
+  {
+    Vector<dim> middle = Vector<dim>::Zero();
+    int n = 0;
+    for (int i = 0; i < p.size(); ++i)
+      if (is_above(i))
+        middle += get(p.reference, i), ++n;
+    middle /= n;
+    for (int i = 0; i < p.size(); ++i)
+      if (is_above(i)) {
+        turn_by<dim>(p, i, Spin<dim>((angle - angle_) * Spin<dim>::Unit(n_spins<dim> - 1)));
+        const Vector<dim> x = get(p.reference, i) - middle;
+        set(p.displacement, i,
+            Vector<dim>(Turn<dim>::of(p, i).change(x) +
+                        lift * packing.spacing * Vector<dim>::Unit(1)));
+      }
+    angle_ = angle;
+    for (int k = 0; k < 3; ++k)
+      force.compute(p, time += 1e-9);
+  }
   /// Small motions and rotations of every particle for itself.
   void disturb_each(double amplitude)
   {
@@ -106,6 +128,9 @@ struct CutBody
   ManyBodyForce<dim> force;
   Particles<dim> p;
   double stiffness = 0, time = 0; // N/m of the whole cut; s
+
+private:
+  double angle_ = 0; // of the upper part
 };
 
 /// A direction in the cut.
@@ -289,6 +314,55 @@ TYPED_TEST(Joint, WorkOfALongSlideIsFrictionAndEnergy)
     EXPECT_NEAR(taken, work, 0.5 * way / steps * d * limit);
     body.disturb_each(closed / 10);
     body.expect_no_net_force_and_torque();
+  }
+}
+
+// A loose piece above a cut that turns over: joints are half planes, which would push it from where
+// nothing is. Once it has turned away it meets the flank as any two surfaces do, and still does
+// when it comes back as it was.
+TYPED_TEST(Joint, PieceThatTurnsMeetsTheFlankByItsSurfaceFromThenOn)
+{
+  for (const bool random : {false, true}) {
+    CutBody<TypeParam> body(random, 0.);
+    const double touch = 1e-3 * body.stiffness * body.packing.spacing;
+    const auto largest = [&] {
+      double most = 0;
+      for (int i = 0; i < body.p.size(); ++i)
+        most = std::max(most, get(body.p.force, i).norm());
+      return most;
+    };
+    body.place_turned(0, 8);
+    ASSERT_LT(largest(), 1e-12 * touch);
+    const double angle = 2;
+    double lift = 8;
+    body.place_turned(angle, lift);
+    const auto gap = [&] { // between the centres that are nearest, in spacings
+      double least = 1e30;
+      for (int i = 0; i < body.p.size(); ++i)
+        for (int j = 0; j < body.p.size(); ++j)
+          if (body.is_above(i) && !body.is_above(j))
+            least = std::min(least, (get(body.p.reference, i) + get(body.p.displacement, i) -
+                                     get(body.p.reference, j) - get(body.p.displacement, j))
+                                        .norm());
+      return least / body.packing.spacing;
+    };
+    while (gap() > 2) {
+      lift -= 0.1;
+      body.place_turned(angle, lift);
+      ASSERT_LT(largest(), 1e-12 * touch) << "at " << lift << " without a touch";
+    }
+    while (gap() > 0.6) {
+      lift -= 0.05;
+      body.place_turned(angle, lift);
+    }
+    EXPECT_GT(body.force_above()[1], touch);
+    body.expect_no_net_force_and_torque();
+
+    body.place_turned(angle, 8);
+    body.place_turned(0, 8);
+    for (lift = 1.5; lift > -0.4; lift -= 0.05)
+      body.place_turned(0, lift);
+    EXPECT_GT(body.force_above()[1], touch);
   }
 }
 } // namespace ligament::dem::testing

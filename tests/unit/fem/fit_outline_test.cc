@@ -217,9 +217,10 @@ TEST(FitOutline, GradedCellsFollowAHoleAndLeaveTheZoneOut)
     EXPECT_NEAR(area(mesh) / (outline->volume() - 20 * 16), 1, 2e-3);
     EXPECT_FALSE(mesh.hanging.empty());
     for (int c = 0; c < mesh.n_cells(); ++c)
-      if (!mesh.is_box(c))
+      if (!mesh.is_box(c)) {
         EXPECT_LT((cell_point<2>(cell_corners(mesh, c), {0.5, 0.5}) - Vector<2>(60, 21)).norm(),
                   4 + 4 * std::max(1., along));
+      }
   }
 }
 

@@ -187,12 +187,14 @@ void check_growth(MeshParameters<dim> p)
         std::reverse(sizes.begin(), sizes.end());
       ASSERT_GT(int(sizes.size()), p.fine_cells);
       for (int i = 0; i < int(sizes.size()); ++i) {
-        if (i < p.fine_cells)
+        if (i < p.fine_cells) {
           EXPECT_NEAR(sizes[i], h, small);
-        else
+        } else {
           EXPECT_GT(sizes[i], sizes[i - 1] * (1 - 1e-12));
-        if (i > 0)
+        }
+        if (i > 0) {
           EXPECT_LT(sizes[i], sizes[i - 1] * (p.growth + 1e-12));
+        }
         EXPECT_LE(sizes[i], 4 * h + small);
       }
       EXPECT_GT(sizes.back(), 1.2 * h);

@@ -46,9 +46,10 @@ TEST(Partition, CutsWholeBlocksNearEqualShares)
       for (std::int64_t b = 0; b < n_blocks && b * sum_block < p.end(r); ++b)
         sum += weights[b];
       EXPECT_LE(2 * std::abs(sum * n_ranks - total * (r + 1)), largest * n_ranks);
-      for (const std::int64_t i : {p.begin(r), p.end(r) - 1})
-        if (p.begin(r) < p.end(r))
-          EXPECT_EQ(p.owner(i), r);
+      if (p.begin(r) < p.end(r)) {
+        EXPECT_EQ(p.owner(p.begin(r)), r);
+        EXPECT_EQ(p.owner(p.end(r) - 1), r);
+      }
     }
   }
 }

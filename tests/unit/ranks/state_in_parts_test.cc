@@ -79,8 +79,8 @@ std::string different_tables(const core::State &a, const core::State &b)
 /// In mid-fracture the body is built anew, in other parts on another number of ranks, from the
 /// state of the parts, which is that of the whole one, and steps on beside it.
 template <int dim>
-void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
-                               std::size_t least_broken = 51)
+core::State expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
+                                      std::size_t least_broken = 51)
 {
   Solver<dim> whole(scene, nullptr);
   const double dt = scene.step_share * whole.force->stable_step(whole.solver->state);
@@ -126,6 +126,7 @@ void expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_states,
     EXPECT_GT(whole.force->plastic_dissipation(), 0);
   if (is_viscous(scene.material.viscosity))
     EXPECT_GT(whole.force->viscous_dissipation(), 0);
+  return state_of(whole);
 }
 
 TEST(StateInParts, GoesOnInOtherParts2D)
@@ -233,6 +234,23 @@ TEST(StateInParts, GoesOnWhereJointsWentOn)
     scene.loads[side].value[1] = side == 0 ? -0.025 : 0.025;
   }
   expect_the_state_to_go_on(scene, 240, 12);
+}
+
+// Everything flies apart: particles of a cut turn and leave its flanks, which all ranks remember.
+TEST(StateInParts, GoesOnWherePiecesLeaveACut)
+{
+  Scene<2> scene;
+  auto lattice = box<Case<2, Kind::hexagonal, false>>(14);
+  const double half = lattice.upper[0];
+  lattice.cracks = {{{0.1 * half, -2 * half}, {0.1 * half, 2 * half}}};
+  scene.packing = packings::make_lattice_packing(lattice);
+  scene.material.friction = 0.6;
+  scene.law = {Criterion::maximum_tension, 0.015};
+  scene.random_velocity = 0.05;
+  const core::State state = expect_the_state_to_go_on(scene, 240, 12);
+  const core::Table &left = core::table(state, "left_flanks");
+  EXPECT_GT(left.n_rows(), 0u);
+  EXPECT_LT(left.n_rows(), std::size_t(scene.packing.size()) / 2);
 }
 
 /// Drawn apart along y, its faces soften; parts with none of them, too.
