@@ -182,6 +182,7 @@ void check_inside_zone(const Box &cut, const std::string &name, const std::strin
 {
   if (!layout.coupled)
     return;
+  const std::string &place = layout.place;
   const double keep_off = layout.overlap + 2 * layout.cell_size;
   if (!layout.boxes.boxes.empty()) {
     Vector<3> lower = Vector<3>::Zero(), upper = Vector<3>::Zero();
@@ -191,10 +192,10 @@ void check_inside_zone(const Box &cut, const std::string &name, const std::strin
     }
     if (!layout.boxes.covers(lower, upper, 1e-9 * keep_off))
       f.error(key, fmt::format("{} is too near the edge of the discrete zone, or outside", name),
-              fmt::format("it must stay {:.4g} m inside the union of /discrete_zone/boxes: the "
-                          "overlap and two cells",
-                          keep_off),
-              "widen the boxes or move it");
+              fmt::format("it must stay {:.4g} m inside the union of {}: the overlap and "
+                          "two cells",
+                          keep_off, place),
+              "widen the zone or move it");
     return;
   }
   for (int side = 0; side < 2 * layout.dim; ++side) {
@@ -209,10 +210,9 @@ void check_inside_zone(const Box &cut, const std::string &name, const std::strin
             fmt::format("{} {} the discrete zone at its {} end in {}", name,
                         distance < 0 ? "reaches out of" : "is too near the edge of",
                         side % 2 ? "upper" : "lower", axis_names[c]),
-            fmt::format("it must stay {:.4g} m inside /discrete_zone/region there: the overlap and "
-                        "two cells",
-                        keep_off),
-            fmt::format("move that side of the region outward by {:.4g} m, or move it",
+            fmt::format("it must stay {:.4g} m inside {} there: the overlap and two cells",
+                        keep_off, place),
+            fmt::format("move that side of the zone outward by {:.4g} m, or move it",
                         keep_off - distance));
     return;
   }

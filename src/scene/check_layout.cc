@@ -1,5 +1,6 @@
 // Where the models lie: the zone and its overlaps inside the specimen, and room for the far field.
 #include "src/scene/check_scene.h"
+#include "src/scene/zone_around.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,12 @@ const std::string zone_key = "/discrete_zone", far_key = "/far_field",
                   spacing_key = "/discrete_zone/spacing", cell_key = "/far_field/cell_size";
 
 constexpr const char *axis_names = "xyz";
+
+/// What messages call the key that says where the zone is.
+std::string name_of(const std::string &place)
+{
+  return fmt::format("\"{}\" in /discrete_zone", place.substr(zone_key.size() + 1));
+}
 
 bool is_coupled(const Scene &scene)
 {
@@ -53,6 +60,8 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
   Layout layout;
   layout.dim = scene.dimension;
   layout.specimen = layout.zone = specimen;
+  layout.place = zone_place(scene);
+  const std::string &place = layout.place, name = name_of(place);
   if (scene.zone.extent != Extent::box)
     return layout;
   layout.coupled = is_coupled(scene);
@@ -61,18 +70,16 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
     const double lower = scene.zone.lower[c], upper = scene.zone.upper[c];
     const double tolerance = 1e-9 * scene.specimen.size[c];
     if (lower >= upper) {
-      f.error(region_key, fmt::format("\"region\" in /discrete_zone is empty in {}", axis_names[c]),
+      f.error(place, fmt::format("{} is empty in {}", name, axis_names[c]),
               fmt::format("it goes from {} m to {} m", lower, upper),
               "give \"lower\" below \"upper\"");
       return {};
     }
     if (lower >= specimen.upper[c] - tolerance || upper <= specimen.lower[c] + tolerance) {
-      f.error(
-          region_key,
-          fmt::format("\"region\" in /discrete_zone is outside the specimen in {}", axis_names[c]),
-          fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m", lower, upper,
-                      specimen.lower[c], specimen.upper[c]),
-          "move it; the specimen is centred at the origin");
+      f.error(place, fmt::format("{} is outside the specimen in {}", name, axis_names[c]),
+              fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m", lower, upper,
+                          specimen.lower[c], specimen.upper[c]),
+              "move it; the specimen is centred at the origin");
       return {};
     }
     layout.zone.lower[c] = std::max(lower, specimen.lower[c]);
@@ -82,8 +89,7 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
     any_side = any_side || layout.coupled_side[2 * c] || layout.coupled_side[2 * c + 1];
   }
   if (!any_side && layout.coupled && scene.zone.boxes.empty()) {
-    f.error(region_key,
-            "\"region\" in /discrete_zone covers the whole specimen: no overlap with /far_field",
+    f.error(place, name + " covers the whole specimen: no overlap with /far_field",
             "no place is left for the far field",
             "make it smaller, or write \"far_field\": \"none\"");
     return {};
@@ -95,6 +101,7 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
 void check_widths(const Scene &scene, const Layout &layout, Findings &f)
 {
   const double h = layout.cell_size, d = scene.zone.spacing;
+  const std::string name = name_of(layout.place);
   const FarField &far = *scene.far_field;
   const double largest = far.growth > 1 ? h : h * std::pow(2.0, far.levels);
   for (int c = 0; c < layout.dim; ++c) {
@@ -105,9 +112,9 @@ void check_widths(const Scene &scene, const Layout &layout, Findings &f)
     const double needed = (low + high) * layout.overlap + 8 * d;
     if (width <= needed)
       f.error(
-          region_key,
-          fmt::format("\"region\" in /discrete_zone is {:.4g} m wide in {}, too thin for {}", width,
-                      axis_names[c], low && high ? "two overlaps" : "its overlap"),
+          layout.place,
+          fmt::format("{} is {:.4g} m wide in {}, too thin for {}", name, width, axis_names[c],
+                      low && high ? "two overlaps" : "its overlap"),
           fmt::format("an overlap takes {} cells of {} m, and 8 spacings must lie between",
                       scene.coupling.overlap_cells, h),
           fmt::format("give more than {:.4g} m, or a smaller cell_size or overlap_cells", needed));
@@ -117,13 +124,11 @@ void check_widths(const Scene &scene, const Layout &layout, Findings &f)
       const double gap = upper ? layout.specimen.upper[c] - layout.zone.upper[c]
                                : layout.zone.lower[c] - layout.specimen.lower[c];
       if (gap < largest * (1 - 1e-9))
-        f.error(
-            region_key,
-            fmt::format("the far field beside the \"region\" in /discrete_zone is only {:.4g} m "
-                        "wide at the {} end of {}",
-                        gap, upper ? "upper" : "lower", axis_names[c]),
-            fmt::format("its largest cells are {:.4g} m (cell_size times 2^levels)", largest),
-            "use fewer levels, or let the region end elsewhere or reach through (null)");
+        f.error(layout.place,
+                fmt::format("the far field beside the {} is only {:.4g} m wide at the {} end of {}",
+                            name, gap, upper ? "upper" : "lower", axis_names[c]),
+                fmt::format("its largest cells are {:.4g} m (cell_size times 2^levels)", largest),
+                "use fewer levels, or let the zone end elsewhere or reach through (null)");
     }
   }
 }
@@ -134,8 +139,8 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
   layout.boxes = zone_shape<3>(scene);
   const Vector<3> lower(layout.specimen.lower.data()), upper(layout.specimen.upper.data());
   if (layout.boxes.covers(lower, upper, 1e-9 * scene.specimen.size[0])) {
-    f.error(boxes_key,
-            "\"boxes\" in /discrete_zone cover the whole specimen: no overlap with /far_field",
+    f.error(layout.place,
+            name_of(layout.place) + " cover the whole specimen: no overlap with /far_field",
             "no place is left for the far field",
             "make one smaller, or write \"far_field\": \"none\"");
     return false;
@@ -143,7 +148,7 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
   const double d = scene.zone.spacing;
   bool right = true;
   for (std::size_t i = 0; i < scene.zone.boxes.size(); ++i) {
-    const std::string key = fmt::format("{}/{}", boxes_key, i);
+    const std::string key = scene.zone.around ? layout.place : fmt::format("{}/{}", boxes_key, i);
     const auto &box = layout.boxes.boxes[i];
     const auto refuse = [&](int c, const std::string &what, const std::string &remedy) {
       f.error(key, fmt::format("{} {} in {}", key, what, axis_names[c]),
@@ -199,6 +204,6 @@ std::optional<Layout> check_layout(const Scene &scene, const Box &specimen, Find
   if (!scene.zone.boxes.empty())
     return check_boxes(scene, *layout, f) ? layout : std::nullopt;
   check_widths(scene, *layout, f);
-  return f.sound({region_key}) ? layout : std::nullopt;
+  return f.sound({layout->place}) ? layout : std::nullopt;
 }
 } // namespace ligament::program

@@ -120,10 +120,11 @@ void check_layer(const Scene &scene, const LoadParameters &load, const std::stri
   const bool covered = layout.boxes.boxes.empty() || layout.coupled_side[side] ||
                        cover_side(layout, side, load.absorbing_layer + layout.overlap);
   if (load.absorbing_layer > 0 && !covered)
-    f.error(key + "/absorbing_layer",
-            fmt::format("\"absorbing_layer\" in {} reaches into the overlap", key),
-            "the union of /discrete_zone/boxes is not that deep everywhere behind the side",
-            "make the layer thinner, or the boxes deeper");
+    f.error(
+        key + "/absorbing_layer",
+        fmt::format("\"absorbing_layer\" in {} reaches into the overlap", key),
+        fmt::format("the union of {} is not that deep everywhere behind the side", layout.place),
+        "make the layer thinner, or the zone deeper");
   else if (load.absorbing_layer >= room)
     f.error(key + "/absorbing_layer",
             fmt::format("\"absorbing_layer\" in {} is {:.4g} m, more than the {:.4g} m that there "
@@ -147,9 +148,10 @@ void check_against_overlap(const Scene &scene, const LoadParameters &load, const
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
                       key, load.side),
-          "the union of /discrete_zone/boxes reaches this side and covers a part of it; an "
-          "overlap may end only at free sides",
-          "end the boxes before this side, let them cover it, or load other sides");
+          fmt::format("the union of {} reaches this side and covers a part of it; an overlap may "
+                      "end only at free sides",
+                      layout.place),
+          "end the zone before this side, let it cover the side, or load other sides");
     return;
   }
   // The zone reaches this side. Overlaps along the other axes end on it.
@@ -159,10 +161,10 @@ void check_against_overlap(const Scene &scene, const LoadParameters &load, const
           key + "/boundary",
           fmt::format("\"boundary\" in {}: the overlap ends at the side \"{}\", which is loaded",
                       key, load.side),
-          fmt::format("/discrete_zone/region reaches this side and is coupled along \"{}\"; an "
-                      "overlap may end only at free sides",
-                      box_sides[other]),
-          "end the region before this side, or load other sides");
+          fmt::format("{} reaches this side and is coupled along \"{}\"; an overlap may end only "
+                      "at free sides",
+                      layout.place, box_sides[other]),
+          "end the zone before this side, or load other sides");
       return;
     }
 }

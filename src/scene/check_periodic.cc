@@ -1,6 +1,7 @@
 // Axes along which a body repeats itself: what fits, and what cannot stand beside them.
 #include "packings/periodic_sides.h"
 #include "src/scene/check_scene.h"
+#include "src/scene/zone_around.h"
 
 #include "core/check.h"
 
@@ -107,8 +108,9 @@ public:
       boxes.push_back({scene_.zone.lower, scene_.zone.upper});
     for (std::size_t k = 0; k < boxes.size(); ++k)
       for (int c = 0; c < scene_.dimension; ++c) {
-        const std::string key =
-            many ? fmt::format("/discrete_zone/boxes/{}", k) : "/discrete_zone/region";
+        const std::string key = many && !scene_.zone.around
+                                    ? fmt::format("/discrete_zone/boxes/{}", k)
+                                    : zone_place(scene_);
         if (!scene_.specimen.is_periodic(c) || !f_.sound({key}))
           continue;
         if (!spans_or_keeps_off(scene_, boxes[k].lower, boxes[k].upper, c))

@@ -16,6 +16,7 @@ struct Layout
   int dim = 2;
   Box specimen;
   Box zone;                  // the discrete zone inside the specimen
+  std::string place;         // the key that says where it is
   core::BoxUnion<3> boxes;   // of a zone of several boxes, infinite where they reach through
   bool coupled = false;      // both models, joined along the sides below
   bool coupled_side[6] = {}; // numbered like the sides of the specimen, core/types.h

@@ -1,5 +1,7 @@
 #include "src/scene/findings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -20,10 +22,8 @@ Findings::Findings(const core::JsonValue &json, std::vector<core::Diagnostic> &e
 {
 }
 
-bool Findings::given(const std::string &key) const
+bool Findings::written(const std::string &key) const
 {
-  if (derived_.count(key))
-    return true;
   const core::JsonValue *value = &json_;
   for (const std::string &part : core::pointer_parts(key)) {
     if (value->is(core::JsonValue::Kind::array)) {
@@ -67,5 +67,16 @@ void Findings::warning(const std::string &key, const std::string &message,
 {
   warnings_.push_back({core::place_of(json_, key), key, message, reason, remedy,
                        core::Diagnostic::Severity::warning});
+}
+
+void Findings::unused(const std::string &key, const std::string &reason, const std::string &remedy)
+{
+  if (!sound_and_given({key}))
+    return;
+  const auto end = key.rfind('/');
+  warning(key,
+          fmt::format("\"{}\" in {} is not used", key.substr(end + 1),
+                      end == 0 ? "/" : key.substr(0, end)),
+          reason, remedy);
 }
 } // namespace ligament::program

@@ -20,7 +20,9 @@ public:
   void derive(const std::string &key) { derived_.insert(key); }
 
   /// True when the file or an override gives the key a value other than null.
-  bool given(const std::string &key) const;
+  bool written(const std::string &key) const;
+  /// Likewise, or when the value follows from others.
+  bool given(const std::string &key) const { return derived_.count(key) || written(key); }
   /// True when nothing wrong was found at these keys, above or below them: their values may be
   /// used.
   bool sound(std::initializer_list<std::string> keys) const;
@@ -31,6 +33,9 @@ public:
              const std::string &remedy);
   void warning(const std::string &key, const std::string &message, const std::string &reason,
                const std::string &remedy);
+  /// A warning that the key, if it is given and sound, means nothing beside the others.
+  void unused(const std::string &key, const std::string &reason,
+              const std::string &remedy = "remove it");
 
 private:
   const core::JsonValue &json_;

@@ -146,6 +146,13 @@ void place_zone(Scene &scene)
   scene.zone.upper = boxes[0].upper;
 }
 
+std::string zone_place(const Scene &scene)
+{
+  return std::string("/discrete_zone/") + (scene.zone.around          ? "around"
+                                           : scene.zone.boxes.empty() ? "region"
+                                                                      : "boxes");
+}
+
 std::string proposed_zone(const Scene &scene, const Findings &f)
 {
   const std::string general =

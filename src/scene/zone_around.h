@@ -14,6 +14,9 @@ namespace ligament::program
 /// core::KeyedError where nothing of what it names is there.
 void place_zone(Scene &scene);
 
+/// The key that says where the zone is: /discrete_zone/region, boxes or around.
+std::string zone_place(const Scene &scene);
+
 /// What to write for a scene without a zone: one around all that may break first, as a remedy of an
 /// error. With a sound spacing it comes with numbers.
 std::string proposed_zone(const Scene &scene, const Findings &findings);
