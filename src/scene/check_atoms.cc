@@ -13,13 +13,16 @@ namespace
 void refuse_other_laws(const Scene &scene, Findings &f)
 {
   const auto refuse = [&](const std::string &key, const std::string &reason) {
-    if (f.given(key) && f.sound({key}))
+    if (f.written(key) && f.sound({key}))
       f.error(key, fmt::format("\"{}\" beside \"atoms\"", key.substr(key.rfind('/') + 1)), reason,
               "remove it, or remove \"atoms\"");
   };
   for (const char *key :
        {"/material/fracture", "/material/plasticity", "/material/viscosity", "/material/friction"})
     refuse(key, "atoms bear and break as their potential says");
+  for (const char *key :
+       {"/material/youngs_modulus", "/material/poissons_ratio", "/material/density"})
+    refuse(key, "it follows from the potential");
   if (!scene.inclusions.empty())
     refuse("/inclusions", "atoms of other species are /atoms/substitutions");
   if (!scene.tools.empty())

@@ -153,22 +153,38 @@ void check_part_keys(const Scene &scene, const LoadParameters &load, const std::
   if (load.from && load.to && *load.from > *load.to)
     f.error(key + "/to", fmt::format("\"to\" in {} is below \"from\"", key),
             fmt::format("the part would go from {} m to {} m", *load.from, *load.to), "swap them");
-  const bool has_centre = w.centre[0] || w.centre[1] || w.centre[2];
-  if (has_centre != w.is_ball())
-    f.error(key + "/within",
-            fmt::format("\"within\" in {} has one of \"centre\" and \"radius\"", key),
-            "a ball needs both", "give both, or \"lower\" and \"upper\" of a box");
-  for (int c = 0; c < scene.dimension; ++c)
-    if (w.lower[c] > w.upper[c])
-      return f.error(key + "/within", fmt::format("\"within\" in {} is empty in {}", key, "xyz"[c]),
-                     fmt::format("it goes from {} m to {} m", w.lower[c], w.upper[c]),
-                     "give \"lower\" below \"upper\"");
+  check_within(scene, w, key, f);
   const bool is_part = has_range || !w.is_everything();
   if (load.absorbing && is_part)
     f.error(key + "/absorbing", fmt::format("\"absorbing\" on a part of a side in {}", key),
             "only whole sides let waves out", "let the load act on the whole side");
 }
 } // namespace
+
+void check_within(const Scene &scene, const Region &within, const std::string &key, Findings &f)
+{
+  const std::string region = key + "/within";
+  const auto &centre = within.centre;
+  const int dim = scene.dimension;
+  const auto n_coordinates = std::count_if(centre.begin(), centre.begin() + dim,
+                                           [](const auto &x) { return x.has_value(); });
+  if ((n_coordinates > 0) != within.is_ball())
+    return f.error(region,
+                   fmt::format("\"within\" in {} has one of \"centre\" and \"radius\"", key),
+                   "a ball needs both", "give both, or \"lower\" and \"upper\" of a box");
+  if (within.is_ball() && n_coordinates < dim)
+    return f.error(region + "/centre", fmt::format("\"centre\" in {} lacks a coordinate", region),
+                   "a ball lies about a point", "give all coordinates");
+  const Region plain;
+  if (within.is_ball() && (within.lower != plain.lower || within.upper != plain.upper))
+    return f.error(region, fmt::format("a box and a ball in {}", region),
+                   "they are two ways to say where", "keep one of them");
+  for (int c = 0; c < dim; ++c)
+    if (within.lower[c] > within.upper[c])
+      return f.error(region, fmt::format("\"within\" in {} is empty in {}", key, "xyz"[c]),
+                     fmt::format("it goes from {} m to {} m", within.lower[c], within.upper[c]),
+                     "give \"lower\" below \"upper\"");
+}
 
 bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadParameters &b)
 {
@@ -180,6 +196,11 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
 {
   const History &h = load.history;
   const std::string history = key + "/history";
+  const bool is_late = load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"});
+  if (is_late)
+    f.warning(key + "/ramp",
+              fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
+              "what grows by it will not reach its value", "run longer, or give a shorter ramp");
   if (!h.is_given() || !f.sound({history}))
     return;
   if (int(!h.table.empty()) + int(h.pulse.has_value()) + int(h.cycles.has_value()) > 1)
@@ -217,7 +238,7 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
               fmt::format("the table in {} goes on until {} s, after the end of the run", history,
                           h.table.back()[0]),
               fmt::format("/time/duration is {} s", end), remedy);
-  if (h.cycles && load.ramp + h.cycles->period > end)
+  if (h.cycles && load.ramp + h.cycles->period > end && !is_late)
     f.warning(history + "/cycles/period",
               fmt::format("the run ends within the first cycle of {}", key),
               fmt::format("/time/duration is {} s", end), remedy);

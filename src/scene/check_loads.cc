@@ -207,10 +207,6 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
       check_against_overlap(scene, load, key, *layout, f);
     if (layout && load.absorbing && f.sound({key}))
       check_layer(scene, load, key, *layout, f);
-    if (load.ramp > scene.time.duration && f.sound_and_given({"/time/duration"}))
-      f.warning(key + "/ramp",
-                fmt::format("\"ramp\" in {} is {} s, longer than the duration", key, load.ramp),
-                "the load will not reach its value", "run longer, or give a shorter ramp");
   }
   if (scene.loads.empty() && !scene.body_force.is_any() && scene.initial_motion.empty() &&
       scene.tools.empty() && !scene.time.has_phases() && f.sound({"/loads"}))

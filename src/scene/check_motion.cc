@@ -17,11 +17,9 @@ bool is_zero(const Point &p)
 void check_region(const Scene &scene, const Region &within, const std::string &key, Findings &f)
 {
   const std::string region = key + "/within";
-  const bool has_centre = within.centre[0] || within.centre[1] || within.centre[2];
-  if (has_centre != within.is_ball())
-    return f.error(region,
-                   fmt::format("\"within\" in {} has one of \"centre\" and \"radius\"", key),
-                   "a ball needs both", "give both, or \"lower\" and \"upper\" of a box");
+  check_within(scene, within, key, f);
+  if (!f.sound({region}))
+    return;
   for (int c = 0; c < scene.dimension && f.sound({"/specimen/size"}); ++c) {
     const double least = scene.specimen.lower(c), most = scene.specimen.upper(c);
     const double lower = within.is_ball() ? within.centre[c].value_or(0) - within.radius
@@ -48,6 +46,8 @@ void check_motion(const Scene &scene, Findings &f)
     if (is_zero(m.velocity) && is_zero(m.spin))
       f.error(key, fmt::format("{} has no \"velocity\" and no \"spin\"", key),
               "a motion without either does nothing", "give one of them, or remove the motion");
+    if (is_zero(m.spin) && !is_zero(m.centre))
+      f.unused(key + "/centre", "without \"spin\" nothing turns about it");
     check_region(scene, m.within, key, f);
   }
   if (!scene.initial_motion.empty() && scene.time.has_phases() &&

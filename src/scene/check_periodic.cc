@@ -288,10 +288,15 @@ void check_jump(const Scene &scene, std::size_t k, Findings &f)
        {std::pair("traction", has_components(load.traction)),
         std::pair("force", has_components(load.force)), std::pair("from", load.from.has_value()),
         std::pair("to", load.to.has_value()), std::pair("within", !load.within.is_everything()),
-        std::pair("absorbing", load.absorbing)})
+        std::pair("absorbing", load.absorbing),
+        std::pair("absorbing_layer", load.absorbing_layer > 0),
+        std::pair("pressure", load.pressure.has_value())})
     if (is_given)
       f.error(key + "/" + std::string(name), fmt::format("\"{}\" in {}, a jump", name, key),
               "joined sides have no surface for it", "remove it");
+  if (load.servo)
+    f.error(key + "/servo", fmt::format("\"servo\" in {}, a jump", key),
+            "a servo moves a side of the specimen", "remove it, and give the jump a course");
   check_history(scene, load, key, f);
   if (!f.sound({key}))
     return;

@@ -39,6 +39,8 @@ void check_scales(const Scene &scene, Findings &findings);
 /// Sizes of the far field's cells.
 void check_mesh(const Scene &scene, bool is_coupled, Findings &findings);
 
+/// The ways between corners of outlines, each for itself: nothing is made of wrong ones.
+void check_corners(const Scene &scene, Findings &findings);
 /// What the specimen is, and whether it bounds a body.
 void check_shape(const Scene &scene, Findings &findings);
 /// Finds the numbers of the sides that loads and gauges name; without findings unknown ones go
@@ -99,6 +101,9 @@ bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadP
 /// Whether the part keeps its distance from an overlap that ends at the same side.
 void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &findings);
+/// "within" of the section at the key: a box or a ball, not empty.
+void check_within(const Scene &scene, const Region &within, const std::string &key,
+                  Findings &findings);
 
 /// Axes along which the body repeats itself, and what cannot stand beside them.
 void check_periodic(const Scene &scene, const Layout *layout, Findings &findings);

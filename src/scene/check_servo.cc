@@ -59,10 +59,6 @@ private:
     course.ramp = servo_.ramp;
     course.history = servo_.history;
     check_history(scene_, course, key_, f_);
-    if (servo_.ramp > scene_.time.duration && f_.sound_and_given({"/time/duration"}))
-      f_.warning(key_ + "/ramp",
-                 fmt::format("\"ramp\" in {} is {} s, longer than the duration", key_, servo_.ramp),
-                 "the wanted value will not be reached", "run longer, or give a shorter ramp");
   }
 
   void quantity()

@@ -75,8 +75,26 @@ void check_names(const Scene &scene, Findings &f)
     check(s.slots[k].side, fmt::format("{}/slots/{}", section, k));
 }
 
+void check_outline(const std::vector<OutlineCorner> &outline, const std::string &key, Findings &f)
+{
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const OutlineCorner &corner = outline[k];
+    const std::string at = fmt::format("{}/{}", key, k);
+    if (corner.centre[0].has_value() != corner.centre[1].has_value())
+      f.error(at + "/centre", fmt::format("\"centre\" in {} has one coordinate", at),
+              "an arc runs about a point", "give both, or no centre for a straight side");
+    else if (corner.clockwise && !corner.centre[0])
+      f.error(at + "/clockwise", fmt::format("\"clockwise\" in {} without a \"centre\"", at),
+              "the way to this corner is straight", "remove it, or give the centre of an arc");
+  }
+}
+
 void check_slot(const Slot &slot, const std::string &key, double spacing, Findings &f)
 {
+  if (slot.tip != SlotTip::v && slot.tip_angle != Slot().tip_angle)
+    f.error(key + "/tip_angle",
+            fmt::format("\"tip_angle\" in {}, whose \"tip\" is \"{}\"", key, word_of(slot.tip)),
+            "only a tip \"v\" has an angle", "remove it, or choose the tip \"v\"");
   const double length = std::hypot(slot.to[0] - slot.from[0], slot.to[1] - slot.from[1]);
   const double tip = slot.tip == SlotTip::flat    ? 0
                      : slot.tip == SlotTip::round ? slot.width / 2
@@ -92,6 +110,14 @@ void check_slot(const Slot &slot, const std::string &key, double spacing, Findin
             "widen it, make the spacing smaller, or give a crack");
 }
 } // namespace
+
+void check_corners(const Scene &scene, Findings &f)
+{
+  check_outline(scene.specimen.outline, section + "/outline", f);
+  for (std::size_t k = 0; k < scene.specimen.cutouts.size(); ++k)
+    check_outline(scene.specimen.cutouts[k].outline,
+                  fmt::format("{}/cutouts/{}/outline", section, k), f);
+}
 
 void check_shape(const Scene &scene, Findings &f)
 {

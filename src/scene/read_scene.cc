@@ -209,6 +209,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   if (json.is(core::JsonValue::Kind::object)) {
     Findings findings(json, result.errors, result.warnings);
     check_choice_of_zone(scene.zone, dimension, findings);
+    check_corners(scene, findings);
     Scene enclosed = scene; // the table's variables stay as they were read: they are echoed
     locate_files(name, enclosed);
     resolve_atoms(enclosed, &findings);
