@@ -76,17 +76,58 @@ void check_scheme(const Scene &scene, Findings &f)
                         name),
             "energy-weighted schemes have no other regime",
             "leave it out, or choose \"fine_scale_split\"");
-  const std::vector<std::string> split = {"gap_filter", "patch_fit", "coarse_mass"},
-                                 literature = {"weight", "damper_form", "multiplier_cells",
-                                               "ghost_force_correction"};
-  for (const std::string &key : weighted ? split : literature)
-    if (f.given("/coupling/" + key))
-      f.warning("/coupling/" + key, fmt::format("\"{}\" in /coupling is not used", key),
-                fmt::format("the scheme is \"{}\"", name), "remove it");
-  if (weighted && f.given("/time/rest_threshold"))
-    f.warning("/time/rest_threshold", "\"rest_threshold\" in /time is not used",
-              fmt::format("\"{}\" joins all velocities of the overlap in every step", name),
-              "remove it");
+  if (weighted && scene.time.rest_threshold > 0)
+    f.unused("/time/rest_threshold",
+             fmt::format("\"{}\" joins all velocities of the overlap in every step", name));
+}
+
+/// Why the scheme does not ask for the key, although it says something else than by default; empty:
+/// it does.
+std::string why_unused(const CouplingParameters &c, const std::string &key)
+{
+  using coupling::Scheme;
+  const bool is_weighted = coupling::is_energy_weighted(c.scheme);
+  const auto is_one_of = [&](std::initializer_list<const char *> keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  const std::string scheme =
+      fmt::format("the scheme is \"{}\"", coupling::scheme_names[int(c.scheme)]);
+  if (!is_weighted &&
+      is_one_of({"weight", "damper_form", "multiplier_cells", "ghost_force_correction"}))
+    return scheme;
+  if (c.scheme != Scheme::fine_scale_split && is_one_of({"gap_filter", "patch_fit"}))
+    return scheme;
+  if (is_weighted && key == "coarse_mass")
+    return scheme;
+  if (c.scheme == Scheme::none && is_one_of({"step_ratio", "fine_damper", "solver"}))
+    return scheme;
+  if (c.scheme == Scheme::pointwise && key == "multiplier_cells")
+    return scheme + ", whose multipliers belong to particles";
+  if (c.fine_damper == 0 && key == "damper_form")
+    return "\"fine_damper\" is 0";
+  return "";
+}
+
+void check_unused(const Scene &scene, Findings &f)
+{
+  if (!f.sound({"/coupling"}))
+    return;
+  const CouplingParameters plain = {}, &c = scene.coupling;
+  for (const auto &[key, differs] :
+       {std::pair("gap_filter", c.gap_filter != plain.gap_filter),
+        std::pair("patch_fit", c.patch_fit != plain.patch_fit),
+        std::pair("coarse_mass", c.coarse_mass != plain.coarse_mass),
+        std::pair("step_ratio", c.step_ratio != plain.step_ratio),
+        std::pair("fine_damper", c.fine_damper != plain.fine_damper),
+        std::pair("weight", c.weight != plain.weight),
+        std::pair("damper_form", c.damper_form != plain.damper_form),
+        std::pair("multiplier_cells", c.multiplier_cells != plain.multiplier_cells),
+        std::pair("ghost_force_correction",
+                  c.ghost_force_correction != plain.ghost_force_correction),
+        std::pair("solver", c.solver != plain.solver)})
+    if (differs)
+      if (const std::string reason = why_unused(c, key); !reason.empty())
+        f.unused(std::string("/coupling/") + key, reason);
 }
 
 /// The fit balances forces at the inner end of the overlap, too: the cells behind it must be its
@@ -127,5 +168,6 @@ void check_coupling(const Scene &scene, Findings &f)
   check_scheme(scene, f);
   check_transition(scene, f);
   check_no_scheme(scene, f);
+  check_unused(scene, f);
 }
 } // namespace ligament::program

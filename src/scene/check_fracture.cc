@@ -65,9 +65,8 @@ private:
                  "remove them, or choose a criterion");
     for (const char *const name :
          {"energy", "compressive_strength", "cohesion", "friction_angle", "weibull"})
-      if (f_.given(key(name)))
-        f_.warning(key(name), fmt::format("\"{}\" in {} is not used", name, section_),
-                   "the \"criterion\" is \"none\"", "remove it, or choose a criterion");
+      if (name != std::string("weibull") || p_.weibull)
+        f_.unused(key(name), "the \"criterion\" is \"none\"", "remove it, or choose a criterion");
   }
 
   // A crack that opens breaks its faces at one stress, which its K gives; the others have a shape.

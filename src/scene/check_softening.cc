@@ -133,11 +133,13 @@ void check_softening(const Scene &scene, const MaterialParameters &m, const std:
   if (m.fracture.energy)
     check_energy(scene, m, section, f);
   const bool softens = m.fracture.energy || (m.fracture.strength && m.fracture.toughness);
-  for (const char *name : {"softening", "mode_ratio"})
-    if (const std::string key = section + "/" + name; !softens && f.sound_and_given({key}))
-      f.warning(key, fmt::format("\"{}\" in {} is not used", name, section),
-                "faces break at once: there is no \"energy\"",
-                "add \"energy\", or a \"toughness\" beside the strength, or remove it");
+  const FractureParameters plain;
+  for (const auto &[name, differs] :
+       {std::pair("softening", m.fracture.softening != plain.softening),
+        std::pair("mode_ratio", m.fracture.mode_ratio != plain.mode_ratio)})
+    if (differs && !softens)
+      f.unused(section + "/" + name, "faces break at once: there is no \"energy\"",
+               "add \"energy\", or a \"toughness\" beside the strength, or remove it");
   if (!softens)
     return;
   check_company(scene, m, section, f);
