@@ -203,6 +203,29 @@ private:
 };
 } // namespace
 
+namespace
+{
+template <typename Is>
+bool is_any(const Scene &scene, Is &&is)
+{
+  return is(scene.material.fracture) ||
+         std::any_of(scene.inclusions.begin(), scene.inclusions.end(),
+                     [&](const Inclusion &i) { return is(i.material.fracture); });
+}
+} // namespace
+
+bool may_break(const Scene &scene)
+{
+  return scene.atoms || is_any(scene, [](const auto &f) { return f.criterion != Criterion::none; });
+}
+
+bool may_soften(const Scene &scene)
+{
+  return is_any(scene, [](const auto &f) {
+    return f.criterion != Criterion::none && (f.energy || (f.strength && f.toughness));
+  });
+}
+
 void check_fracture(const MaterialParameters &material, const std::string &section,
                     const Scene &scene, Findings &f)
 {

@@ -13,9 +13,9 @@ namespace ligament::program
 {
 namespace
 {
-const std::vector<std::string> all_keys = {"points", "direction",   "normal",      "lower",
-                                           "upper",  "inner_lower", "inner_upper", "angle",
-                                           "side",   "load",        "smoothing",   "mass"};
+const std::vector<std::string> all_keys = {"points",      "direction",   "normal", "lower", "upper",
+                                           "inner_lower", "inner_upper", "angle",  "side",  "load",
+                                           "tool",        "smoothing",   "mass"};
 
 bool is_zero(const Point &p)
 {
@@ -246,6 +246,7 @@ private:
       f_.error(key_ + "/direction", fmt::format("no \"direction\" in {}", key_),
                "the tip is the farthest face in a direction", "add it: [1, 0] for along x");
     particles_for("only particles part");
+    fracture_for("its crack never moves");
   }
 
   void virial_stress()
@@ -278,6 +279,15 @@ private:
                         fmt::format("/gauges/{} does, and the run has one fragments.csv", j),
                         "keep one of them");
     particles_for("only particles part");
+    fracture_for("the pieces stay those of the beginning");
+  }
+
+  void fracture_for(const std::string &reason)
+  {
+    if (!may_break(scene_) && f_.sound({"/material", "/inclusions", key_}))
+      f_.warning(key_ + "/kind", fmt::format("{} looks for what breaks, and nothing can", key_),
+                 reason + ": the fracture criterion is \"none\"",
+                 "remove it, or choose a criterion");
   }
 
   void particles_for(const std::string &reason)

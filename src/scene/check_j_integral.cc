@@ -1,3 +1,4 @@
+#include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 
 #include <fmt/format.h>
@@ -27,8 +28,23 @@ struct Cut
 {
   std::string key;
   Box box;
-  bool is_flat; // a crack
+  bool is_flat;            // a crack
+  bool is_slanted = false; // its flanks lie along no axis
 };
+
+/// It goes on outward by its width, and through along z.
+Box box_around(const Slot &slot, const Specimen &specimen)
+{
+  Box box = bounding_box({slot.from, slot.to});
+  for (int c = 0; c < 2; ++c) {
+    const double beyond = slot.from[c] < slot.to[c] ? -1 : slot.from[c] > slot.to[c] ? 1 : 0;
+    box.lower[c] -= beyond < 0 ? slot.width : beyond == 0 ? slot.width / 2 : 0;
+    box.upper[c] += beyond > 0 ? slot.width : beyond == 0 ? slot.width / 2 : 0;
+  }
+  box.lower[2] = specimen.lower(2);
+  box.upper[2] = specimen.upper(2);
+  return box;
+}
 
 std::vector<Cut> cuts_of(const Scene &scene, const Findings &f)
 {
@@ -41,7 +57,27 @@ std::vector<Cut> cuts_of(const Scene &scene, const Findings &f)
   for (std::size_t k = 0; k < s.notches.size(); ++k)
     cuts.push_back(
         {fmt::format("/specimen/notches/{}", k), {s.notches[k].lower, s.notches[k].upper}, false});
+  for (std::size_t k = 0; k < s.slots.size(); ++k) {
+    const Slot &slot = s.slots[k];
+    cuts.push_back({fmt::format("/specimen/slots/{}", k), box_around(slot, s), false,
+                    slot.from[0] != slot.to[0] && slot.from[1] != slot.to[1]});
+  }
   return cuts;
+}
+
+std::vector<Cut> openings_of(const Specimen &s)
+{
+  std::vector<Cut> openings;
+  for (std::size_t k = 0; k < s.cutouts.size(); ++k) {
+    Specimen one;
+    one.outline = s.cutouts[k].outline;
+    enclose_body(one, 2);
+    Box box{one.lower(), one.upper()};
+    box.lower[2] = s.lower(2);
+    box.upper[2] = s.upper(2);
+    openings.push_back({fmt::format("/specimen/cutouts/{}", k), box, false});
+  }
+  return openings;
 }
 } // namespace
 
@@ -100,6 +136,14 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
           key, fmt::format("the outer rectangle of {} meets the hole /specimen/holes/{}", key, k),
           "its rim would have to be added", "make the rectangle smaller, or move it");
   }
+  for (const Cut &opening : particles ? openings_of(scene.specimen) : std::vector<Cut>()) {
+    bool meets = true;
+    for (const int c : {along, across})
+      meets &= opening.box.lower[c] < g.upper[c] && opening.box.upper[c] > g.lower[c];
+    if (meets)
+      return f.error(key, fmt::format("the outer rectangle of {} meets {}", key, opening.key),
+                     "its rim would have to be added", "make the rectangle smaller, or move it");
+  }
   bool has_tip = false;
   for (const Cut &cut : particles ? cuts_of(scene, f) : std::vector<Cut>()) {
     const double low = cut.box.lower[across], high = cut.box.upper[across];
@@ -108,7 +152,9 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
     if (high < g.lower[across] || low > g.upper[across] || cut.box.upper[along] < g.lower[along] ||
         cut.box.lower[along] > g.upper[along])
       continue;
-    const bool parallel = !cut.is_flat || high - low <= 1e-6 * (g.upper[across] - g.lower[across]);
+    const bool parallel =
+        !cut.is_slanted &&
+        (!cut.is_flat || high - low <= 1e-6 * (g.upper[across] - g.lower[across]));
     const bool in_inner = front > g.inner_lower[along] && front < g.inner_upper[along] &&
                           low > g.inner_lower[across] && high < g.inner_upper[across];
     const bool leaves = sign > 0 ? back <= g.lower[along] : back >= g.upper[along];

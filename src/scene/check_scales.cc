@@ -103,7 +103,16 @@ void check_strength(const Scene &scene, Findings &f)
         "check both units");
 }
 
-/// A wave needs about a step from one particle, or node, to the next.
+/// A wave needs about a step from one particle, or node, to the next; s.
+double typical_step(const Scene &scene)
+{
+  const bool particles = scene.zone.extent != DiscreteZone::Extent::none;
+  const double length = particles         ? scene.zone.spacing
+                        : scene.far_field ? scene.far_field->cell_size
+                                          : 0;
+  return length / wave_speed(scene.material);
+}
+
 void check_duration(const Scene &scene, Findings &f)
 {
   const bool particles = scene.zone.extent != DiscreteZone::Extent::none;
@@ -111,8 +120,7 @@ void check_duration(const Scene &scene, Findings &f)
       !f.sound({"/material", "/discrete_zone", "/far_field"}) ||
       (particles ? !f.given("/discrete_zone/spacing") : !scene.far_field))
     return;
-  const double length = particles ? scene.zone.spacing : scene.far_field->cell_size;
-  const double step = scene.time.step.value_or(length / wave_speed(scene.material));
+  const double step = scene.time.step.value_or(typical_step(scene));
   const double steps = scene.time.duration / step;
   // Equilibria skip most steps, but the clock counts them all: it must be able to tell two apart.
   if (scene.time.has_phases() ? steps <= 1e14 : steps <= 1e12)
@@ -135,6 +143,45 @@ void check_duration(const Scene &scene, Findings &f)
             "give a shorter one, or check its unit and those of /material");
 }
 
+/// A clock in the scene that does not strike within the run.
+void check_interval(const Scene &scene, const std::string &key, const std::string &name,
+                    double interval, Findings &f)
+{
+  if (std::isfinite(interval) && interval > scene.time.duration &&
+      f.sound_and_given({key, "/time/duration"}))
+    f.warning(key, fmt::format("{} is {} s, longer than the duration", name, interval),
+              fmt::format("\"duration\" in /time is {} s", scene.time.duration),
+              "give a shorter one, or check both units");
+}
+
+void check_intervals(const Scene &scene, Findings &f)
+{
+  check_interval(scene, "/output/history_interval", "\"history_interval\" in /output",
+                 scene.output.history_interval, f);
+  check_interval(scene, "/output/field_interval", "\"field_interval\" in /output",
+                 scene.output.field_interval, f);
+  for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
+    const std::string key = fmt::format("/gauges/{}", k);
+    check_interval(scene, key + "/smoothing", fmt::format("\"smoothing\" in {}", key),
+                   scene.gauges[k].smoothing, f);
+  }
+}
+
+/// There is at most one row of the history per step.
+void check_rows(const Scene &scene, Findings &f)
+{
+  const std::string key = "/output/history_interval";
+  const double step = scene.time.step.value_or(typical_step(scene)),
+               interval = scene.output.history_interval;
+  if (scene.time.has_phases() || interval == 0 || interval > 0.1 * step ||
+      !f.sound_and_given({key}) || !f.sound({"/material", "/discrete_zone", "/far_field", "/time"}))
+    return;
+  f.warning(key,
+            fmt::format("\"history_interval\" in /output is {} s, far less than a step", interval),
+            fmt::format("a step takes about {:.2g} s, and has one row at most", step),
+            "give a longer one, or check its unit");
+}
+
 void check_output(const Scene &scene, Findings &f)
 {
   const std::string key = "/output/field_interval";
@@ -155,6 +202,8 @@ void check_scales(const Scene &scene, Findings &f)
   check_load_scales(scene, f);
   check_strength(scene, f);
   check_duration(scene, f);
+  check_intervals(scene, f);
+  check_rows(scene, f);
   check_output(scene, f);
 }
 } // namespace ligament::program

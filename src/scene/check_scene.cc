@@ -57,6 +57,27 @@ void check_models(const Scene &scene, Findings &f)
               "scenes with discrete elements need it", fmt::format("add \"{}\"", key));
 }
 
+/// Keys beside an extent "all", written out. What `--set` makes of a coupled scene, its twins
+/// "/far_field=none" and "/discrete_zone=none", keeps them.
+void check_extent(const Scene &scene, Findings &f)
+{
+  if (scene.zone.extent != Extent::all || !f.sound({zone_key, far_key}))
+    return;
+  const std::string reason = "the \"extent\" of /discrete_zone is \"all\"",
+                    remedy = "remove it, or the \"extent\"";
+  if (scene.far_field)
+    return f.unused(far_key, reason, "write \"none\", or remove the \"extent\"");
+  if (f.given(far_key))
+    return;
+  const ZoneBox plain;
+  if (!scene.zone.boxes.empty())
+    f.unused(boxes_key, reason, remedy);
+  else if (scene.zone.around)
+    f.unused(zone_key + "/around", reason, remedy);
+  else if (scene.zone.lower != plain.lower || scene.zone.upper != plain.upper)
+    f.unused(region_key, reason, remedy);
+}
+
 /// Keys that belong to another packing than the one that was chosen. Their defaults do no harm.
 void check_packing_keys(const Scene &scene, Findings &f)
 {
@@ -129,25 +150,38 @@ void check_time(const Scene &scene, Findings &f)
             fmt::format("\"step\" in /time is {} s, longer than the duration of {} s",
                         *scene.time.step, scene.time.duration),
             "nothing would be computed", "give a smaller step, or none");
-  const bool breaks =
-      scene.atoms || scene.material.fracture.criterion != Criterion::none ||
-      std::any_of(scene.inclusions.begin(), scene.inclusions.end(), [](const Inclusion &i) {
-        return i.material.fracture.criterion != Criterion::none;
-      });
   if (f.sound({"/time/stop_when", "/material/fracture/criterion", "/inclusions"}) &&
-      scene.time.stop_when == StopWhen::specimen_broken && !breaks)
+      scene.time.stop_when == StopWhen::specimen_broken && !may_break(scene))
     f.warning("/time/stop_when", "\"stop_when\" in /time waits for a fracture that cannot happen",
               "the fracture criterion is \"none\"", "remove it, or choose a criterion");
 }
 
-/// Where there is a field of this word.
-FieldInfo::Only only_of(const std::string &word, int dimension)
+/// The field of this word; null: one that is nowhere by itself.
+const FieldInfo *field_of(const std::string &word, int dimension)
 {
   const std::string name = shown_field(word, dimension).field;
   for (const FieldInfo &info : field_table())
     if (info.name == name)
-      return info.only;
-  return FieldInfo::Only::anywhere;
+      return &info;
+  return nullptr;
+}
+
+FieldInfo::Only only_of(const std::string &word, int dimension)
+{
+  const FieldInfo *info = field_of(word, dimension);
+  return info ? info->only : FieldInfo::Only::anywhere;
+}
+
+/// Why the run will have no such field to colour its pictures by; empty: it will.
+std::string why_grey(const Scene &scene, const std::string &word)
+{
+  const FieldInfo *info = field_of(word, scene.dimension);
+  const bool is_of_mesh = info && (info->on_nodes || info->on_cells);
+  if (scene.zone.extent == Extent::none && !is_of_mesh)
+    return "only particles have one, and there is no discrete zone";
+  if ((word == "softened" || word == "opening") && !may_soften(scene))
+    return "no face softens: it takes a \"strength\" and an \"energy\"";
+  return "";
 }
 
 /// Components across the plane are 0 in 2D.
@@ -168,6 +202,10 @@ void check_pictures(const Scene &scene, Findings &f)
     else if (!scene.flows() && only_of(field, scene.dimension) == FieldInfo::Only::where_it_flows)
       f.error(key + "/field", fmt::format("a picture of \"{}\"", field), "no material flows",
               "give one its \"plasticity\", or remove the picture");
+    else if (const std::string reason = why_grey(scene, field);
+             !reason.empty() && f.sound({"/material", "/inclusions", zone_key}))
+      f.warning(key + "/field", fmt::format("a picture of \"{}\" will be grey", field), reason,
+                "choose another field, or remove the picture");
   }
 }
 } // namespace
@@ -175,6 +213,7 @@ void check_pictures(const Scene &scene, Findings &f)
 void check_scene(const Scene &scene, Findings &f)
 {
   check_models(scene, f);
+  check_extent(scene, f);
   check_packing(scene, f);
   check_atoms(scene, f);
   check_fracture(scene.material, "/material/fracture", scene, f);
@@ -183,6 +222,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_viscosity(scene, f);
   check_face_life(scene, f);
   check_time(scene, f);
+  check_unused_keys(scene, f);
   if (!f.sound({"/dimension"}))
     return;
   check_shape(scene, f);

@@ -71,6 +71,13 @@ void check_viscosity(const Scene &scene, Findings &f);
 void check_fracture(const MaterialParameters &material, const std::string &section,
                     const Scene &scene, Findings &findings);
 
+/// Whether anything may break, and whether faces of any material soften before.
+bool may_break(const Scene &scene);
+bool may_soften(const Scene &scene);
+
+/// Keys that mean nothing in a body without particles, at rest or without heat.
+void check_unused_keys(const Scene &scene, Findings &findings);
+
 /// Whether faces can soften as it says.
 void check_softening(const Scene &scene, const MaterialParameters &material,
                      const std::string &section, Findings &findings);
@@ -94,6 +101,9 @@ void check_history(const Scene &scene, const LoadParameters &load, const std::st
                    Findings &findings);
 void check_part(const Scene &scene, const LoadParameters &load, const std::string &key,
                 Findings &findings);
+/// "within" of the section at the key: a box or a ball, not empty.
+void check_within(const Scene &scene, const Region &within, const std::string &key,
+                  Findings &findings);
 /// The servo of a load that has one.
 void check_servo(const Scene &scene, std::size_t load, Findings &findings);
 /// Whether the parts of the same side on which they act have an area in common.
@@ -101,9 +111,6 @@ bool act_on_common_area(const Scene &scene, const LoadParameters &a, const LoadP
 /// Whether the part keeps its distance from an overlap that ends at the same side.
 void check_part_against_overlap(const Scene &scene, const LoadParameters &load,
                                 const std::string &key, const Layout &layout, Findings &findings);
-/// "within" of the section at the key: a box or a ball, not empty.
-void check_within(const Scene &scene, const Region &within, const std::string &key,
-                  Findings &findings);
 
 /// Axes along which the body repeats itself, and what cannot stand beside them.
 void check_periodic(const Scene &scene, const Layout *layout, Findings &findings);
