@@ -95,6 +95,8 @@ int sweep_command(const CommandLine &line)
   const CaseList list = make_cases(*read.study, read.json);
   if (!list.errors.empty())
     return refuse(line, line.study, list.errors);
+  for (const core::Diagnostic &warning : list.warnings)
+    core::tell(stderr, to_string(warning) + "\n");
   const std::string folder = line.output.empty() ? default_folder(line.study) : line.output;
   return line.dry_run ? list_cases(line, list, folder) : compute(line, *read.study, list, folder);
 }

@@ -123,11 +123,18 @@ CaseList make_cases(const Study &study, const JsonValue &json)
     if (reported.insert(to_string(d)).second)
       list.errors.push_back(d);
   };
+  // A warning has the place of the case's own value, which says nothing new.
+  std::set<std::string> warned;
+  const auto warn = [&](const core::Diagnostic &d) {
+    if (warned.insert(d.key + d.message).second)
+      list.warnings.push_back(d);
+  };
   std::vector<core::Diagnostic> of_refused;
   bool any = false;
   for (Case &c : list.cases) {
     const ReadResult read = read_scene(study.scene, c.overrides);
     if (read.scene) {
+      std::for_each(read.warnings.begin(), read.warnings.end(), warn);
       c.scene = read.resolved;
       // The case's scene lies elsewhere: relative paths in it would lead nowhere.
       if (const std::string &file = read.scene->zone.packing_file; !file.empty())

@@ -27,6 +27,7 @@ struct CaseList
   std::vector<Case> cases;
   std::vector<std::string> keys; // of the scene that the grids vary or the rows set, in their order
   std::vector<core::Diagnostic> errors;
+  std::vector<core::Diagnostic> warnings; // of scenes that are computed, each one once
 };
 
 /// All cases in the order of the study: grids (the last key varies fastest), then rows. Wrong keys,

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 using namespace ligament;
@@ -95,6 +96,21 @@ TEST(Cases, ValuesThatDoNotGoTogetherAreRefused)
   EXPECT_FALSE(list.cases[0].refused.empty());
   EXPECT_TRUE(list.cases[0].scene.is_null());
   EXPECT_TRUE(list.cases[1].refused.empty());
+}
+
+// Warnings of all scenes that are computed, one that many have once; what they are about is the
+// case.
+TEST(Cases, WarningsAreKeptOnce)
+{
+  const CaseList list = cases_of(study(
+      R"("set": {"/loads/0/ramp": "2 ms"},
+         "grids": [{"vary": {"/coupling/gap_filter": [1, 2], "/coupling/scheme": ["fine_scale_split", "none"]}}])"));
+  const auto count = [&](const std::string &part) {
+    return std::count_if(list.warnings.begin(), list.warnings.end(),
+                         [&](const auto &w) { return w.message.find(part) != std::string::npos; });
+  };
+  EXPECT_EQ(count("\"ramp\" in /loads/0 is 0.002 s, longer than the duration"), 1);
+  EXPECT_EQ(count("\"gap_filter\" in /coupling is not used"), 1);
 }
 
 TEST(Cases, ReferencesMustBeScenes)
