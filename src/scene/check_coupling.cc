@@ -95,9 +95,7 @@ std::string why_unused(const CouplingParameters &c, const std::string &key)
   if (!is_weighted &&
       is_one_of({"weight", "damper_form", "multiplier_cells", "ghost_force_correction"}))
     return scheme;
-  if (c.scheme != Scheme::fine_scale_split && is_one_of({"gap_filter", "patch_fit"}))
-    return scheme;
-  if (is_weighted && key == "coarse_mass")
+  if (c.scheme != Scheme::fine_scale_split && is_one_of({"gap_filter", "patch_fit", "coarse_mass"}))
     return scheme;
   if (c.scheme == Scheme::none && is_one_of({"step_ratio", "fine_damper", "solver"}))
     return scheme;

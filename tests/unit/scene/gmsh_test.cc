@@ -2,6 +2,7 @@
 #include "core/keyed_error.h"
 #include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
+#include "src/scene/read_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -258,5 +259,29 @@ TEST(Gmsh, WrongFilesAreRefused)
   says(head_2 + nodes_2 + elements_2, 3, "bounds no body");
   EXPECT_THROW(read_body("no_such_file.msh", 2), core::KeyedError);
   EXPECT_THROW(read_body("body.obj", 3), core::KeyedError);
+}
+
+// Cells of a file are as large as they are.
+TEST(Gmsh, SizesOfCellsBesideThoseOfTheFileAreDoubted)
+{
+  const File file("sized.msh", head_2 + nodes_2 + elements_2);
+  const std::vector<std::string> sizes = {"levels", "growth", "fine_cells", "cells_per_level",
+                                          "outline_cell_size"};
+  const ReadResult result = parse_scene(R"({
+    "dimension": 2, "specimen": {"file": "sized.msh"},
+    "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.2, "density": 1000},
+    "discrete_zone": "none",
+    "far_field": {"cell_size": 1, "cells_from_file": true, "levels": 1, "growth": 1.2,
+                  "fine_cells": 3, "cells_per_level": 2, "outline_cell_size": 0.5},
+    "loads": [{"boundary": "left", "velocity": [1e-3, 0]}],
+    "time": {"duration": 1}
+  })",
+                                        "scene.json");
+  EXPECT_TRUE(result.scene) << (result.errors.empty() ? "" : core::to_string(result.errors[0]));
+  ASSERT_EQ(result.warnings.size(), sizes.size());
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    EXPECT_EQ(result.warnings[k].key, "/far_field/" + sizes[k]);
+    EXPECT_EQ(result.warnings[k].reason, "the cells are those of /specimen/file");
+  }
 }
 } // namespace
