@@ -62,7 +62,7 @@ BridgingDomain<dim>::BridgingDomain(Bodies<dim> &bodies, OverlapParameters<dim> 
 }
 
 // The forces and torques that a uniform strain would leave at the members, their neighbours and the
-// near nodes, with the opposite sign.
+// near nodes, with the opposite sign. Nothing breaks, and no loads act: those are no dead load.
 template <int dim>
 void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
 {
@@ -89,10 +89,10 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
           is_near[face.j] = 1;
       },
       &members);
-  bodies.zone->compute_forces(0);
-  far.compute_forces(0);
-  compute_near_force(dead_nodal_);
-  dead_nodal_ *= -1;
+  Nodal<dim> strained_nodal, nodal;
+  bodies.zone->force->compute_bonds(zone, false);
+  far.compute_trial(0);
+  compute_near_force(strained_nodal);
   dead_ = zone.force;
   dead_torque_ = zone.torque;
   const auto reverse = [&](auto &components) {
@@ -104,9 +104,10 @@ void BridgingDomain<dim>::find_dead_load(Bodies<dim> &bodies)
   reverse(dead_torque_);
   zone.displacement = zone_before;
   far.displacement = far_before;
-  // What the loads do is counted from the last forces on: let them be those of the body as it is.
-  bodies.zone->compute_forces(0);
-  far.compute_forces(0);
+  bodies.zone->force->compute_bonds(zone, false);
+  far.compute_trial(0);
+  compute_near_force(nodal);
+  dead_nodal_ = nodal - strained_nodal;
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <unordered_map>
 
 namespace ligament::dem
@@ -70,6 +71,7 @@ ContactSearch<dim>::ContactSearch(const packings::Packing<dim> &packing, double 
       face_area_(face_area), largest_(packings::largest_diameter(packing)),
       diameter_(packing.diameter), on_surface_(packing.size(), 0)
 {
+  searched_jumps_.fill(Vector<dim>::Zero());
   for (const auto &face : packing.boundary_faces) {
     add_surface_particle(face.i);
     may_meet_ = may_meet_ || face.boundary >= inner_surface<dim>;
@@ -118,11 +120,23 @@ Vector<dim> ContactSearch<dim>::place_of(const Particles &p, const Partner &part
 template <int dim>
 bool ContactSearch<dim>::has_moved(const Particles &p) const
 {
+  // An image has moved by that of its particle and its jump.
+  double jumped = 0;
+  const auto now = jumps();
+  for (int a = 0; a < dim; ++a)
+    jumped += (now[a] - searched_jumps_[a]).norm();
+  const double skin = std::max(skin_ - jumped / 2, 0.);
   for (std::size_t s = 0; s < searched_at_.size(); ++s)
-    if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin_ * skin_ &&
+    if ((get(p.displacement, surface_[s]) - searched_at_[s]).squaredNorm() > skin * skin &&
         is_own(surface_[s]))
       return true;
-  return false;
+  return !searched_at_.empty() && skin == 0;
+}
+
+template <int dim>
+std::array<Vector<dim>, dim> ContactSearch<dim>::jumps() const
+{
+  return images_ ? images_->jumps() : searched_jumps_;
 }
 
 template <int dim>
@@ -139,6 +153,7 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
   searched_at_.clear();
   for (const int i : surface_)
     searched_at_.push_back(get(p.displacement, i));
+  searched_jumps_ = jumps();
   const double reach = largest_ + 2 * skin_;
   contacts.drop_distant(p, reach);
   flanks_.leave_where_turned(p, contacts);
@@ -222,6 +237,15 @@ Bond<dim> ContactSearch<dim>::face_between(int i, int j, double distance,
   return face;
 }
 
+namespace
+{
+/// Of component c of the jump along axis a.
+std::string column(int a, int c)
+{
+  return std::to_string(a) + "_" + std::to_string(c);
+}
+} // namespace
+
 template <int dim>
 void ContactSearch<dim>::save(core::State &state, const core::Names &names) const
 {
@@ -240,6 +264,10 @@ void ContactSearch<dim>::save(core::State &state, const core::Names &names) cons
     table.add("displacement_" + std::to_string(c), displacement[c]);
   state["searched"] = std::move(table);
   core::save_value(state, "search", "due", std::int64_t(due_));
+  if (images_ && images_->is_any())
+    for (int a = 0; a < dim; ++a)
+      for (int c = 0; c < dim; ++c)
+        core::save_value(state, "searched_jumps", column(a, c), searched_jumps_[a][c]);
   flanks_.save(state);
 }
 
@@ -258,6 +286,10 @@ void ContactSearch<dim>::load(const core::State &state, const core::Names &names
         places[i][c] = values[r];
   }
   due_ = core::load_integer(state, "search", "due") != 0;
+  if (images_ && images_->is_any() && state.count("searched_jumps"))
+    for (int a = 0; a < dim; ++a)
+      for (int c = 0; c < dim; ++c)
+        searched_jumps_[a][c] = core::load_real(state, "searched_jumps", column(a, c));
   // Nobody has searched yet, and older states don't say where from: the reference.
   if (places.empty())
     return;

@@ -45,7 +45,8 @@ public:
   bool may_meet() const { return may_meet_; }
   /// has_moved() counts from the reference until the first search; else it says no until then.
   void watch_from_reference() { searched_at_.assign(surface_.size(), Vector<dim>::Zero()); }
-  /// Whether a surface particle has moved by the skin since the last search, or the reference.
+  /// Whether a surface particle has moved by the skin since the last search, or the reference, or
+  /// two images have come nearer by twice the skin.
   bool has_moved(const Particles &particles) const;
 
   /// The face of a contact that a search found when the two were `distance` m apart, or touched: in
@@ -72,6 +73,7 @@ private:
   /// The same as CutFlanks does in one process.
   void pass_on_joints(Particles &particles, Contacts<dim> &contacts);
   void add_seen(int i); // on a surface, whoever found it
+  std::array<Vector<dim>, dim> jumps() const;
   double diameter(int i) const { return diameter_.empty() ? spacing_ : diameter_[i]; }
   /// Centre distance at which two particles touch.
   double rest_distance(const Particles &particles, int i, const Partner &partner) const;
@@ -86,6 +88,7 @@ private:
   std::vector<int> surface_;             // particles on surfaces
   // Of the first of them, displacements at the last search; before it none.
   std::vector<Vector<dim>> searched_at_;
+  std::array<Vector<dim>, dim> searched_jumps_; // of the images then
   bool due_ = true, may_meet_ = false;
   ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
 };

@@ -229,10 +229,11 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
   }
   for (const BondId &id : bonds) {
     Bond<dim> b = body_.bonds().bond(id);
-    const Vector<dim> pressing =
-        search_.breaks_under_pressure() ? pressing_force(b, p) : Vector<dim>(Vector<dim>::Zero());
     const auto *const face = cohesive_.find(b, p);
     const bool softened = face != nullptr;
+    const Vector<dim> pressing = search_.breaks_under_pressure() && !softened
+                                     ? pressing_force(b, p)
+                                     : Vector<dim>(Vector<dim>::Zero());
     const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
     Bond<dim> touching = strains_.stretched(b);

@@ -120,15 +120,10 @@ public:
   /// Force in N of support or traction number `load` (constructor's order) on the body, at the
   /// last compute.
   Vector<dim> reaction(int load) const override;
-  /// Work in J of supports and tractions since the last reset_work, booked by compute().
+  /// Work in J of supports and tractions, booked by compute().
   double external_work() const override
   {
     return ranks().sum(surface_.external_work()).value() + jumps_.external_work();
-  }
-  void reset_work() override
-  {
-    surface_.reset_work();
-    jumps_.reset_work();
   }
 
   /// Energy in J that breaking bonds released.

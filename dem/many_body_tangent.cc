@@ -117,17 +117,18 @@ void ManyBodyForce<dim>::for_each_face(
     const std::vector<int> *of) const
 {
   const Asked asked(of, body_.n_particles());
-  const auto both_sides = [&](const Bond<dim> &b, bool bonded) {
+  const auto both_sides = [&](const Bond<dim> &b, bool bonded, bool again) {
     const Vector<dim> centroid = get(particles.reference, b.i) + b.lever_i;
     if (asked.has(b.i))
-      visit({b.i, b.j, b.normal, b.area, centroid, bonded});
+      visit({b.i, b.j, b.normal, b.area, centroid, bonded, again});
     if (asked.has(b.j))
-      visit({b.j, b.i, -b.normal, b.area, centroid, bonded});
+      visit({b.j, b.i, -b.normal, b.area, centroid, bonded, again});
   };
-  body_.bonds().for_each_bond_of_some(of, [&](BondId, const Bond<dim> &b) { both_sides(b, true); });
+  body_.bonds().for_each_bond_of_some(
+      of, [&](BondId, const Bond<dim> &b) { both_sides(b, true, false); });
   for (const auto &contact : contacts_.all())
     if (contact.from_face || contact.is_bonded)
-      both_sides(contact.face, contact.is_bonded);
+      both_sides(contact.face, contact.is_bonded, contact.is_bonded);
   for (const auto &face : body_.boundary_faces())
     if (asked.has(face.i))
       visit({face.i, -1, face.normal, face.area,

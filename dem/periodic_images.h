@@ -82,6 +82,19 @@ public:
     }
   }
 
+  /// The same, as they are.
+  std::array<Vector<dim>, dim> jumps() const
+  {
+    std::array<Vector<dim>, dim> jumps;
+    jumps.fill(Vector<dim>::Zero());
+    for (int a = 0; a < dim; ++a)
+      if (std::array<int, dim> next = {}; period_[a] > 0) {
+        next[a] = 1;
+        jumps[a] = of(next)->jump;
+      }
+    return jumps;
+  }
+
 private:
   static constexpr int number = dim == 2 ? 9 : 27;
 

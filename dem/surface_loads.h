@@ -47,7 +47,6 @@ public:
   /// trapezoidal rule.
   void book_work(const Particles &particles, const Evaluation<dim> &evaluation);
   const core::ExactSum &external_work() const { return work_; }
-  void reset_work() { work_ = {}; }
 
   /// What the next work is booked against, as the tables "loads", "walls" and "loaded_faces".
   void save(core::State &state, const core::Names &names) const override;

@@ -121,15 +121,14 @@ public:
   /// Inertia and drag of held components are in `force`, in external_work and in reaction, too.
   double kinetic_energy(double dt) const;
 
-  /// Work done on the body by supports and tractions at nodes that are not released, since
-  /// reset_work, in J: the force of the previous and the present compute_forces, averaged, times
-  /// the displacement in between. kinetic + potential - external work is then an exact invariant.
-  /// Where a motion jumps at the first kick, what this gives the held nodes.
+  /// Work done on the body by supports and tractions at nodes that are not released, in J: the
+  /// force of the previous and the present compute_forces, averaged, times the displacement in
+  /// between. kinetic + potential - external work is then an exact invariant. Where a motion jumps
+  /// at the first kick, what this gives the held nodes.
   double external_work() const { return external_work_; }
 
   /// Energy that absorbing sides and their layers have taken, in J.
   double absorbed_energy() const { return dashpots_.energy(); }
-  void reset_work() { external_work_ = 0; }
 
   /// Largest stable leap-frog step of the own cells, in s (element bound 2/omega_max); infinite if
   /// there are none.

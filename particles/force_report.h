@@ -70,9 +70,8 @@ public:
 
   /// Force in N of load number `load` on the particles, at the last compute.
   virtual Vector<dim> reaction(int /*load*/) const { return Vector<dim>::Zero(); }
-  /// Work in J of the loads since the last reset_work.
+  /// Work in J of the loads.
   virtual double external_work() const { return 0; }
-  virtual void reset_work() {}
 
   /// Overwrites: stress tensors of all particles in Pa, Voigt order (in-plane in 2D).
   virtual void stresses(const Particles<dim> &particles, Components<n_strains<dim>> &stress) const

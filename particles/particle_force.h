@@ -53,6 +53,7 @@ struct FaceView
   double area;          // m^2
   Vector<dim> centroid; // m, in the reference
   bool bonded;
+  bool is_rebonded = false; // bonded, after it had broken
 };
 
 /// Elastic constants that a continuum needs to be the same body.

@@ -212,9 +212,10 @@ template <int dim>
 int BondCriteria<dim>::failing_material(LoadedFace<dim> face, const Bond<dim> &b,
                                         const Materials &materials) const
 {
+  const bool presses = face.traction.dot(face.normal) <= 0;
   const auto share = [&](int m) {
     const OfMaterial &of = of_[m];
-    if (!of.criterion)
+    if (!of.criterion || (presses && !of.criterion->breaks_under_pressure()))
       return -1.;
     face.measure = of.measure;
     return size_factor(b, of) * of.criterion->tension(face) / strength_of(b, of);
@@ -223,7 +224,9 @@ int BondCriteria<dim>::failing_material(LoadedFace<dim> face, const Bond<dim> &b
   const double of_i = share(i), of_j = share(j);
   if (of_i != of_j)
     return of_i > of_j ? i : j;
-  return law_.energy_of(i) <= law_.energy_of(j) ? i : j;
+  if (law_.energy_of(i) != law_.energy_of(j))
+    return law_.energy_of(i) < law_.energy_of(j) ? i : j;
+  return std::min(i, j); // whichever particle the face begins with
 }
 
 template class BondCriteria<2>;

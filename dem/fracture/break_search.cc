@@ -4,6 +4,7 @@
 #include "particles/worse_face.h"
 
 #include <algorithm>
+#include <set>
 
 namespace ligament::dem
 {
@@ -271,19 +272,25 @@ std::vector<ExceedingBond<dim>> BreakSearch<dim>::breaking(std::vector<Exceeding
                                                            const BondedBody<dim> &body) const
 {
   sort_by_names(found); // few are left
-  const bool all_at_once = criteria_.apart() == 0;
-  if (!all_at_once || one_by_one_)
+  const bool all_at_once = criteria_.apart() == 0, falls = law().falls();
+  if (!all_at_once || one_by_one_ || falls)
     std::stable_sort(found.begin(), found.end(),
                      [](const auto &a, const auto &b) { return a.utilisation > b.utilisation; });
   if (one_by_one_ && found.size() > 1)
     found.resize(1);
-  if (all_at_once)
+  if (all_at_once && !falls)
     return found;
   PlacesApart<dim> places(criteria_.apart() * body.spacing(), body.images().period());
+  std::set<std::int64_t> at_front; // particles: of each one face falls at a time
   std::vector<ExceedingBond<dim>> kept;
-  for (const auto &bond : found)
-    if (places.add(Eigen::Map<const Vector<dim>>(bond.place.data())))
-      kept.push_back(bond);
+  for (const auto &bond : found) {
+    if (falls && (at_front.count(bond.name[0]) || at_front.count(bond.name[1])))
+      continue;
+    if (!all_at_once && !places.add(Eigen::Map<const Vector<dim>>(bond.place.data())))
+      continue;
+    kept.push_back(bond);
+    at_front.insert(bond.name.begin(), bond.name.end());
+  }
   return kept;
 }
 

@@ -37,7 +37,6 @@ public:
   /// Adds to external_work() what the jumps did since the last call: trapezoidal rule.
   void book_work(const Evaluation<dim> &evaluation);
   double external_work() const { return work_.value(); }
-  void reset_work() { work_ = {}; }
 
   /// What the next work is booked against, as the table "periodic_jumps".
   void save(core::State &state, const core::Names &names) const override;

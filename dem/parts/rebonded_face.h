@@ -5,6 +5,8 @@
 #include "dem/bond_law.h"
 #include "dem/contacts.h"
 
+#include <algorithm>
+
 namespace ligament::dem
 {
 /// How two particles are turned against each other where their bond has no couple.
@@ -108,7 +110,19 @@ inline double couple_energy(const RebondedFace<3> &f, const particles::Particles
   return 2 * law.add_half_energy(seen.v.squaredNorm(), along * along, 0);
 }
 
-/// From now on the couple on i is this one (N m, space axes).
+/// Couples fall with the square of a face's area, what a contact presses on a part of it with the
+/// area: slivers bend too far for what they have to bear, and stay contacts.
+constexpr double largest_turn = 0.5; // rad, of theory.md eq. (D45)
+inline double least_bending(const RebondedFace<2> &f)
+{
+  return f.bending;
+}
+inline double least_bending(const RebondedFace<3> &f)
+{
+  return std::min(f.bending, f.twist);
+}
+
+/// From now on the couple on i is this one (N m, space axes), of no more than largest_turn.
 inline void set_couple(RebondedFace<2> &f, const particles::Particles<2> &p, const Spin<2> &wanted)
 {
   f.turn.angle = p.rotation[0][f.j] - p.rotation[0][f.i] - wanted[0] / f.bending;

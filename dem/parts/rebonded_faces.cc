@@ -41,7 +41,10 @@ void RebondedFaces<dim>::look(const Particles &p, const std::vector<double> &pre
       continue;
     const auto pressed = contacts.pressed(k, p);
     if (pressed && pressed->pressure >= rule->pressure) {
-      faces_.emplace(c.name, make(c, *pressed, p, pressure, rule->strength));
+      const auto face = make(c, *pressed, p, pressure, rule->strength);
+      if (!face)
+        continue;
+      faces_.emplace(c.name, *face);
       has_new_ = true;
     }
   }
@@ -52,7 +55,7 @@ void RebondedFaces<dim>::look(const Particles &p, const std::vector<double> &pre
 template <int dim>
 auto RebondedFaces<dim>::make(const Contact<dim> &c, const PressedContact<dim> &pressed,
                               const Particles &p, const std::vector<double> &pressure,
-                              double strength) const -> Face
+                              double strength) const -> std::optional<Face>
 {
   const int i = c.face.i, j = c.face.j;
   const auto turn_i = Turn<dim>::of(p, i), turn_j = Turn<dim>::of(p, j);
@@ -84,7 +87,10 @@ auto RebondedFaces<dim>::make(const Contact<dim> &c, const PressedContact<dim> &
       in_own_axes<dim>(face.turns_with_i ? turn_i : turn_j, Vector<dim>(-lacking / bare.law.shear));
   const RebondedState<dim> now = state(face, p);
   face.flowed = now.normal().dot(now.stretch_i - now.stretch_j);
-  set_couple(face, p, Spin<dim>(pressed.torque - now.torques(pressure[i], pressure[j])[0]));
+  const Spin<dim> couple = pressed.torque - now.torques(pressure[i], pressure[j])[0];
+  if (couple.norm() > largest_turn * least_bending(face))
+    return std::nullopt;
+  set_couple(face, p, couple);
 
   // With these strains a face that adds them and one that is not there are the same, eq. (D45).
   const auto settle = [&](bool of_i, const Matrix &moved) {

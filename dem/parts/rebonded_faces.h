@@ -81,8 +81,10 @@ private:
     return {face, particles, strains_.strain(face.i), strains_.strain(face.j)};
   }
   std::optional<Rebonding> rule(int i, int j) const;
-  Face make(const Contact<dim> &contact, const PressedContact<dim> &pressed,
-            const Particles &particles, const std::vector<double> &pressure, double strength) const;
+  /// None of a face too small for the contact's torque.
+  std::optional<Face> make(const Contact<dim> &contact, const PressedContact<dim> &pressed,
+                           const Particles &particles, const std::vector<double> &pressure,
+                           double strength) const;
   /// One side, whose lambda / V changes so; returns by how much the energy of the volume grows.
   double settle(Face &face, bool of_i, double before, double after) const;
   /// What acts enters the volumes and the cells of its particles.

@@ -119,7 +119,8 @@ void make_far(const Scene &scene, Reference &reference, CoupledBody<dim> &body, 
   fem::Body<dim> material;
   material.stiffness =
       scene.is_warm() ? thermal_stiffness<dim>(scene, reference, log) : constants.stiffness;
-  material.density = (is_coupled ? scene.coupling.coarse_mass : 1) * constants.density;
+  const bool is_split = is_coupled && scene.coupling.scheme == coupling::Scheme::fine_scale_split;
+  material.density = (is_split ? scene.coupling.coarse_mass : 1) * constants.density;
   material.thickness = body.thickness;
   body.far = std::make_unique<fem::FemSolver<dim>>(joined(scene, p, make_cells(scene, p)), material,
                                                    body.loads);
@@ -205,11 +206,6 @@ void make_bridging_domain(const Scene &scene, Reference &reference, CoupledBody<
   p.solver = scene.coupling.solver;
   auto bodies = body.bodies();
   auto coupler = std::make_unique<coupling::BridgingDomain<dim>>(bodies, overlap, p, timers);
-  require(
-      body.force()->broken_bonds().empty(),
-      "/coupling/ghost_force_correction: bonds break at this reference strain; give a smaller one");
-  body.force()->reset_work(); // of the way to the reference strain and back
-  body.far->reset_work();
   const double plain = body.dt_zone;
   body.dt_zone = reference.value("weighted_stable_step", [&] {
     return std::min(body.force()->stable_step(body.zone->state), coupler->near_stable_step());

@@ -58,8 +58,9 @@ void release(int i, std::array<std::vector<double>, n> &force,
 }
 
 // Supports prescribe the motion of held nodes: damping forces there would only falsify reactions.
-// The forces of a pad, and of the far field on nodes that the coupler moves, are parts of a sum:
-// alone they don't vanish at rest, and damping in their proportion would hold the body off balance.
+// The forces of a pad, of a member with an energy weight, and of the far field on nodes that the
+// coupler moves are parts of a sum: alone they don't vanish at rest, and damping in their
+// proportion would hold the body off balance.
 template <int dim>
 void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool far_acts)
 {
@@ -75,7 +76,7 @@ void BodyDamping<dim>::add_local_forces(CoupledBody<dim> &body, double dt, bool 
           state.spin, state.torque, zone_torque_);
     if (const auto *overlap = body.coupler->overlap())
       for (const auto &member : overlap->members)
-        if (member.pad) {
+        if (member.pad || !overlap->parameters.has_pads) {
           release(member.particle, state.force, zone_force_);
           if (state.turns)
             release(member.particle, state.torque, zone_torque_);

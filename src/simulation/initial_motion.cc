@@ -98,6 +98,19 @@ void start_motion(const Scene &scene, CoupledBody<dim> &body)
   body.started = e.kinetic_discrete + e.kinetic_far;
 }
 
+template <int dim>
+bool moves_any(const Region &region, const CoupledBody<dim> &body)
+{
+  bool any = false;
+  for (int i = 0; body.far && i < body.far->mesh().n_nodes() && !any; ++i)
+    any = holds<dim>(region, body.far->mesh().nodes[i]);
+  for (int i = 0; body.zone && i < body.zone->state.size() && !any; ++i)
+    any = holds<dim>(region, get(body.zone->state.reference, i));
+  return body.ranks.any(any);
+}
+
+template bool moves_any(const Region &, const CoupledBody<2> &);
+template bool moves_any(const Region &, const CoupledBody<3> &);
 template void start_motion(const Scene &, CoupledBody<2> &);
 template void start_motion(const Scene &, CoupledBody<3> &);
 } // namespace ligament::program

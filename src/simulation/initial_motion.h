@@ -10,4 +10,8 @@ namespace ligament::program
 /// overlap move and turn with the mesh: there is no fine-scale motion.
 template <int dim>
 void start_motion(const Scene &scene, CoupledBody<dim> &body);
+
+/// Whether a particle or a node lies in the region; of the body, which all of several ranks ask.
+template <int dim>
+bool moves_any(const Region &region, const CoupledBody<dim> &body);
 } // namespace ligament::program

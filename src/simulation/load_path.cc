@@ -286,6 +286,13 @@ double section_at_least(const CoupledBody<dim> &body, int axis, Carrying carryin
 }
 
 template <int dim>
+double section_at_start(const CoupledBody<dim> &body, int axis)
+{
+  const double bound = section_at_least(body, axis, Carrying::at_start);
+  return bound > 0 ? bound : smallest_section(body, axis, Carrying::at_start);
+}
+
+template <int dim>
 void LoadPath<dim>::start(const CoupledBody<dim> &body)
 {
   is_bound_ = true;
@@ -361,6 +368,8 @@ template double smallest_section(const CoupledBody<2> &, int, Carrying);
 template double smallest_section(const CoupledBody<3> &, int, Carrying);
 template double section_at_least(const CoupledBody<2> &, int, Carrying);
 template double section_at_least(const CoupledBody<3> &, int, Carrying);
+template double section_at_start(const CoupledBody<2> &, int);
+template double section_at_start(const CoupledBody<3> &, int);
 template class LoadPath<2>;
 template class LoadPath<3>;
 } // namespace ligament::program

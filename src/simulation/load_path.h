@@ -27,6 +27,11 @@ double smallest_section(const CoupledBody<dim> &body, int axis, Carrying carryin
 template <int dim>
 double section_at_least(const CoupledBody<dim> &body, int axis, Carrying carrying);
 
+/// The smallest section of the body at the start, by the bound where that answers: infinite or 0
+/// where a run cannot lose its load path.
+template <int dim>
+double section_at_start(const CoupledBody<dim> &body, int axis);
+
 /// Asks for the smallest section only when enough has broken since the last answer; until as much
 /// has broken as nearly parts an intact prism a bound does.
 template <int dim>

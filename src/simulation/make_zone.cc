@@ -182,9 +182,6 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     fit_forces(scene, body);
   body.cut_faces = all_cut_faces(body, held);
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
-  if (!scene.specimen.cracks.empty() && !scene.atoms && body.n_cracked_faces == 0)
-    log.warning("no face is cut by /specimen/cracks: do they lie in the material, and are they "
-                "longer than a spacing?");
   const auto constants = elastic_constants_of<dim>(scene);
   for (const std::string &name : reference.names(calibrated))
     body.figures[name] = {reference.value(name, {}), ""};

@@ -3,6 +3,7 @@
 #include "core/version.h"
 #include "packings/packing_file.h"
 #include "src/analysis/verdict.h"
+#include "src/simulation/doubts.h"
 #include "src/simulation/guards.h"
 #include "src/simulation/heat.h"
 #include "src/simulation/initial_motion.h"
@@ -32,6 +33,7 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
       started_(fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)))),
       balance_(ranks), ranks_(ranks)
 {
+  doubt_body(scene_, body_, log_);
   setup_seconds_ = build_seconds_ = timers_.total();
   if (!from)
     start_motion(scene_, body_);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace ligament::program
 {
@@ -168,6 +169,7 @@ struct StaticPhases<dim>::Work
   long dynamic_since = -1;   // step; before the first phase: none
   std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
   bool is_restless = false;     // the last dynamic phase ended without being calm
+  int skipped = 0;              // steps, between two static phases
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
@@ -278,14 +280,17 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
   while (true) {
     const auto stop = work.advance_once(body, clock, damping, look);
     const PhaseEnd reason = work.phases.back().reason;
+    // The last step of all is one of the loop, which ends the run.
     const bool goes_on = (work.loading == Loading::sequential || reason == PhaseEnd::face_torn) &&
-                         !stop && !clock.is_at_end() && reason != PhaseEnd::out_of_balance &&
-                         reason != PhaseEnd::no_resistance;
+                         !stop && clock.now.step + work.ratio < clock.n_steps &&
+                         reason != PhaseEnd::out_of_balance && reason != PhaseEnd::no_resistance;
     if (!goes_on)
       return stop;
     if (const auto end = look())
       return end;
     clock.advance(work.ratio); // bonds break once at a time
+    work.skipped = work.ratio;
+    work.dynamic_since = clock.now.step;
   }
 }
 
@@ -296,7 +301,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
 {
   const auto started = std::chrono::steady_clock::now();
   end_dynamic_phase(body, clock);
-  Phase phase{true, clock.now.step, clock.now.step};
+  Phase phase{true, clock.now.step - std::exchange(skipped, 0), clock.now.step};
   const int solves = solver->n_solves(), iterations = solver->n_iterations();
   const long broken_before = n_broken(body);
   const double released = body.force() ? body.force()->losses().fracture : 0;

@@ -5,7 +5,9 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace ligament::program
 {
@@ -14,23 +16,27 @@ namespace
 // Particles that tell the motion of a side lie so many spacings inside it at most.
 constexpr double side_depth = 2.5;
 
-/// Of the middle of a side: particles lie inside it, so a motion that is affine in the place is
-/// fitted to those near it, which is exact for homogeneous strain and rotation on any packing.
+/// Particles lie inside a side, so a motion that is affine in the place is fitted to those near it
+/// that the far field does not move, which is exact for homogeneous strain and rotation on any
+/// packing. Of the middle of the side, or beside a far field of theirs; none where there are too
+/// few.
 template <int dim>
-double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double place,
-                                 int component)
+std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, int axis,
+                                                double place, int component)
 {
   using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
   constexpr int n = dim + 1;
   std::vector<core::ExactSum> sums(n * n + n); // of the matrix, then of the right side
   const auto &state = body.zone->state;
+  const Vector<dim> middle = (body.upper + body.lower) / 2;
+  const auto *overlap = body.coupler->overlap();
   particles::for_each(state.part.owned, [&](int i) {
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
-    if (depth > side_depth)
+    if (depth > side_depth || (overlap && overlap->member_of_particle[i] >= 0))
       return;
     Row row = Row::Ones();
     for (int c = 0; c < dim; ++c)
-      row[c] = state.reference[c][i] / body.spacing;
+      row[c] = (state.reference[c][i] - middle[c]) / body.spacing;
     row[axis] = depth;
     for (int a = 0; a < n; ++a) {
       for (int b = 0; b <= a; ++b)
@@ -46,7 +52,14 @@ double extrapolated_displacement(const CoupledBody<dim> &body, int axis, double 
       matrix(a, b) = matrix(b, a) = sums[a * n + b].value();
     right[a] = sums[n * n + a].value();
   }
-  return matrix.ldlt().solve(right)[dim];
+  if (body.far && matrix(dim, dim) < 2 * n)
+    return std::nullopt;
+  const Row fit = matrix.ldlt().solve(right);
+  Row at = Row::Unit(dim);
+  if (body.far)
+    at = matrix.col(dim) / matrix(dim, dim);
+  at[axis] = 0;
+  return fit.dot(at);
 }
 } // namespace
 
@@ -215,11 +228,13 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
-  if (!body.far) {
+  const auto of_particles = [&] {
     const int axis = boundary / 2;
     return extrapolated_displacement(body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
                                      component);
-  }
+  };
+  if (!body.far)
+    return of_particles().value_or(0);
   double sum = 0, area = 0;
   const auto &mesh = body.far->mesh();
   for (const auto &face : mesh.boundary_faces)
@@ -240,7 +255,16 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
           sum += share / (fem::n_cell_nodes<dim> / 2) *
                  body.far->displacement[component][mesh.cells[face.cell][a]];
     }
-  return area > 0 ? sum / area : 0;
+  const double of_mesh = area > 0 ? sum / area : 0;
+  if (!body.zone || boundary >= 2 * dim)
+    return of_mesh;
+  const Vector<dim> size = body.upper - body.lower;
+  const double share = std::min(area * size[boundary / 2] / size.prod(), 1.);
+  constexpr double round_off = 1e-9;
+  if (share > 1 - round_off)
+    return of_mesh;
+  const auto of_others = of_particles();
+  return of_others ? share * of_mesh + (1 - share) * *of_others : of_mesh;
 }
 
 template class TestMachine<2>;

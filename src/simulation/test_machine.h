@@ -55,8 +55,9 @@ private:
   double area_ = 1, size_ = 1;
 };
 
-/// Displacement component of a side of the specimen, in m: the mean over its nodes, or without a
-/// far field that of its middle after an affine fit to the particles near it.
+/// Displacement component of a side of the specimen, in m: the mean over its nodes, without a far
+/// field that of its middle after an affine fit to the particles near it; of a side that the mesh
+/// has a part of, both by their shares.
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component);
 } // namespace ligament::program

@@ -165,4 +165,20 @@ TEST_F(Phases, ABodyThatItsFirstBreakCutsInTwo)
     EXPECT_LT(std::abs(double(list[2]["load"])), 1e-6 * double(list[0]["load"]));
   }
 }
+
+// One bond after the other, between two equilibria each: steps are passed over, none is done.
+TEST_F(Phases, BondByBondAllIsStatic)
+{
+  const auto record =
+      record_of("sequential", set("/time/loading", "\"sequential\"") + set("/inclusions", "[]"));
+  const auto &list = record["phases"];
+  ASSERT_GE(list.size(), 4u) << list.dump(1);
+  for (std::size_t k = 0; k + 1 < list.size(); ++k) {
+    if (list[k]["reason"] == "the body no longer carries" || list[k]["kind"] != "static") {
+      EXPECT_GE(k, 3u) << list.dump(1);
+      break;
+    }
+    EXPECT_EQ(list[k]["end"], list[k + 1]["begin"]) << k;
+  }
+}
 } // namespace

@@ -140,7 +140,7 @@ std::vector<int> bonded_around(const CoupledBody<dim> &body, int centre, int rin
     body.force()->for_each_face(
         body.zone->state,
         [&](const particles::FaceView<dim> &face) {
-          if (face.j >= 0 && face.bonded)
+          if (face.j >= 0 && face.bonded && !face.is_rebonded)
             found.push_back(face.j);
         },
         &from);

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace ligament::dem::testing
 {
 namespace
@@ -238,6 +240,29 @@ struct Strip
     return ran;
   }
 };
+
+// The front waits, also where many faces exceed their strength in one step.
+TEST(Falling, OneFaceOfAParticleAtATime)
+{
+  const auto packing = packings::make_lattice_packing(box<Case<2, Kind::hexagonal, false>>(12));
+  for (const CriterionRef &criterion : {Criterion::face_tension, Criterion::maximum_tension}) {
+    FractureLaw law{criterion, strength};
+    law.crack_velocities = {5};
+    const DemMaterial material{youngs_modulus, 0.2, density, PlaneMode::strain, 0};
+    ManyBodyForce<2> force(packing, material, {}, law);
+    auto p = at_rest(packing, material);
+    for (int step = 1; step <= 5; ++step) {
+      for (int i = 0; i < p.size(); ++i)
+        p.displacement[1][i] = 5e-5 * step * p.reference[1][i];
+      force.compute(p, 1e-9 * step);
+    }
+    std::set<std::int64_t> taken;
+    for (const auto &[name, face] : force.cohesive().all())
+      for (const std::int64_t of : {name[0], name[1]})
+        EXPECT_TRUE(taken.insert(of).second) << of;
+    EXPECT_GT(taken.size(), 5u);
+  }
+}
 
 TEST(Falling, CracksRunNoFaster)
 {

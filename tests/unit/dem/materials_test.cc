@@ -1,6 +1,7 @@
 // Bodies of several materials: layers against the exact laminate, the stable step, breaking.
 #include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/softening_bodies.h"
 
 namespace ligament::dem::testing
 {
@@ -144,6 +145,37 @@ TYPED_TEST(Laminate, BreakingBooksTheEnergyOfTheInterface)
     }
     EXPECT_GT(between, 1);
     EXPECT_NEAR((before - force.potential_energy(p)) / force.fracture_energy(), 1, 1e-10);
+  }
+}
+
+// Of the two materials of a pressed face one is broken by tension alone, and would soften; the
+// other by Coulomb's law, and does not. It is the latter that fails, though the former bears more
+// of its strength.
+TYPED_TEST(Laminate, APressedFaceFailsByACriterionThatAsksForIt)
+{
+  constexpr int dim = TypeParam::value;
+  for (const int first : {0, 1}) {
+    auto packing = column<dim>();
+    packing.material = {first, 1 - first};
+    const double d = packing.spacing, cohesion = 1e-3, angle = M_PI / 6;
+    FaceStrength coulomb(2 * cohesion * std::cos(angle) / (1 + std::sin(angle)));
+    coulomb.cohesion = cohesion / coulomb.value;
+    coulomb.friction_angle = angle;
+    coulomb.cut_off = 1e3;
+    FractureLaw law;
+    law.criteria = {FractureLaw::Criterion::mohr_coulomb, FractureLaw::Criterion::maximum_tension};
+    law.strengths = {coulomb, FaceStrength(3e-4)};
+    law.energies = {0, 1e-6};
+    const DemMaterial material{1, 0.3, 1, PlaneMode::strain, 0.3};
+    ManyBodyForce<dim> force(packing, Materials({material, material}, packing.material), {}, law);
+    auto p = at_rest(packing, material);
+    p.displacement[1][1] = -1e-3 * d;
+    for (int step = 1; force.broken_bonds().empty() && step < 400; ++step) {
+      p.displacement[0][1] = 1e-5 * step * d;
+      force.compute(p, step);
+      ASSERT_TRUE(force.cohesive().all().empty()) << step;
+    }
+    EXPECT_EQ(force.broken_bonds().size(), 1u);
   }
 }
 } // namespace ligament::dem::testing

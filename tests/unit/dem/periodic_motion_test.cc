@@ -1,6 +1,7 @@
 // Bodies whose sides are joined in motion: momentum, energy, breaking across the sides, resuming.
 #include "packings/random_packing.h"
 #include "tests/unit/dem/body.h"
+#include "tests/unit/dem/cases.h"
 
 #include "particles/particle_solver.h"
 
@@ -108,6 +109,32 @@ TEST(PeriodicRandom, ABondThatBreaksAcrossTheSidesIsFeltOnBoth)
     // the order of the strain.
     EXPECT_NEAR(energy, body.law->external_work(), strain * std::abs(losses.breaking_step_error));
   }
+}
+
+// A slit at the seam is closed by the jump alone: no particle moves.
+TEST(PeriodicSquare, ImagesThatComeNearAreFound)
+{
+  auto lattice = box<Case<2, packings::LatticeKind::square, false>>(8);
+  const double d = lattice.spacing, top = lattice.upper[1];
+  lattice.periodic = {false, true};
+  lattice.notches = {{{2 * lattice.lower[0], top - 1.6 * d}, {2 * lattice.upper[0], 2 * top}}};
+  const auto packing = packings::make_lattice_packing<2>(lattice);
+  std::vector<core::BoundaryLoad<2>> loads(1);
+  loads[0].boundary = core::BoundaryLoad<2>::jump_across(1);
+  loads[0].value = {0, -2 * d};
+  loads[0].history = core::Ramp{1};
+  ManyBodyForce<2> force(packing, DemMaterial{1, 0.3, 1}, loads);
+  Particles<2> p;
+  packings::fill_particles(packing, 1, p);
+  for (int s = 0; s <= 50; ++s)
+    force.compute(p, 0.02 * s);
+  double lowest = 0, highest = 0;
+  for (int i = 0; i < p.size(); ++i) {
+    lowest = std::min(lowest, p.force[1][i]);
+    highest = std::max(highest, p.force[1][i]);
+  }
+  EXPECT_GT(highest, 0); // on those above the slit's image
+  EXPECT_LT(lowest, 0);
 }
 
 TEST(PeriodicRandom, ResumesToTheBit)
