@@ -10,6 +10,7 @@
 #include "src/commands/static_cost.h"
 #include "src/launcher/program.h"
 #include "src/output/run_folder.h"
+#include "src/simulation/doubts.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/recorder.h"
 
@@ -47,6 +48,7 @@ int check(const CommandLine &line, const ReadResult &input)
   core::Log log;
   core::Timers timers;
   auto body = make_body<dim>(scene, log, timers);
+  doubt_body(scene, body, log);
   const double setup_seconds = timers.total();
   for (const std::string &text : log.warnings())
     core::tell(stderr, fmt::format("warning: {}\n", text));
