@@ -103,7 +103,6 @@ public:
   std::vector<particles::OwnField> own_fields(const Particles &atoms) const override;
   Vector<dim> reaction(int load) const override { return loads_.reaction(load); }
   double external_work() const override { return loads_.external_work(); }
-  void reset_work() override { loads_.reset_work(); }
   /// Pairs that the list has at present.
   long n_bonds() const override { return list_.n_pairs(); }
 

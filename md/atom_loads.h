@@ -34,7 +34,6 @@ public:
 
   Vector<dim> reaction(int load) const;
   double external_work() const { return work_.value(); }
-  void reset_work() { work_ = {}; }
 
   void save(core::State &state, const core::Names &names) const;
   void load(const core::State &state, const core::Names &names, const Particles &atoms);

@@ -112,7 +112,7 @@ inline double couple_energy(const RebondedFace<3> &f, const particles::Particles
 
 /// Couples fall with the square of a face's area, what a contact presses on a part of it with the
 /// area: slivers bend too far for what they have to bear, and stay contacts.
-constexpr double largest_turn = 0.5; // rad, of theory.md eq. (D45)
+constexpr double largest_turn = 0.8; // rad, of theory.md eq. (D45); the sine of it in 3D
 inline double least_bending(const RebondedFace<2> &f)
 {
   return f.bending;
@@ -136,7 +136,7 @@ inline void set_couple(RebondedFace<3> &f, const particles::Particles<3> &p, con
     return (couple - along * f.normal_i) / f.bending + along / f.twist * f.normal_i;
   };
   Turn<3> seen;
-  for (int round = 0; round < 20; ++round) { // it is small: each one leaves its square
+  for (int round = 0; round < 60; ++round) { // each leaves a third of it, of small ones less
     const Vector<3> missing = answer(half - half_couple(f, seen));
     seen.v += missing;
     seen.w = std::sqrt(1 - seen.v.squaredNorm());

@@ -161,7 +161,6 @@ public:
   particles::ForceLosses losses() const override { return {fracture_, 0, 0, 0}; }
   Vector<2> reaction(int load) const override { return reactions_[load]; }
   double external_work() const override { return work_; }
-  void reset_work() override { work_ = 0; }
 
   // Of each spring half of f x, over the cell.
   void stresses(const Particles &p, Components<3> &stress) const override

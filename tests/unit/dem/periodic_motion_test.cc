@@ -115,7 +115,9 @@ TEST(PeriodicRandom, ABondThatBreaksAcrossTheSidesIsFeltOnBoth)
 TEST(PeriodicSquare, ImagesThatComeNearAreFound)
 {
   auto lattice = box<Case<2, packings::LatticeKind::square, false>>(8);
-  const double d = lattice.spacing, top = lattice.upper[1];
+  const double d = lattice.spacing, top = 4 * d;
+  lattice.upper.setConstant(top);
+  lattice.lower = -lattice.upper;
   lattice.periodic = {false, true};
   lattice.notches = {{{2 * lattice.lower[0], top - 1.6 * d}, {2 * lattice.upper[0], 2 * top}}};
   const auto packing = packings::make_lattice_packing<2>(lattice);

@@ -323,8 +323,6 @@ void check_energy(bool corotated)
   double first = 0, error = 0, most = 0;
   for (int step = 0; step <= 600; ++step) {
     solver.compute_forces(step * dt);
-    if (step == 0)
-      solver.reset_work();
     const double kinetic = solver.kinetic_energy(dt), potential = solver.potential_energy();
     const double energy = kinetic + potential - solver.external_work();
     if (step == 0)
