@@ -457,8 +457,10 @@ Mesh<dim> make_mesh(const MeshParameters<dim> &p)
     plane.outline = p.outline;
     plane.outline_cell_size = p.outline_cell_size;
     std::vector<double> cuts;
-    SectionedAxis::Growth growth = {
-        p.growth, std::max(1, p.fine_cells), std::ldexp(p.cell_size, p.levels), {}};
+    SectionedAxis::Growth growth = {p.inner.empty() ? 1 : p.growth,
+                                    std::max(1, p.fine_cells),
+                                    std::ldexp(p.cell_size, p.levels),
+                                    {}};
     for (const auto &box : p.inner) {
       plane.inner.push_back({box.lower.template head<2>(), box.upper.template head<2>()});
       cuts.push_back(box.lower[2]);

@@ -240,6 +240,9 @@ TEST(FitOutline, PrismsHaveTheSameCellsAllAlong)
   EXPECT_NEAR(sides.at(4), sides.at(5), 1e-9);
   EXPECT_NEAR(sides.at(9) / (4 * M_PI * 6), 1, 0.02);
   EXPECT_NEAR(sides.at(2), 120, 1e-9);
+  p.growth = 1.3; // there is no zone that cells could grow from
+  EXPECT_EQ(make_mesh(p).n_cells(), mesh.n_cells());
+  p.growth = 1;
   p.inner.push_back({{2, 2, -1}, {8, 8, 1e300}});
   const auto ring = make_mesh(p);
   expect_closed(ring);
