@@ -245,11 +245,14 @@ protected:
   }
 
   /// Half of the time on every number of ranks, the rest on every other one.
-  static void expect_to_go_on(const Json &scene, int most)
+  static void expect_to_go_on(Json scene, int most)
   {
+    const double duration = scene["time"]["duration"];
+    // `check` warns of one that is longer than the run.
+    scene["output"]["field_interval"] =
+        std::min(double(scene["output"]["field_interval"]), 0.4 * duration);
     written(scene, "scene.json");
     ASSERT_EQ(run_ligament("run scene.json -o whole").code, 0);
-    const double duration = scene["time"]["duration"];
     const auto number = [](int n) { return std::to_string(n); };
     for (int a = 1; a <= most; ++a) {
       const std::string half = "half_" + number(a);

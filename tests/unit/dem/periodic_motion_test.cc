@@ -123,7 +123,7 @@ TEST(PeriodicSquare, ImagesThatComeNearAreFound)
   const auto packing = packings::make_lattice_packing<2>(lattice);
   std::vector<core::BoundaryLoad<2>> loads(1);
   loads[0].boundary = core::BoundaryLoad<2>::jump_across(1);
-  loads[0].value = {0, -2 * d};
+  loads[0].value = {0, -2.5 * d}; // two rows are missing
   loads[0].history = core::Ramp{1};
   ManyBodyForce<2> force(packing, DemMaterial{1, 0.3, 1}, loads);
   Particles<2> p;
