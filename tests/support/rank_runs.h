@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ligament::tests
 {
 namespace fs = std::filesystem;
