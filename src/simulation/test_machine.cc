@@ -18,11 +18,10 @@ constexpr double side_depth = 2.5;
 
 /// Particles lie inside a side, so a motion that is affine in the place is fitted to those near it
 /// that the far field does not move, which is exact for homogeneous strain and rotation on any
-/// packing. Of the middle of the side, or beside a far field of theirs; none where there are too
-/// few.
+/// packing. Of the middle of the side, or of that of these particles; none where there are too few.
 template <int dim>
 std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, int axis,
-                                                double place, int component)
+                                                double place, int component, bool of_side)
 {
   using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
   constexpr int n = dim + 1;
@@ -56,7 +55,7 @@ std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, in
     return std::nullopt;
   const Row fit = matrix.ldlt().solve(right);
   Row at = Row::Unit(dim);
-  if (body.far)
+  if (!of_side)
     at = matrix.col(dim) / matrix(dim, dim);
   at[axis] = 0;
   return fit.dot(at);
@@ -228,13 +227,13 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
-  const auto of_particles = [&] {
+  const auto of_particles = [&](bool of_side) {
     const int axis = boundary / 2;
     return extrapolated_displacement(body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
-                                     component);
+                                     component, of_side);
   };
   if (!body.far)
-    return of_particles().value_or(0);
+    return of_particles(true).value_or(0);
   double sum = 0, area = 0;
   const auto &mesh = body.far->mesh();
   for (const auto &face : mesh.boundary_faces)
@@ -263,7 +262,7 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
   constexpr double round_off = 1e-9;
   if (share > 1 - round_off)
     return of_mesh;
-  const auto of_others = of_particles();
+  const auto of_others = of_particles(share == 0);
   return of_others ? share * of_mesh + (1 - share) * *of_others : of_mesh;
 }
 

@@ -92,6 +92,23 @@ TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
   }
 }
 
+// A side that the mesh has nothing of, and two that it has a half of.
+TEST(TestMachine, ReadsSidesOfTheZoneOfACoupledBody)
+{
+  SmallBody small(small_scene(
+      {R"(/discrete_zone/region={"lower": [null, null], "upper": [null, 0]})", pulled_ends}));
+  Eigen::Matrix2d gradient;
+  gradient << 1e-4, 3e-4, -2e-4, 5e-4;
+  small.deform(gradient);
+  for (int component = 0; component < 2; ++component) {
+    EXPECT_NEAR(mean_displacement(small.body, 2, component), -60 * gradient(component, 1), 1e-12);
+    EXPECT_NEAR(mean_displacement(small.body, 3, component), 60 * gradient(component, 1), 1e-12);
+    const double off = 4 * small.body.far->mesh().cell_size[0].maxCoeff(); // the overlap's height
+    EXPECT_NEAR(mean_displacement(small.body, 0, component), -12 * gradient(component, 0),
+                off * std::abs(gradient(component, 1)));
+  }
+}
+
 // A point has no area: the side's stands for it. A part of a side has its own.
 TEST(TestMachine, StressOfAPointIsThatOverTheSide)
 {
