@@ -72,7 +72,7 @@ void Simulation<dim>::look_at_the_clock(const EndRequest &request)
   asked_by_ = EndRequest::reason(int(seen[0]), seen[1] != 0);
   // A run that is at its end may be prolonged from there.
   const bool ends = !asked_by_.empty() || (is_at_end && seen[2] != 0);
-  const bool writes = keeper_ && (ends || (is_guarded && seen[3] != 0));
+  const bool writes = keeper_ && (ends || ((is_guarded || phases_.goes_on()) && seen[3] != 0));
   if (!is_guarded && !writes)
     return;
   if (const auto finding = find_broken_motion(body_)) {
@@ -155,7 +155,7 @@ std::optional<Stop> Simulation<dim>::look(bool is_equilibrium)
 template <int dim>
 std::optional<Stop> Simulation<dim>::skip_steps()
 {
-  if (clock_.now.step > 0)
+  if (clock_.now.step > 0 && !phases_.goes_on())
     if (const auto stop = look())
       return stop;
   const auto timing = timers_.scope(timers_.section("equilibria"));
@@ -170,10 +170,10 @@ bool Simulation<dim>::look_around(bool is_calm)
     stop_ = skip_steps();
   if (stop_ || clock_.is_at_end())
     return false;
-  stop_ = look();
+  stop_ = look(phases_.goes_on());
   if (stop_)
     return false;
-  recorder_.in_static_phase(false);
+  recorder_.in_static_phase(phases_.goes_on());
   return asked_by_.empty();
 }
 
@@ -192,7 +192,8 @@ template <int dim>
 std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
 {
   keep_for_phases();
-  compute_forces();
+  if (!phases_.goes_on())
+    compute_forces();
   const int ratio = body_.coupler->step_ratio();
   if (clock_.now.step == 0)
     let_rest();
@@ -207,9 +208,13 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     } else {
       if (far_acts && !look_around(is_calm))
         return stop_;
-      balance_.begin();
-      take_step();
-      balance_.end();
+      if (phases_.goes_on()) {
+        phases_.pass_step(body_, clock_, damping_.energy());
+      } else {
+        balance_.begin();
+        take_step();
+        balance_.end();
+      }
     }
     if (clock_.now.step % ratio == 0)
       look_at_the_clock(request);
@@ -217,6 +222,8 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
       if (const auto weights = new_weights())
         build_anew(*weights);
     keep_for_phases();
+    if (phases_.goes_on())
+      continue;
     balance_.begin();
     compute_forces();
     balance_.end();

@@ -196,7 +196,8 @@ bool Simulation<dim>::skip_steps_at_first()
     phases_ = StaticPhases<dim>(scene_, body_, log_, is_helped ? ranks_ : core::Ranks());
     phases_.load(run);
     compute_forces();
-    ends_elsewhere_ = !look_around(true);
+    while (!(ends_elsewhere_ = !look_around(true)) && phases_.goes_on())
+      phases_.pass_step(body_, clock_, damping_.energy());
     if (is_helped)
       algebra::dismiss_servers(ranks_);
     if (!ends_elsewhere_) {

@@ -144,8 +144,8 @@ struct StaticPhases<dim>::Work
                        [](const Phase &p) { return p.reason == PhaseEnd::restless; });
   }
   void end_dynamic_phase(const CoupledBody<dim> &body, const Clock &clock);
-  std::optional<Stop> advance_once(CoupledBody<dim> &body, Clock &clock, double damping,
-                                   const Look &look);
+  std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
+                              const Look &look);
 
   void commit(CoupledBody<dim> &body, const Clock &clock, const Eigen::VectorXd &velocities);
 
@@ -169,7 +169,9 @@ struct StaticPhases<dim>::Work
   long dynamic_since = -1;   // step; before the first phase: none
   std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
   bool is_restless = false;     // the last dynamic phase ended without being calm
+  bool goes_on = false;         // with another static phase
   int skipped = 0;              // steps, between two static phases
+  double residual = 0;          // of the ledger between them, J
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
 };
@@ -193,13 +195,13 @@ StaticPhases<dim> &StaticPhases<dim>::operator=(StaticPhases &&) noexcept = defa
 template <int dim>
 bool StaticPhases<dim>::look_at(const Clock &clock) const
 {
-  return work_ && !clock.is_at_end() && work_->looks(clock);
+  return work_ && !clock.is_at_end() && (work_->goes_on || work_->looks(clock));
 }
 
 template <int dim>
 bool StaticPhases<dim>::are_due(const CoupledBody<dim> &body, const Clock &clock)
 {
-  return work_ && !clock.is_at_end() && work_->is_calm(body, clock);
+  return work_ && !clock.is_at_end() && (work_->goes_on || work_->is_calm(body, clock));
 }
 
 // Static phases of late that found no equilibrium: the next one has to wait for longer.
@@ -277,27 +279,34 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
                                                const Look &look)
 {
   Work &work = *work_;
-  while (true) {
-    const auto stop = work.advance_once(body, clock, damping, look);
-    const PhaseEnd reason = work.phases.back().reason;
-    // The last step of all is one of the loop, which ends the run.
-    const bool goes_on = (work.loading == Loading::sequential || reason == PhaseEnd::face_torn) &&
-                         !stop && clock.now.step + work.ratio < clock.n_steps &&
-                         reason != PhaseEnd::out_of_balance && reason != PhaseEnd::no_resistance;
-    if (!goes_on)
-      return stop;
-    if (const auto end = look())
-      return end;
-    clock.advance(work.ratio); // bonds break once at a time
-    work.skipped = work.ratio;
-    work.dynamic_since = clock.now.step;
-  }
+  const auto stop = work.advance(body, clock, damping, look);
+  const PhaseEnd reason = work.phases.back().reason;
+  // The last step of all is one of the loop, which ends the run.
+  work.goes_on = (work.loading == Loading::sequential || reason == PhaseEnd::face_torn) && !stop &&
+                 clock.now.step + work.ratio < clock.n_steps &&
+                 reason != PhaseEnd::out_of_balance && reason != PhaseEnd::no_resistance;
+  return stop;
+}
+
+template <int dim>
+bool StaticPhases<dim>::goes_on() const
+{
+  return work_ && work_->goes_on;
+}
+
+template <int dim>
+void StaticPhases<dim>::pass_step(const CoupledBody<dim> &body, Clock &clock, double damping)
+{
+  clock.advance(work_->ratio);
+  work_->skipped = work_->ratio;
+  work_->dynamic_since = clock.now.step;
+  work_->residual = read_ledger(body, clock.now, damping).residual();
 }
 
 // The energy that the body loses on its way to equilibrium is booked; the loads stand still.
 template <int dim>
-std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body, Clock &clock,
-                                                          double damping, const Look &look)
+std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clock &clock,
+                                                     double damping, const Look &look)
 {
   const auto started = std::chrono::steady_clock::now();
   end_dynamic_phase(body, clock);
@@ -332,7 +341,8 @@ std::optional<Stop> StaticPhases<dim>::Work::advance_once(CoupledBody<dim> &body
   if (loading == Loading::sequential && body.force()) // a body built anew does not know
     body.force()->break_one_by_one();
   solver->renew();
-  double before = read_ledger(body, clock.now, damping).residual();
+  // A body that goes on from here in another process has no forces yet.
+  double before = goes_on ? residual : read_ledger(body, clock.now, damping).residual();
   const auto velocities = solver->system().velocities();
   Eigen::VectorXd moved;
   // To hand on to where the stretch ends.
@@ -492,6 +502,9 @@ void StaticPhases<dim>::save(core::State &state) const
   core::save_value(state, "static_phases", "dynamic_since", std::int64_t(work_->dynamic_since));
   core::save_value(state, "static_phases", "broken_then", std::int64_t(work_->broken_then));
   core::save_value(state, "static_phases", "is_restless", std::int64_t(work_->is_restless));
+  core::save_value(state, "static_phases", "goes_on", std::int64_t(work_->goes_on));
+  core::save_value(state, "static_phases", "skipped", std::int64_t(work_->skipped));
+  core::save_value(state, "static_phases", "residual", work_->residual);
   const bool has_solver = work_->solver.has_value();
   core::save_value(state, "static_phases", "largest_load",
                    has_solver ? work_->solver->largest_load() : work_->largest_load);
@@ -530,6 +543,9 @@ void StaticPhases<dim>::load(const core::State &state)
   work_->dynamic_since = long(core::load_integer(state, "static_phases", "dynamic_since"));
   work_->broken_then = long(core::load_integer(state, "static_phases", "broken_then"));
   work_->is_restless = core::load_integer(state, "static_phases", "is_restless") != 0;
+  work_->goes_on = core::load_integer(state, "static_phases", "goes_on") != 0;
+  work_->skipped = int(core::load_integer(state, "static_phases", "skipped"));
+  work_->residual = core::load_real(state, "static_phases", "residual");
   work_->largest_load = core::load_real(state, "static_phases", "largest_load");
   work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
   work_->free_shares = {int(core::load_integer(state, "static_phases", "free_motions")),

@@ -12,7 +12,7 @@ namespace ligament::program
 {
 /// A run alternates: dynamic phases, in which the loop takes its steps, until the body is calm; and
 /// static ones, which end at the first step in which a bond bears its strength (theory.md section
-/// 6). Sequential loading has no steps in between.
+/// 6). Signals and checkpoints wait for the end of a static phase.
 template <int dim>
 class StaticPhases
 {
@@ -36,11 +36,20 @@ public:
   /// the run begins. All ranks of a body in parts ask.
   bool are_due(const CoupledBody<dim> &body, const Clock &clock);
 
-  /// Takes body and clock to the next step in which a bond breaks, or to the end; forces and
-  /// velocities are then those between forces and kick of that step. `damping` in J so far. Of a
-  /// whole body alone.
+  /// A static phase: takes body and clock to the next step in which a bond breaks, or to the end;
+  /// forces and velocities are then those between forces and kick of that step. `damping` in J so
+  /// far. Of a whole body alone.
   std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
                               const Look &look);
+
+  /// Whether another static phase follows the last one at once: sequential loading has no steps in
+  /// between, nor is there one where a face has softened to the end. Until then the forces are
+  /// those of that phase's end: no others are computed, under which a second bond might break.
+  bool goes_on() const;
+
+  /// The step between two such phases, in which the clock alone moves: one bond breaks at a time.
+  /// Behind it the state may be saved.
+  void pass_step(const CoupledBody<dim> &body, Clock &clock, double damping);
 
   /// Where the run ends: the last phase is complete.
   std::vector<PhaseEntry> entries(const CoupledBody<dim> &body, const Clock &clock) const;

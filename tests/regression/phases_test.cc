@@ -141,6 +141,37 @@ TEST_F(Phases, BuiltAnewUnderWayNothingDiffers)
   }
 }
 
+// Between two bonds there is no step: signals and checkpoints come between two equilibria.
+TEST_F(Phases, BondByBondInterruptedAndBuiltAnewNothingDiffers)
+{
+  const std::string bonds = set("/time/loading", "\"sequential\"") + set("/inclusions", "[]");
+  ASSERT_EQ(run_ligament("run scene.json -o bonds" + bonds).code, 0);
+  ASSERT_GE(file_json("bonds/run.json")["broken_bonds"], 10);
+  std::mt19937 random(std::random_device{}());
+  std::uniform_real_distribution<double> seconds(0, file_json("bonds/run.json")["wall_seconds"]);
+  int hits = 0;
+  for (int attempt = 0; attempt < 100 && hits < 3; ++attempt) {
+    fs::remove_all("cut");
+    Process process("exec " + program + " run scene.json -o cut" + bonds);
+    ASSERT_TRUE(eventually([] { return fs::exists("cut/history.csv"); }));
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds(random)));
+    process.send(SIGTERM);
+    if (process.wait().code != 128 + SIGTERM || newest_checkpoint("cut").empty() ||
+        phases_of("cut").back()["kind"] != "static")
+      continue;
+    ++hits;
+    const Outcome more = run_ligament("resume cut");
+    ASSERT_EQ(more.code, 0) << more.errors;
+    expect_same("cut", "bonds");
+    EXPECT_EQ(phases_of("cut"), phases_of("bonds"));
+    if (HasFailure())
+      return;
+  }
+  EXPECT_EQ(hits, 3);
+  ASSERT_EQ(run_ligament("run scene.json -o anew --rebuild-interval 1" + bonds).code, 0);
+  expect_same("anew", "bonds");
+}
+
 // One bond holds the halves together; behind it they are two free bodies, and nothing loads them.
 TEST_F(Phases, ABodyThatItsFirstBreakCutsInTwo)
 {
