@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ligament::program
 {
@@ -63,9 +64,14 @@ private:
       f_.warning(key(strength ? "strength" : "toughness"),
                  "\"strength\" and \"toughness\" are not used", "the \"criterion\" is \"none\"",
                  "remove them, or choose a criterion");
-    for (const char *const name :
-         {"energy", "compressive_strength", "cohesion", "friction_angle", "weibull"})
-      if (name != std::string("weibull") || p_.weibull)
+    const FractureParameters plain; // a resolved scene says all of it
+    for (const auto &[name, says_something] :
+         {std::pair("energy", true), std::pair("compressive_strength", true),
+          std::pair("cohesion", true), std::pair("friction_angle", true),
+          std::pair("softening", p_.softening != plain.softening),
+          std::pair("mode_ratio", p_.mode_ratio != plain.mode_ratio),
+          std::pair("weibull", p_.weibull.has_value())})
+      if (says_something)
         f_.unused(key(name), "the \"criterion\" is \"none\"", "remove it, or choose a criterion");
   }
 
