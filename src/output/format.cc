@@ -8,6 +8,15 @@
 
 namespace ligament::program
 {
+namespace
+{
+/// From 1 atto to 1000 tera.
+bool bears_prefix(double value)
+{
+  return std::abs(value) >= 1e-18 && std::abs(value) < 1e15;
+}
+} // namespace
+
 std::string grouped(std::int64_t n)
 {
   const std::string digits = std::to_string(n < 0 ? -n : n);
@@ -35,8 +44,11 @@ std::string quantity(double value, const std::string &unit)
 {
   if (!std::isfinite(value))
     return "-";
+  if (unit == "kg" && bears_prefix(1000 * value)) // a unit has one prefix
+    return quantity(1000 * value, "g");
   const bool plain = unit.empty() || unit == "1";
-  if (plain || unit.find_first_of("^*/ ") != std::string::npos)
+  if (plain || (value != 0 && (unit == "kg" || !bears_prefix(value))) ||
+      unit.find_first_of("^*/ ") != std::string::npos)
     return fmt::format("{:.3g}{}{}", value, plain ? "" : " ", plain ? "" : unit);
   const Prefix prefix = si_prefix(std::abs(value));
   const double scaled = value / prefix.factor;
@@ -46,7 +58,8 @@ std::string quantity(double value, const std::string &unit)
 
 Prefix unit_prefix(double magnitude, const std::string &unit)
 {
-  const bool plain = unit.empty() || unit == "1" || unit.find_first_of("^* ") != std::string::npos;
+  const bool plain =
+      unit.empty() || unit == "1" || unit == "kg" || unit.find_first_of("^* ") != std::string::npos;
   return plain ? Prefix{1, ""} : si_prefix(magnitude);
 }
 

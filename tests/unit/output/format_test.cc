@@ -22,6 +22,15 @@ TEST(Format, NumbersWithPrefixesAndGroups)
   EXPECT_EQ(quantity(0, "J"), "0 J");
   EXPECT_EQ(quantity(0.82, ""), "0.82");
   EXPECT_EQ(quantity(2e-4, "m^2"), "0.0002 m^2");
+  EXPECT_EQ(quantity(0, "kg"), "0 kg");
+  EXPECT_EQ(quantity(2.5, "kg"), "2.50 kg");
+  EXPECT_EQ(quantity(4e-3, "kg"), "4.00 g");
+  EXPECT_EQ(quantity(1e-18, "J"), "1.00 aJ");
+  EXPECT_EQ(quantity(-3.456e-21, "J"), "-3.46e-21 J");
+  EXPECT_EQ(quantity(9.99e14, "Pa"), "999 TPa");
+  EXPECT_EQ(quantity(1e15, "Pa"), "1e+15 Pa");
+  EXPECT_EQ(quantity(1e-25, "kg"), "1e-25 kg");
+  EXPECT_EQ(with_unit("mass", unit_prefix(1e-3, "kg"), "kg"), "mass (kg)");
   EXPECT_EQ(percent(0.0031), "+0.31 %");
   EXPECT_EQ(percent({}), "-");
   EXPECT_EQ(duration(200), "3 min 20 s");
