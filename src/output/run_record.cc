@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <limits>
 #include <type_traits>
 
 namespace ligament::program
@@ -204,10 +205,20 @@ struct Reader
 {
   const Json &json;
 
+  /// JSON has no word for a number that is none: null.
+  static double number(const Json &entry)
+  {
+    return entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>();
+  }
+
   template <typename T>
   static T converted(const Json &entry)
   {
-    if constexpr (is_value<T>)
+    if constexpr (std::is_same_v<T, double>)
+      return number(entry);
+    else if constexpr (std::is_same_v<T, std::array<double, 3>>)
+      return {number(entry.at(0)), number(entry.at(1)), number(entry.at(2))};
+    else if constexpr (is_value<T>)
       return entry.get<T>();
     else {
       T value;

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 using namespace ligament;
 using namespace ligament::program;
@@ -98,6 +100,34 @@ TEST(RunRecord, ComesBackWhole)
   const auto json = nlohmann::json::parse(core::read_file("run.json"));
   EXPECT_TRUE(json.at("stiffness").is_null());
   EXPECT_EQ(json.at("complete"), false);
+}
+
+// Of a run whose numbers were none any more: null in the file.
+TEST(RunRecord, ComesBackWithWhatIsNoNumber)
+{
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  RunRecord r;
+  r.size = {0.1, nan};
+  r.crack_length = nan;
+  r.thickness = infinite;
+  r.figures = {{"strength", {nan, "Pa"}}};
+  r.states = {{"end", "at the end", nan, "", "", {{{0, 0, nan}, {0, -infinite, 2}}}}};
+  r.phases = {{"static", 0, nan, 0, 0, 0, 0, nan, 0, "", 0}};
+  r.warnings = {{"a face broke", nan}};
+  write_run_record("no_numbers.json", r);
+  const RunRecord back = read_run_record("no_numbers.json");
+  EXPECT_EQ(back.size[0], 0.1);
+  EXPECT_TRUE(std::isnan(back.size[1]));
+  EXPECT_FALSE(back.crack_length);
+  EXPECT_TRUE(std::isnan(back.thickness));
+  EXPECT_TRUE(std::isnan(back.figures.at("strength").value));
+  const ToolOutline &tool = back.states.at(0).tools.at(0);
+  EXPECT_TRUE(std::isnan(tool.points[2]));
+  EXPECT_TRUE(std::isnan(tool.displacement[1]));
+  EXPECT_EQ(tool.displacement[2], 2);
+  EXPECT_TRUE(std::isnan(back.phases.at(0).load));
+  write_run_record("no_numbers_again.json", back);
+  EXPECT_EQ(core::read_file("no_numbers_again.json"), core::read_file("no_numbers.json"));
 }
 
 // Records of runs by steps alone, and those of before, know no phases.
