@@ -19,6 +19,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <tuple>
 
 namespace ligament::program
 {
@@ -262,9 +263,8 @@ private:
     if (reference_.record)
       for (const GaugeEntry &gauge : run_.record->gauges)
         for (const std::string &name : gauge.columns)
-          for (const Column &column : reference_.curve.columns())
-            if (column.name == name)
-              r_.gauges[name] = error({name.c_str()}, column.unit.c_str());
+          if (const auto unit = common_unit(name))
+            r_.gauges[name] = error({name.c_str()}, unit->c_str());
     if (!r_.compared_until)
       return;
     const auto add = [this](const std::string &name, const HistoryError &e) {
@@ -280,13 +280,35 @@ private:
       add("  gauge " + name + ", L2 / largest", e);
   }
 
+  /// Of a column that both histories have; gauges of one name may measure different things.
+  std::optional<std::string> common_unit(const std::string &name)
+  {
+    const auto a = unit_of(run_, name), b = unit_of(reference_, name);
+    if (a && b && *a != *b) {
+      r_.notes.push_back(fmt::format("gauge {}: in {} in {}, in {} in {}", name, *a, run_.name, *b,
+                                     reference_.name));
+      return {};
+    }
+    return a ? b : a;
+  }
+
   void crack()
   {
     std::vector<BrokenBond> a, b;
-    for (const auto &[side, bonds] : {std::pair(&run_, &a), std::pair(&reference_, &b)})
-      if (std::filesystem::exists(side->folder->broken_bonds()))
-        *bonds = part(read_broken_bonds(side->folder->broken_bonds()), trusted_until_, false);
-    line("broken faces", grouped(std::int64_t(a.size())), grouped(std::int64_t(b.size())), "");
+    std::string n_a = "-", n_b = "-"; // unknown until a run has ended
+    for (const auto &[side, bonds, n] :
+         {std::tuple(&run_, &a, &n_a), std::tuple(&reference_, &b, &n_b)})
+    {
+      if (!std::filesystem::exists(side->folder->broken_bonds())) {
+        r_.notes.push_back(fmt::format("crack path: {} has no broken_bonds.csv", side->name));
+        continue;
+      }
+      *bonds = part(read_broken_bonds(side->folder->broken_bonds()), trusted_until_, false);
+      *n = grouped(std::int64_t(bonds->size()));
+    }
+    line("broken faces", n_a, n_b, "");
+    if (n_a == "-" || n_b == "-")
+      return;
     if (a.empty() || b.empty()) {
       r_.notes.push_back("crack path: not in both runs a face broke");
       return;
@@ -395,7 +417,10 @@ private:
     std::vector<std::vector<std::string>> rows;
     for (const auto &l : r_.lines)
       rows.push_back({l.name, l.run, l.reference, l.difference});
-    std::string body = html_table({"", run_.name, reference_.name, "difference"}, rows) + r_.plot;
+    r_.sides =
+        fmt::format("<p>{} against {}</p>\n", escape_xml(run_.path), escape_xml(reference_.path));
+    std::string body =
+        r_.sides + html_table({"", run_.name, reference_.name, "difference"}, rows) + r_.plot;
     for (const auto &note : r_.notes)
       body += "<p>" + escape_xml(note) + "</p>\n";
     r_.page = html_page(plot.title, body);
@@ -414,10 +439,25 @@ CompareResult compare(const std::string &run_folder, const std::string &referenc
   return Comparison(read_run(run_folder), read_reference(reference)).result();
 }
 
+namespace
+{
+/// Where plot and page go: others of the same two sides make way, those of other sides stay.
+std::string free_stem(const CompareResult &result, const std::string &folder)
+{
+  const std::string first = folder + "/" + result.file_name;
+  std::string stem = first;
+  for (int n = 2; std::filesystem::exists(stem + ".html") &&
+                  core::read_file(stem + ".html").find(result.sides) == std::string::npos;
+       ++n)
+    stem = fmt::format("{}_{}", first, n);
+  return stem;
+}
+} // namespace
+
 void write_comparison(CompareResult &result, const std::string &folder)
 {
   make_folder(folder);
-  const std::string stem = folder + "/" + result.file_name;
+  const std::string stem = free_stem(result, folder);
   core::write_file(stem + ".svg", result.plot);
   result.svg_file = stem + ".svg";
   core::write_file(stem + ".html", result.page);

@@ -57,6 +57,7 @@ struct CompareResult
   std::vector<std::string> notes;
   std::string plot, page;          // SVG, HTML
   std::string file_name;           // of both, without folder and extension
+  std::string sides;               // what the page says of where the two lie
   std::string svg_file, html_file; // where they were written; empty until then
 };
 
@@ -65,7 +66,8 @@ struct CompareResult
 CompareResult compare(const std::string &run_folder, const std::string &reference);
 
 /// Writes plot and page as compare_<reference>.svg and .html into the folder, which is made if need
-/// be. EnvironmentError when the disk refuses.
+/// be; where a comparison of others has these names, as compare_<reference>_2, _3, ...
+/// EnvironmentError when the disk refuses.
 void write_comparison(CompareResult &result, const std::string &folder);
 
 /// Text for the terminal.

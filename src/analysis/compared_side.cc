@@ -30,11 +30,19 @@ std::string name_of(const std::string &path)
   return name;
 }
 
+std::string place_of(const std::string &path)
+{
+  std::error_code error;
+  auto place = std::filesystem::weakly_canonical(path, error);
+  if (!place.has_filename())
+    place = place.parent_path();
+  return error ? path : place.string();
+}
 } // namespace
 
 ComparedSide read_run(const std::string &path)
 {
-  ComparedSide side{name_of(path), RunFolder{path}, {}, {}};
+  ComparedSide side{name_of(path), RunFolder{path}, {}, {}, place_of(path)};
   core::require(side.folder->holds_a_run(),
                 path + ": not the output folder of a run (no run.json in it)");
   side.record = read_run_record(side.folder->record());
@@ -48,7 +56,7 @@ ComparedSide read_reference(const std::string &path)
     return read_run(path);
   core::require(std::filesystem::is_regular_file(path),
                 path + ": neither the output folder of a run nor a CSV file");
-  ComparedSide side{name_of(path), {}, {}, read_csv(path)};
+  ComparedSide side{name_of(path), {}, {}, read_csv(path), place_of(path)};
   core::require(unknown_columns(side).size() < side.curve.columns().size(),
                 path + ": none of its columns is one that compare knows: " +
                     core::listed({std::begin(known_columns), std::end(known_columns)}, "and"));
@@ -58,6 +66,14 @@ ComparedSide read_reference(const std::string &path)
                 path + ": it has no numbers to compare; give load (N) or stress (Pa), or time (s) "
                        "beside displacement (m) or external_work (J)");
   return side;
+}
+
+std::optional<std::string> unit_of(const ComparedSide &side, const std::string &column)
+{
+  for (const Column &c : side.curve.columns())
+    if (c.name == column)
+      return c.unit;
+  return {};
 }
 
 std::vector<std::string> unknown_columns(const ComparedSide &side)

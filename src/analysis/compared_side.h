@@ -19,6 +19,7 @@ struct ComparedSide
   std::optional<RunFolder> folder;
   std::optional<RunRecord> record;
   Table curve;
+  std::string path = {}; // from the root, without links
 
   /// A column in that unit; empty without the column or without a number in it.
   std::optional<std::vector<double>> values(const char *column, const char *unit) const;
@@ -36,6 +37,9 @@ ComparedSide read_run(const std::string &path);
 /// The folder of a run or a CSV curve with units; InputError when it is neither, or a curve of
 /// which no column is known.
 ComparedSide read_reference(const std::string &path);
+
+/// Of a column of its curve; empty without the column.
+std::optional<std::string> unit_of(const ComparedSide &side, const std::string &column);
 
 /// Columns of the curve that compare does not read.
 std::vector<std::string> unknown_columns(const ComparedSide &side);

@@ -317,8 +317,81 @@ TEST(Compare, WritesWhereItIsTold)
   SyntheticRun().write("b");
   CompareResult r = compare("a", "b");
   EXPECT_FALSE(std::filesystem::exists("a/compare_b.svg"));
+  std::filesystem::remove_all("elsewhere");
   write_comparison(r, "elsewhere/deep");
   EXPECT_TRUE(std::filesystem::exists("elsewhere/deep/compare_b.svg"));
   EXPECT_EQ(r.html_file, "elsewhere/deep/compare_b.html");
+}
+
+TEST(Compare, EarlierPlotsOfOthersStay)
+{
+  SyntheticRun other;
+  other.peak_stress *= 2;
+  SyntheticRun().write("a");
+  for (const char *study : {"first", "second"})
+    std::filesystem::create_directories(study);
+  SyntheticRun().write("first/out");
+  other.write("second/out");
+  std::filesystem::remove_all("plots");
+  const auto page_of = [](const char *run, const char *reference) {
+    CompareResult r = compare(run, reference);
+    write_comparison(r, "plots");
+    EXPECT_EQ(core::read_file(r.svg_file), r.plot);
+    return r.html_file;
+  };
+  EXPECT_EQ(page_of("a", "first/out"), "plots/compare_out.html");
+  const std::string first = core::read_file("plots/compare_out.html");
+  EXPECT_EQ(page_of("a", "second/out/"), "plots/compare_out_2.html");
+  EXPECT_EQ(page_of("first/out", "second/out"), "plots/compare_out_3.html");
+  EXPECT_EQ(core::read_file("plots/compare_out.html"), first);
+  // The same two again, named otherwise.
+  EXPECT_EQ(page_of("a", "./second/out"), "plots/compare_out_2.html");
+}
+
+/// A history of two rows with one column of a gauge.
+void write_gauge(const RunFolder &folder, const std::string &unit)
+{
+  RunRecord record = read_run_record(folder.record());
+  record.gauges = {{"g", "distance", {"g"}, ""}};
+  write_run_record(folder.record(), record);
+  auto columns = history_columns(2);
+  columns.push_back({"g", unit});
+  HistoryWriter history(folder.history(), columns);
+  for (int row = 0; row < 2; ++row) {
+    for (const Column &column : columns)
+      history.set(column.name, row);
+    history.end_row();
+  }
+  history.flush();
+}
+
+TEST(Compare, AGaugeThatMeasuresSomethingElseIsLeftOut)
+{
+  const RunFolder run = SyntheticRun().write("a"), same = SyntheticRun().write("same"),
+                  other = SyntheticRun().write("other");
+  write_gauge(run, "m");
+  write_gauge(same, "m");
+  write_gauge(other, "Pa");
+  EXPECT_EQ(compare("a", "same").gauges.count("g"), 1u);
+  const CompareResult r = compare("a", "other");
+  EXPECT_EQ(r.gauges.count("g"), 0u);
+  EXPECT_NE(table(r).find("note: gauge g: in m in a, in Pa in other"), std::string::npos)
+      << table(r);
+  EXPECT_TRUE(r.compared_until);
+}
+
+// Of a run that is under way nobody knows yet.
+TEST(Compare, WithoutListOfBrokenFacesTheirNumberIsNotZero)
+{
+  const RunFolder run = SyntheticRun().write("a");
+  SyntheticRun().write("b");
+  std::filesystem::remove(run.broken_bonds());
+  const CompareResult r = compare("a", "b");
+  const auto line = std::find_if(r.lines.begin(), r.lines.end(),
+                                 [](const auto &l) { return l.name == "broken faces"; });
+  ASSERT_NE(line, r.lines.end());
+  EXPECT_EQ(line->run, "-");
+  EXPECT_EQ(line->reference, "7");
+  EXPECT_NE(table(r).find("a has no broken_bonds.csv"), std::string::npos) << table(r);
 }
 } // namespace
