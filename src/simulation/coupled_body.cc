@@ -301,6 +301,14 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
           "ends; give smaller ones along it (/far_field/outline_cell_size)",
           l, area, whole);
     const bool is_fitted = scene.atoms && !body.far;
+    if (scene.atoms && (area == 0 || (is_force && !is_fitted && std::abs(area / whole - 1) > slack)))
+      throw core::KeyedError(
+          key, "the load does not find its part of the side",
+          fmt::format("atoms share the area of a side, and those of this part have {:.4g} m^2 of "
+                      "its {:.4g} m^2",
+                      area, whole),
+          fmt::format("make it wider than {:.4g} m, move it off holes and notches{}",
+                      2 * body.spacing, is_force ? ", or give a traction" : ""));
     if (area == 0 || (is_force && !is_fitted && std::abs(area / whole - 1) > slack))
       throw core::KeyedError(
           key, "the load does not find its part of the side",
@@ -345,6 +353,9 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
   body.load_places = load_places(scene, body.loads);
+  for (int boundary = 0; boundary < 2 * dim; ++boundary)
+    for (const auto &face : faces_of<dim>(scene.specimen, boundary))
+      body.side_areas[boundary] += body.thickness * core::face_area<dim>(face);
   if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));
   ContactSurface<dim> surface; // that tools may touch

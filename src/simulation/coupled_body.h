@@ -7,6 +7,7 @@
 #include "src/output/run_record.h"
 #include "src/scene/scene.h"
 #include "src/simulation/make_force.h"
+#include "src/simulation/make_loads.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/tools/tool_set.h"
 
@@ -27,7 +28,12 @@ struct CoupledBody
   std::unique_ptr<ToolSet<dim>> tools; // null: nothing rigid touches it
   std::vector<core::BoundaryLoad<dim>> loads;
   std::vector<double> loaded_faces;          // m^2, on which each load acts in the zone
-  std::vector<Vector<dim>> load_places;      // m, middle of what each load acts on
+  std::vector<LoadPlace<dim>> load_places;   // of each load
+  /// Of tractions on sides with names: particles on what each acts on and their neighbours, in
+  /// which the motion of that place is read.
+  std::vector<std::vector<int>> load_layers;
+  /// m^2, of the sides of the box that surface lies on, in the order of boundaries.
+  std::array<double, 2 * dim> side_areas{};
   std::optional<packings::Seeds<dim>> seeds; // of an irregular packing
 
   Vector<dim> lower, upper;            // m, specimen

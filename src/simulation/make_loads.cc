@@ -18,7 +18,8 @@ core::Part<dim> widened(const Scene &scene, LoadParameters load)
     width = scene.zone.spacing;
   if (scene.far_field)
     width = std::min(width, scene.far_field->cell_size);
-  width *= 1e-3;
+  // Atoms share the area of a side: a point has those within a spacing.
+  width *= scene.atoms && !scene.far_field ? 2 : 1e-3;
   if (load.from && load.to && *load.from == *load.to) {
     *load.from -= width / 2;
     *load.to += width / 2;
@@ -100,30 +101,33 @@ std::vector<core::BoundaryLoad<dim>> make_loads(const Scene &scene)
 }
 
 template <int dim>
-std::vector<Vector<dim>> load_places(const Scene &scene,
-                                     const std::vector<core::BoundaryLoad<dim>> &loads)
+std::vector<LoadPlace<dim>> load_places(const Scene &scene,
+                                        const std::vector<core::BoundaryLoad<dim>> &loads)
 {
-  std::vector<Vector<dim>> places;
-  for (const auto &load : loads) {
-    Vector<dim> moment = Vector<dim>::Zero();
-    double area = 0;
-    if (load.boundary >= 0)
-      for (const auto &face : faces_of<dim>(scene.specimen, load.boundary)) {
-        const auto piece = load.part.clip(face);
-        if (const double a = core::face_area<dim>(piece); a > 0) {
-          moment += a * core::face_centroid<dim>(piece);
-          area += a;
-        }
+  const double thickness = dim == 2 ? scene.specimen.thickness : 1;
+  std::vector<LoadPlace<dim>> places(loads.size());
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    if (loads[l].boundary < 0)
+      continue;
+    LoadPlace<dim> &place = places[l];
+    for (const auto &face : faces_of<dim>(scene.specimen, loads[l].boundary)) {
+      place.side_area += thickness * core::face_area<dim>(face);
+      const auto piece = loads[l].part.clip(face);
+      if (const double area = thickness * core::face_area<dim>(piece); area > 0) {
+        place.middle += area * core::face_centroid<dim>(piece);
+        place.area += area;
       }
-    places.push_back(area > 0 ? Vector<dim>(moment / area) : moment);
+    }
+    if (place.area > 0)
+      place.middle /= place.area;
   }
   return places;
 }
 
-template std::vector<Vector<2>> load_places(const Scene &,
-                                            const std::vector<core::BoundaryLoad<2>> &);
-template std::vector<Vector<3>> load_places(const Scene &,
-                                            const std::vector<core::BoundaryLoad<3>> &);
+template std::vector<LoadPlace<2>> load_places(const Scene &,
+                                               const std::vector<core::BoundaryLoad<2>> &);
+template std::vector<LoadPlace<3>> load_places(const Scene &,
+                                               const std::vector<core::BoundaryLoad<3>> &);
 template double loaded_area(const Scene &, const core::BoundaryLoad<2> &);
 template double loaded_area(const Scene &, const core::BoundaryLoad<3> &);
 template std::vector<core::BoundaryLoad<2>> make_loads(const Scene &);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 namespace ligament::program
 {
@@ -92,6 +93,33 @@ std::vector<double> loaded_areas(const CoupledBody<dim> &body,
   return values;
 }
 
+/// Particles on what a traction on a side with a name acts on, and their neighbours, of each load.
+template <int dim>
+std::vector<std::vector<int>> load_layers(const CoupledBody<dim> &body,
+                                          const packings::Packing<dim> &packing)
+{
+  std::vector<std::vector<int>> layers(body.loads.size());
+  for (std::size_t l = 0; l < body.loads.size(); ++l) {
+    const auto &load = body.loads[l];
+    if (load.boundary <= inner_surface<dim> || load.kind != core::BoundaryLoad<dim>::Kind::traction)
+      continue;
+    std::set<int> loaded;
+    for (const auto &face : packing.boundary_faces)
+      if (face.boundary == load.boundary &&
+          packings::OuterFace<dim>(face, packing).inside({load.part}))
+        loaded.insert(face.i);
+    std::set<int> layer = loaded;
+    for (const auto &face : packing.faces) {
+      if (loaded.count(face.i) > 0)
+        layer.insert(face.j);
+      if (loaded.count(face.j) > 0)
+        layer.insert(face.i);
+    }
+    layers[l].assign(layer.begin(), layer.end());
+  }
+  return layers;
+}
+
 /// Atoms near a side share all of it alike, those near a part of it have its area to a spacing: the
 /// forces of scenes are met all the same.
 template <int dim>
@@ -116,6 +144,27 @@ std::vector<BrokenBond> all_cut_faces(const CoupledBody<dim> &body,
   for (const auto &face : held.packing.faces)
     if (face.cracked && held.part.owns(face.i))
       cut.push_back(cut_face<dim>(held.packing, face, body.thickness));
+  return body.ranks.gather_all(cut);
+}
+
+/// Likewise of atoms: pairs of nearest neighbours, which their force knows.
+template <int dim>
+std::vector<BrokenBond> all_cut_pairs(const CoupledBody<dim> &body)
+{
+  const auto &atoms = body.zone->state;
+  std::vector<BrokenBond> cut;
+  body.force()->for_each_face(atoms, [&](const particles::FaceView<dim> &face) {
+    if (face.bonded || face.i >= face.j || !atoms.part.owns(face.i))
+      return;
+    cut.push_back({});
+    cut.back().i = atoms.global_id[face.i];
+    cut.back().j = atoms.global_id[face.j];
+    for (int c = 0; c < dim; ++c) {
+      cut.back().centroid[c] = face.centroid[c];
+      cut.back().normal[c] = face.normal[c];
+    }
+    cut.back().size = face.area / body.thickness;
+  });
   return body.ranks.gather_all(cut);
 }
 
@@ -178,6 +227,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     body.figures["healed_radii"] = {double(*n_healed), ""};
   body.n_particles = held.n_whole;
   body.loaded_faces = loaded_areas(body, held);
+  body.load_layers = load_layers(body, packing);
   if (scene.atoms && !body.far)
     fit_forces(scene, body);
   body.cut_faces = all_cut_faces(body, held);
@@ -207,6 +257,10 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);
+  if (scene.atoms) {
+    body.cut_faces = all_cut_pairs(body);
+    body.n_cracked_faces = std::int64_t(body.cut_faces.size());
+  }
   if (!body.ranks.is_one())
     body.zone->join({body.ranks, held.owner});
   if (!body.ranks.is_one() && cells.of)

@@ -30,9 +30,10 @@ ServoTarget<dim>::ServoTarget(const Scene &scene, int load, const CoupledBody<di
   if (servo.gauge.empty()) {
     const int axis =
         parameters.boundary > inner_surface<dim> ? component_ : parameters.boundary / 2;
-    const bool is_upper = body.load_places[load][axis] > (body.lower[axis] + body.upper[axis]) / 2;
+    const bool is_upper =
+        body.load_places[load].middle[axis] > (body.lower[axis] + body.upper[axis]) / 2;
     sign_ = is_upper ? 1 : -1;
-    area_ = loaded_area<dim>(scene, body.loads[load]);
+    area_ = body.load_places[load].area;
     const double outward = *parameters.velocity[component_] > 0 ? sign_ : -sign_;
     gain_ = outward * scene.material.youngs_modulus / scene.specimen.size[axis];
     column_ = {fmt::format("servo_{}_error", load), "Pa"};

@@ -167,7 +167,12 @@ struct StaticPhases<dim>::Work
 
   std::vector<Phase> phases; // complete ones
   long dynamic_since = -1;   // step; before the first phase: none
+  double dynamic_before = 0;     // s of a dynamic phase in other processes, or with other bodies
   std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
+  double dynamic_seconds() const
+  {
+    return dynamic_before + Seconds(std::chrono::steady_clock::now() - dynamic_began).count();
+  }
   bool is_restless = false;     // the last dynamic phase ended without being calm
   bool goes_on = false;         // with another static phase
   int skipped = 0;              // steps, between two static phases
@@ -270,7 +275,7 @@ void StaticPhases<dim>::Work::end_dynamic_phase(const CoupledBody<dim> &body, co
         "still moves is taken out of it and booked as settled; give \"local\" or \"mass\" in "
         "/damping, or let sides absorb",
         clock.now.time, most_transits);
-  phase.seconds = Seconds(std::chrono::steady_clock::now() - dynamic_began).count();
+  phase.seconds = dynamic_seconds();
   phases.push_back(phase);
 }
 
@@ -325,6 +330,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clo
     phase.seconds = Seconds(std::chrono::steady_clock::now() - started).count();
     phases.push_back(phase);
     dynamic_since = clock.now.step;
+    dynamic_before = 0;
     dynamic_began = std::chrono::steady_clock::now();
     broken_then = n_broken(body);
     const std::string by = phase.solves > 0 ? std::string(" by ") + solver->preconditioner() : "";
@@ -474,7 +480,7 @@ std::vector<PhaseEntry> StaticPhases<dim>::entries(const CoupledBody<dim> &body,
     Phase phase{false, work_->dynamic_since, clock.now.step};
     phase.load = work_->load_of(body, clock);
     phase.broken = n_broken(body) - work_->broken_then;
-    phase.seconds = Seconds(std::chrono::steady_clock::now() - work_->dynamic_began).count();
+    phase.seconds = work_->dynamic_seconds();
     phases.push_back(phase);
   }
   for (const Phase &p : phases) {
@@ -505,6 +511,7 @@ void StaticPhases<dim>::save(core::State &state) const
   core::save_value(state, "static_phases", "goes_on", std::int64_t(work_->goes_on));
   core::save_value(state, "static_phases", "skipped", std::int64_t(work_->skipped));
   core::save_value(state, "static_phases", "residual", work_->residual);
+  core::save_value(state, "static_phases", "dynamic_seconds", work_->dynamic_seconds());
   const bool has_solver = work_->solver.has_value();
   core::save_value(state, "static_phases", "largest_load",
                    has_solver ? work_->solver->largest_load() : work_->largest_load);
@@ -546,6 +553,8 @@ void StaticPhases<dim>::load(const core::State &state)
   work_->goes_on = core::load_integer(state, "static_phases", "goes_on") != 0;
   work_->skipped = int(core::load_integer(state, "static_phases", "skipped"));
   work_->residual = core::load_real(state, "static_phases", "residual");
+  work_->dynamic_before = core::load_real(state, "static_phases", "dynamic_seconds");
+  work_->dynamic_began = std::chrono::steady_clock::now();
   work_->largest_load = core::load_real(state, "static_phases", "largest_load");
   work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
   work_->free_shares = {int(core::load_integer(state, "static_phases", "free_motions")),

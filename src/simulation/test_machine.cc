@@ -1,12 +1,13 @@
 #include "src/simulation/test_machine.h"
 
 #include "core/exact_sum.h"
-#include "fem/cell_map.h"
+#include "fem/part_shares.h"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace ligament::program
@@ -16,16 +17,63 @@ namespace
 // Particles that tell the motion of a side lie so many spacings inside it at most.
 constexpr double side_depth = 2.5;
 
-/// Particles lie inside a side, so a motion that is affine in the place is fitted to those near it
-/// that the far field does not move, which is exact for homogeneous strain and rotation on any
-/// packing. Of the middle of the side, or of that of these particles; none where there are too few.
+/// A displacement component as an affine function of the place, from those of particles: exact for
+/// homogeneous strain and rotation on any packing.
+template <int dim>
+class AffineFit
+{
+public:
+  /// Adds a particle of this rank, in m, its place in spacings.
+  void add(const Vector<dim> &place, double displacement)
+  {
+    Row row = Row::Ones();
+    row.template head<dim>() = place;
+    for (int a = 0; a < n; ++a) {
+      for (int b = 0; b <= a; ++b)
+        sums_[a * n + b].add(row[a] * row[b]);
+      sums_[n * n + a].add(displacement * row[a]);
+    }
+  }
+
+  /// Of all ranks; then no more are added.
+  void solve(const core::Ranks &ranks)
+  {
+    sums_ = ranks.sum(sums_);
+    for (int a = 0; a < n; ++a) {
+      for (int b = 0; b <= a; ++b)
+        matrix_(a, b) = matrix_(b, a) = sums_[a * n + b].value();
+      right_[a] = sums_[n * n + a].value();
+    }
+  }
+
+  double n_particles() const { return matrix_(dim, dim); }
+  /// With so few there is no fit to rely on.
+  bool is_poor() const { return n_particles() < 2 * n; }
+  Vector<dim> middle() const { return matrix_.col(dim).template head<dim>() / n_particles(); }
+  double mean() const { return right_[dim] / n_particles(); } // m
+  double at(const Vector<dim> &place) const                   // m
+  {
+    Row row = Row::Ones();
+    row.template head<dim>() = place;
+    return matrix_.ldlt().solve(right_).dot(row);
+  }
+
+private:
+  static constexpr int n = dim + 1;
+  using Row = Eigen::Matrix<double, n, 1>; // a place and 1
+  std::vector<core::ExactSum> sums_ = std::vector<core::ExactSum>(n * n + n);
+  Eigen::Matrix<double, n, n> matrix_;
+  Row right_;
+};
+
+/// Of a side of the box, from the particles near it that the far field does not move, which lie
+/// inside it. Of the middle of the side, or of that of these particles; none where there are too
+/// few.
 template <int dim>
 std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, int axis,
                                                 double place, int component, bool of_side)
 {
-  using Row = Eigen::Matrix<double, dim + 1, 1>; // place from the middle of the side, and 1
-  constexpr int n = dim + 1;
-  std::vector<core::ExactSum> sums(n * n + n); // of the matrix, then of the right side
+  AffineFit<dim> fit;
   const auto &state = body.zone->state;
   const Vector<dim> middle = (body.upper + body.lower) / 2;
   const auto *overlap = body.coupler->overlap();
@@ -33,32 +81,75 @@ std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, in
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
     if (depth > side_depth || (overlap && overlap->member_of_particle[i] >= 0))
       return;
-    Row row = Row::Ones();
-    for (int c = 0; c < dim; ++c)
-      row[c] = (state.reference[c][i] - middle[c]) / body.spacing;
-    row[axis] = depth;
-    for (int a = 0; a < n; ++a) {
-      for (int b = 0; b <= a; ++b)
-        sums[a * n + b].add(row[a] * row[b]);
-      sums[n * n + a].add(state.displacement[component][i] * row[a]);
-    }
+    Vector<dim> x = (get(state.reference, i) - middle) / body.spacing;
+    x[axis] = depth;
+    fit.add(x, state.displacement[component][i]);
   });
-  sums = body.ranks.sum(sums);
-  Eigen::Matrix<double, dim + 1, dim + 1> matrix;
-  Row right;
-  for (int a = 0; a < n; ++a) {
-    for (int b = 0; b <= a; ++b)
-      matrix(a, b) = matrix(b, a) = sums[a * n + b].value();
-    right[a] = sums[n * n + a].value();
-  }
-  if (body.far && matrix(dim, dim) < 2 * n)
+  fit.solve(body.ranks);
+  if (body.far && fit.is_poor())
     return std::nullopt;
-  const Row fit = matrix.ldlt().solve(right);
-  Row at = Row::Unit(dim);
-  if (!of_side)
-    at = matrix.col(dim) / matrix(dim, dim);
+  Vector<dim> at = of_side ? Vector<dim>(Vector<dim>::Zero()) : fit.middle();
   at[axis] = 0;
-  return fit.dot(at);
+  return fit.at(at);
+}
+
+/// Of the middle of what a traction on a side with a name acts on, from particles on it and their
+/// neighbours; none where the mesh has all of it.
+template <int dim>
+std::optional<double> layer_displacement(const CoupledBody<dim> &body, int load, int component)
+{
+  AffineFit<dim> fit;
+  const auto &state = body.zone->state;
+  const auto *overlap = body.coupler->overlap();
+  for (const int i : body.load_layers[load])
+    if (state.part.owns(i) && !(overlap && overlap->member_of_particle[i] >= 0))
+      fit.add((get(state.reference, i) - body.load_places[load].middle) / body.spacing,
+              state.displacement[component][i]);
+  fit.solve(body.ranks);
+  if (fit.n_particles() == 0)
+    return std::nullopt;
+  return fit.is_poor() ? fit.mean() : fit.at(Vector<dim>::Zero());
+}
+
+/// Area in m^2 (2D: m) that the mesh has of a part of a side, and its mean displacement there in m.
+struct MeshReading
+{
+  double area = 0, displacement = 0;
+};
+
+template <int dim>
+MeshReading mesh_displacement(const CoupledBody<dim> &body, int boundary,
+                              const core::Part<dim> &part, int component)
+{
+  MeshReading r;
+  if (!body.far)
+    return r;
+  const auto &mesh = body.far->mesh();
+  double moment = 0;
+  for (const auto &face : mesh.boundary_faces)
+    if (face.boundary == boundary) {
+      const auto shares = fem::part_shares<dim>(part, mesh, face);
+      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+        moment += shares[a] * body.far->displacement[component][mesh.cells[face.cell][a]];
+      r.area += shares.sum();
+    }
+  if (r.area > 0)
+    r.displacement = moment / r.area;
+  return r;
+}
+
+/// Of both halves of a body, by what the mesh has of an area (m^2, 2D: m).
+std::optional<double> joint_displacement(const MeshReading &mesh, double area,
+                                         const std::function<std::optional<double>(bool)> &rest)
+{
+  const double share = area > 0 ? std::min(mesh.area / area, 1.) : mesh.area > 0;
+  constexpr double round_off = 1e-9;
+  if (share > 1 - round_off)
+    return mesh.displacement;
+  const auto of_rest = rest(share == 0);
+  if (of_rest)
+    return share * mesh.displacement + (1 - share) * *of_rest;
+  return share > 0 ? std::optional(mesh.displacement) : std::nullopt;
 }
 } // namespace
 
@@ -90,7 +181,7 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
   is_named_ = boundary > inner_surface<dim>;
   axis_ = is_named_ ? component_ : boundary / 2;
   const auto is_upper = [&](std::size_t l) {
-    return body.load_places[l][axis_] > (body.lower[axis_] + body.upper[axis_]) / 2;
+    return body.load_places[l].middle[axis_] > (body.lower[axis_] + body.upper[axis_]) / 2;
   };
   sign_ = (is_named_ ? is_upper(load_) : boundary % 2 == 1) ? 1 : -1;
   const Vector<dim> size = body.upper - body.lower;
@@ -103,14 +194,9 @@ TestMachine<dim>::TestMachine(const CoupledBody<dim> &body)
         opposite_ = int(l);
     return;
   }
-  const auto side = core::side_corners<dim>(body.lower, body.upper, body.loads[load_].boundary);
-  area_ = size.prod() / size_ * body.thickness;
-  if (body.loads[load_].part.is_whole())
-    return;
-  const double part =
-      core::face_area<dim>(body.loads[load_].part.clip(side)) * (dim == 2 ? body.thickness : 1);
-  if (part > 1e-3 * area_) // else a point or a line, which has no stress of its own
-    area_ = part;
+  const auto &place = body.load_places[load_];
+  // A point or a line has no stress of its own.
+  area_ = place.area > 1e-3 * place.side_area ? place.area : place.side_area;
 }
 
 // The first one that is not zero, before tractions.
@@ -160,14 +246,20 @@ void TestMachine<dim>::look_for_tool(const CoupledBody<dim> &body)
     }
 }
 
+// The load that is read comes before others on its side.
 template <int dim>
 double TestMachine<dim>::side_displacement(const CoupledBody<dim> &body, int side,
                                            double time) const
 {
   using Kind = typename core::BoundaryLoad<dim>::Kind;
   const int boundary = 2 * axis_ + side;
+  const auto moves = [&](const auto &load) {
+    return load.boundary == boundary && load.value[component_] && load.kind != Kind::traction;
+  };
+  if (moves(body.loads[load_]))
+    return body.loads[load_].displacement(component_, time);
   for (const auto &load : body.loads)
-    if (load.boundary == boundary && load.value[component_] && load.kind != Kind::traction)
+    if (moves(load))
       return load.displacement(component_, time);
   return mean_displacement(body, boundary, component_);
 }
@@ -179,7 +271,12 @@ double TestMachine<dim>::load_displacement(const CoupledBody<dim> &body, int loa
   const auto &l = body.loads[load];
   if (l.kind != core::BoundaryLoad<dim>::Kind::traction)
     return l.displacement(component_, time);
-  return body.far ? mean_displacement(body, l.boundary, component_) : 0;
+  const MeshReading mesh = mesh_displacement(body, l.boundary, l.part, component_);
+  if (!body.zone)
+    return mesh.displacement;
+  return joint_displacement(mesh, body.load_places[load].area / body.thickness,
+                            [&](bool) { return layer_displacement(body, load, component_); })
+      .value_or(0);
 }
 
 template <int dim>
@@ -227,43 +324,17 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
-  const auto of_particles = [&](bool of_side) {
-    const int axis = boundary / 2;
-    return extrapolated_displacement(body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
-                                     component, of_side);
-  };
-  if (!body.far)
-    return of_particles(true).value_or(0);
-  double sum = 0, area = 0;
-  const auto &mesh = body.far->mesh();
-  for (const auto &face : mesh.boundary_faces)
-    if (face.boundary == boundary) {
-      if (!mesh.is_box(face.cell)) {
-        const auto shares = fem::face_shares<dim>(fem::cell_corners(mesh, face.cell), face.face);
-        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-          sum += shares[a] * body.far->displacement[component][mesh.cells[face.cell][a]];
-        area += shares.sum();
-        continue;
-      }
-      const int axis = face.face / 2;
-      const Vector<dim> &h = mesh.cell_size[face.cell];
-      const double share = h.prod() / h[axis];
-      area += share;
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-        if (((a >> axis) & 1) == face.face % 2)
-          sum += share / (fem::n_cell_nodes<dim> / 2) *
-                 body.far->displacement[component][mesh.cells[face.cell][a]];
-    }
-  const double of_mesh = area > 0 ? sum / area : 0;
-  if (!body.zone || boundary >= 2 * dim)
-    return of_mesh;
-  const Vector<dim> size = body.upper - body.lower;
-  const double share = std::min(area * size[boundary / 2] / size.prod(), 1.);
-  constexpr double round_off = 1e-9;
-  if (share > 1 - round_off)
-    return of_mesh;
-  const auto of_others = of_particles(share == 0);
-  return of_others ? share * of_mesh + (1 - share) * *of_others : of_mesh;
+  const MeshReading mesh = mesh_displacement(body, boundary, core::Part<dim>(), component);
+  if (!body.zone)
+    return mesh.displacement;
+  const int axis = boundary / 2;
+  return joint_displacement(mesh, body.side_areas[boundary] / body.thickness,
+                            [&](bool has_all) {
+                              return extrapolated_displacement(
+                                  body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
+                                  component, has_all);
+                            })
+      .value_or(0);
 }
 
 template class TestMachine<2>;

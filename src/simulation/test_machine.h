@@ -17,9 +17,10 @@ struct Reading
 /// a load it reads the first pressure on a side of the box, or else the first tool that is driven,
 /// its force and its way.
 /// On a side with a name of its own the axis is that of the component, the area that of the box
-/// around the specimen across it, and the displacement is against the load in the other half.
-/// Displacements are prescribed ones of the two sides, on whatever part of them, or else means of
-/// whole sides.
+/// around the specimen across it, and the displacement is against the load in the other half: of
+/// what the load acts on, a mean over the mesh, of particles that of its middle.
+/// Displacements of sides of the box are prescribed ones, on whatever part of them, that of the
+/// load before others, or else means of whole sides.
 template <int dim>
 class TestMachine
 {

@@ -119,6 +119,11 @@ TEST_F(Phases, InterruptedInEitherPhaseNothingDiffers)
     ASSERT_EQ(more.code, 0) << more.errors;
     expect_same("cut", "whole");
     EXPECT_EQ(phases_of("cut"), phases_of("whole")) << "interrupted in step " << step;
+    const auto record = file_json("cut/run.json");
+    double seconds_of_phases = 0; // of both processes
+    for (const auto &phase : record["phases"])
+      seconds_of_phases += double(phase["seconds"]);
+    EXPECT_GT(seconds_of_phases, 0.8 * double(record["wall_seconds"]));
     if (HasFailure())
       return;
   }

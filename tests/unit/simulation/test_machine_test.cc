@@ -72,6 +72,81 @@ TEST(TestMachine, ReadsAPressureAsCompression)
   }
 }
 
+// Parts of one side with a name, or two such sides: each moves as what lies there does.
+TEST(TestMachine, ReadsTheMotionOfPartsOfSidesWithNames)
+{
+  const std::vector<std::string> disc = {
+      R"(/specimen={"outline": [{"at": [20, 0], "centre": [0, 0], "side": "rim"}]})", R"(/loads=[
+    {"boundary": "rim", "within": {"lower": [-4, 15], "upper": [4, null]}, "traction": [null, 1e-4]},
+    {"boundary": "rim", "within": {"lower": [-4, null], "upper": [4, -15]}, "traction": [null, -1e-4]}
+  ])"};
+  const std::vector<std::string> bar = {
+      R"(/specimen={"outline": [
+    {"at": [-12, -60]}, {"at": [12, -60], "side": "foot"}, {"at": [12, 60]}, {"at": [-12, 60], "side": "head"}
+  ]})",
+      R"(/loads=[
+    {"boundary": "head", "traction": [null, 1e-4]}, {"boundary": "foot", "traction": [null, -1e-4]}
+  ])",
+      R"(/discrete_zone/region={"lower": [null, null], "upper": [null, 0]})"};
+  const std::vector<std::string> dem = {"/far_field=none"},
+                                 fem = {"/discrete_zone=none", "/far_field/cell_size=2"};
+  for (const auto &[name, overrides] :
+       {std::pair("disc of particles", dem + disc), std::pair("disc of cells", fem + disc),
+        std::pair("coupled bar, particles to its foot", bar)})
+  {
+    SCOPED_TRACE(name);
+    SmallBody small(small_scene(overrides));
+    Eigen::Matrix2d gradient;
+    gradient << 1e-4, 3e-4, -2e-4, 5e-4;
+    small.deform(gradient);
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    const auto &places = small.body.load_places;
+    const Vector<2> apart = places[0].middle - places[1].middle;
+    EXPECT_GT(apart[1], 39);
+    // Straight sides stand for an arc, of the mesh others than of the particles.
+    EXPECT_NEAR(r.displacement / (gradient * apart)[1], 1, 5e-3);
+  }
+}
+
+// Two loads on one side: the one that is read tells its motion, whichever comes first.
+TEST(TestMachine, ReadsTheMotionOfItsOwnLoad)
+{
+  const std::string
+      held = R"({"boundary": "left", "from": 0, "to": 60, "displacement": [0, null]})",
+      moved = R"({"boundary": "left", "from": -60, "to": 0, "displacement": [-0.006, null]})",
+      rest = R"({"boundary": "right", "displacement": [0, null]})";
+  for (const std::string &loads :
+       {held + "," + moved + "," + rest, moved + "," + held + "," + rest}) {
+    SmallBody small(small_scene({"/far_field=none", "/loads=[" + loads + "]"}));
+    EXPECT_NEAR(TestMachine<2>(small.body).read(small.body, 0).displacement, 0.006, 1e-15);
+  }
+}
+
+// The box around a body is wider than its side.
+TEST(TestMachine, StressIsOverTheSideAsItIs)
+{
+  for (const auto &kind : body_kinds) {
+    if (kind.name == std::string("coupled"))
+      continue; // the band ends at sides of a box
+    SCOPED_TRACE(kind.name);
+    SmallBody small(small_scene(
+        kind.overrides +
+        std::vector<std::string>{
+            R"(/specimen={"outline": [{"at": [-12, 0]}, {"at": [12, 0]}, {"at": [6, 30]}, {"at": [-6, 30]}]})",
+            R"(/loads=[{"boundary": "top", "traction": [null, 1e-4]}, {"boundary": "bottom", "displacement": [null, 0]}])",
+            "/far_field=" + std::string(kind.name == std::string("pure_dem")
+                                            ? "none"
+                                            : R"({"cell_size": 2})")}));
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    EXPECT_NEAR(r.load, 12e-4, 1e-9);
+    EXPECT_NEAR(r.stress, 1e-4, 1e-10);
+  }
+}
+
 // Particles lie inside the sides; a rotation moves those of different depths differently.
 TEST(TestMachine, ParticlesTellTheMotionOfTheSideItself)
 {
