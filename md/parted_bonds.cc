@@ -28,6 +28,7 @@ void PartedBonds<dim>::part(std::size_t b, const Particles &atoms, double time)
 template <int dim>
 void PartedBonds<dim>::look(const Particles &atoms, double time)
 {
+  std::vector<Since> parted;
   for (std::size_t b = 0; b < bonds_.size(); ++b) {
     if (is_parted_[b])
       continue;
@@ -39,10 +40,16 @@ void PartedBonds<dim>::look(const Particles &atoms, double time)
       continue;
     }
     const double since = longer_.emplace(b, time).first->second;
-    if (time >= since + lasting_) {
-      part(b, atoms, since);
-      longer_.erase(b);
-    }
+    if (time >= since + lasting_)
+      parted.push_back({b, since});
+  }
+  // A look sees all that have been longer for that while: in time they follow those of looks
+  // before.
+  std::stable_sort(parted.begin(), parted.end(),
+                   [](const Since &a, const Since &b) { return a.time < b.time; });
+  for (const Since &s : parted) {
+    part(s.bond, atoms, s.time);
+    longer_.erase(s.bond);
   }
 }
 

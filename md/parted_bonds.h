@@ -24,8 +24,7 @@ public:
   /// is longer before it counts, 0: not at all.
   PartedBonds(std::vector<Bond<dim>> bonds, double limit, double area, double lasting);
 
-  /// Adds those that have parted by now, in the order of the bonds, with the time since when they
-  /// are longer.
+  /// Adds those that have parted by now, with the time since when they are longer and in its order.
   void look(const Particles &atoms, double time);
   /// Whether a look would tell of a longer bond whether it has parted.
   bool is_due(double time) const;

@@ -404,6 +404,33 @@ TEST(PartedBondsTest, OfWarmAtomsMustLast)
   EXPECT_EQ(force.broken_bonds().size(), other.broken_bonds().size());
 }
 
+// One look may see many that have been longer for a while: they are told in the order of time.
+TEST(PartedBondsTest, OfWarmAtomsAreInTheOrderOfTime)
+{
+  Body<2> body = specimen({12, 6});
+  body.options.is_warm = true;
+  const double d = body.crystal.spacing(),
+               lasting = 10 * d / body.crystal.elastic_constants().wave_speed_p;
+  auto force = body.force();
+  Particles &p = body.atoms;
+  const auto open = [&](double lower, double upper, double time) {
+    for (int i = 0; i < p.size(); ++i)
+      p.displacement[1][i] = (p.reference[1][i] > 0.3 * body.top[1] ? lower : 0) +
+                             (p.reference[1][i] > 0.7 * body.top[1] ? upper : 0);
+    force.compute(p, time * lasting);
+  };
+  open(0, 1.2 * d, 0);
+  open(1.2 * d, 1.2 * d, 0.5);
+  EXPECT_TRUE(force.broken_bonds().empty());
+  open(1.3 * d, 1.3 * d, 2);
+  const auto &broken = force.broken_bonds();
+  ASSERT_GT(broken.size(), 40u);
+  EXPECT_EQ(broken.front().time, 0);
+  EXPECT_NEAR(broken.back().time, 0.5 * lasting, 1e-12 * lasting);
+  EXPECT_TRUE(std::is_sorted(broken.begin(), broken.end(),
+                             [](const auto &a, const auto &b) { return a.time < b.time; }));
+}
+
 // A whole crystal that is strained or turns has lost no bond.
 TEST(PartedBondsTest, StrainAndRotationPartNothing)
 {
