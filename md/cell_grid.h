@@ -12,7 +12,8 @@ namespace ligament::md
 void find_extent(const std::vector<AtomRecord> &places, std::array<double, 3> &lower,
                  std::array<double, 3> &upper);
 
-/// Cubes of half the reach over all places, or larger ones where these are thinly spread.
+/// Cubes of half the reach over all places, or larger ones where these are thinly spread. Places
+/// that lie far from most others belong to the cell of the grid that is nearest.
 struct CellGrid
 {
   std::array<double, 3> lower; // m

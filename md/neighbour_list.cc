@@ -180,10 +180,9 @@ void NeighbourList::find_pairs(const CellGrid &grid, double reach)
   double extent = 0;
   for (int c = 0; c < 3; ++c)
     extent = std::max(extent, grid.n[c] * grid.edge / reach);
-  const float widened = float(1 + 4 * extent * std::numeric_limits<float>::epsilon());
   const FindNear find = find_near();
   int n_found = 0;
-  float x = 0, y = 0, z = 0;
+  float x = 0, y = 0, z = 0, widened = 1;
   const auto search = [&](const Cells &cells, int from, int to) {
     if (from >= to)
       return;
@@ -202,6 +201,9 @@ void NeighbourList::find_pairs(const CellGrid &grid, double reach)
       to[c] = std::min(cell[c] + span, grid.n[c] - 1);
     }
     x = atoms.x[s], y = atoms.y[s], z = atoms.z[s];
+    // Places beyond the grid know theirs less well.
+    const double far = std::max({std::abs(x), std::abs(y), std::abs(z)});
+    widened = float(1 + 4 * std::max(extent, far) * std::numeric_limits<float>::epsilon());
     const int own = grid.number({0, cell[1], cell[2]});
     for (int kz = cell[2]; kz <= to[2]; ++kz)
       for (int ky = kz == cell[2] ? cell[1] : from[1]; ky <= to[1]; ++ky) {

@@ -2,6 +2,7 @@
 #include "md/neighbour_list.h"
 
 #include "core/check.h"
+#include "md/cell_grid.h"
 #include "tests/unit/md/potentials.h"
 
 #include <algorithm>
@@ -111,6 +112,45 @@ TEST(NeighbourListTest, OneAtomSeesItsImages)
   NeighbourList alone(1, 0.1, Vector<3>(0, 0, 0));
   alone.update<3>(x, u);
   EXPECT_EQ(alone.n_pairs(), 0);
+}
+
+// A few that have flown away do not make the search one through all pairs, and see each other.
+TEST(NeighbourListTest, AtomsFarAwayLeaveTheOthersTheirCells)
+{
+  const double far = 3e6;
+  Components<3> x;
+  Noise noise(4);
+  const auto add = [&](double a, double b, double c) {
+    x[0].push_back(a);
+    x[1].push_back(b);
+    x[2].push_back(c);
+  };
+  for (int i = 0; i < 3000; ++i)
+    add(6 * noise(), 6 * noise(), 6 * noise());
+  for (int i = 0; i < 40; ++i)
+    add(far + noise(), 2 * far + noise(), -far + noise());
+  for (int i = 0; i < 5; ++i)
+    add(noise(), 100 + 50 * noise(), 1e12 * noise());
+  NeighbourList list(1, 0.3, Vector<3>(Vector<3>::Zero()));
+  Components<3> u;
+  for (auto &component : u)
+    component.assign(x[0].size(), 0.);
+  list.build<3>(x, u);
+  const auto expected = all_pairs<3>(x, 1.3, Vector<3>::Zero());
+  EXPECT_GT(
+      std::count_if(expected.begin(), expected.end(), [](const Pair &p) { return p[0] >= 3000; }),
+      100);
+  EXPECT_EQ(listed_pairs<3>(list, x, 1.3, Vector<3>::Zero()), expected);
+
+  std::vector<AtomRecord> places(x[0].size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      component(places[i])[c] = x[c][i];
+  const CellGrid grid(places, 1.3);
+  std::vector<int> n_in(grid.n_cells(), 0);
+  for (const AtomRecord &place : places)
+    ++n_in[grid.number(grid.cell_of(place))];
+  EXPECT_LT(*std::max_element(n_in.begin(), n_in.end()), 100);
 }
 
 TEST(NeighbourListTest, PlacesThatAreNoNumbersStopTheRun)
