@@ -60,6 +60,26 @@ std::pair<Index<dim>, Index<dim>> index_range(const Matrix<dim> &inverse,
   return {from, to};
 }
 
+/// Of the indices from `least` to `most`, those between which the line of sites from x along `step`
+/// lies in the box, and one more at each end.
+template <int dim>
+std::pair<int, int> clip(int least, int most, const Vector<dim> &x, const Vector<dim> &step,
+                         const CrystalShape<dim> &shape)
+{
+  double from = least, to = most;
+  const double length = step.norm();
+  for (int c = 0; c < dim; ++c) {
+    // Along an axis that the line hardly moves on it is not clipped.
+    if (std::abs(step[c]) < 1e-5 * length)
+      continue;
+    const double a = (shape.lower[c] - x[c]) / step[c], b = (shape.upper[c] - x[c]) / step[c];
+    from = std::max(from, std::min(a, b) - 1);
+    to = std::min(to, std::max(a, b) + 1);
+  }
+  from = std::floor(std::min(from, most + 1.));
+  return {int(from), from <= to ? int(std::ceil(to)) : int(from) - 1};
+}
+
 template <int dim>
 double side_area(const CrystalShape<dim> &shape, int axis, double thickness)
 {
@@ -143,9 +163,12 @@ packings::Packing<dim> cut_crystal(const Crystal<dim> &crystal, const CrystalSha
   std::vector<Site<dim>> sites;
   Index<dim> k = from;
   while (k[dim - 1] <= to[dim - 1]) {
-    if (is_in(position(k)))
-      sites.push_back({row_code<dim>(k), k});
-    ++k[0];
+    k[0] = 0;
+    const auto [first, last] = clip<dim>(from[0], to[0], position(k), basis.col(0), shape);
+    for (k[0] = first; k[0] <= last; ++k[0])
+      if (is_in(position(k)))
+        sites.push_back({row_code<dim>(k), k});
+    k[0] = to[0] + 1; // the next line
     for (int c = 0; c + 1 < dim && k[c] > to[c]; ++c) {
       k[c] = from[c];
       ++k[c + 1];

@@ -66,6 +66,28 @@ TEST(CrystalPackingTest, HasEveryAtomInAnyOrientation)
   expect_whole(Crystal<2>(plane_atoms(), plane), square);
 }
 
+// What a long thin one takes grows by the square of its length at most: all sites of the cell of
+// the lattice around it, 5e10, would take minutes.
+TEST(CrystalPackingTest, LongCrystalsAreCutInALittleWhile)
+{
+  CrystalParameters<3> turned;
+  turned.orientation = orientation_of({3, 1, 1}, {0, 1, -1});
+  const Crystal<3> copper(foiles_copper(), turned);
+  const double a = copper.lattice_parameter();
+  CrystalShape<3> box;
+  box.upper = a * Vector<3>(6000, 3, 2);
+  const auto packing = cut_crystal(copper, box);
+  EXPECT_NEAR(packing.size() / (box.upper.prod() / copper.volume()), 1, 0.1);
+  box.lower[0] = 3000.3 * a;
+  box.upper[0] = 3040.7 * a;
+  const auto piece = cut_crystal(copper, box);
+  std::set<std::int64_t> names;
+  for (int i = 0; i < packing.size(); ++i)
+    if (packing.centre[0][i] >= box.lower[0] && packing.centre[0][i] < box.upper[0])
+      names.insert(packing.global_id[i]);
+  EXPECT_EQ(std::set<std::int64_t>(piece.global_id.begin(), piece.global_id.end()), names);
+}
+
 // A larger box, or one with a hole, has the same atoms with the same names in the same order.
 TEST(CrystalPackingTest, NamesAndOrderDoNotDependOnTheCut)
 {
