@@ -11,12 +11,22 @@ namespace ligament::md
 {
 namespace
 {
+/// Units may be reduced ones, in which a spacing is about 1.
+template <int dim>
+double skin_of(const Crystal<dim> &crystal, const AtomForceOptions &options)
+{
+  if (options.skin > 0)
+    return options.skin;
+  const bool is_atomic = crystal.spacing() > 1e-10 && crystal.spacing() < 1e-9;
+  return is_atomic ? 1e-10 : 0.3 * crystal.spacing();
+}
+
 template <int dim>
 AtomBody<dim> make_body(const Crystal<dim> &crystal, const packings::Packing<dim> &packing,
                         const AtomForceOptions &options)
 {
   // Atoms that were farther apart than this and meet have come round the tip.
-  const double reach = 1.5 * (crystal.potential().cutoff() + options.skin);
+  const double reach = 1.5 * (crystal.potential().cutoff() + skin_of(crystal, options));
   AtomBody<dim> body{crystal.potential(), options.species, packing.period, {}, {}};
   if (!packing.cuts.empty())
     body.screen = CrackScreen<dim>(packing.cuts, packing.centre, packing.period, reach);
@@ -43,7 +53,7 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
     : crystal_(crystal), body_(make_body(crystal, packing, options)), reference_(packing.centre),
       kernel_(body_.potential, body_.species),
       loads_(packing, crystal.elastic_constants().stiffness(0, 0) / crystal.spacing(), loads),
-      list_(body_.potential.cutoff(), options.skin, packing.period)
+      list_(body_.potential.cutoff(), skin_of(crystal, options), packing.period)
 {
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);

@@ -16,7 +16,8 @@ namespace ligament::md
 {
 struct AtomForceOptions
 {
-  double skin = 1e-10;           // m: how much farther than the cut-off the neighbour list sees
+  double skin = 0; // m: how much farther than the cut-off the neighbour list sees; 0: 1e-10 m, or
+                   // 0.3 spacings where these are none of atoms
   std::vector<int> species = {}; // of each atom; empty: all are the crystal's
   bool keeps_neighbours = true;  // need not look for them while the crystal is undisturbed
   bool is_warm = false;          // bonds must be longer for a while before they count as parted

@@ -10,8 +10,8 @@ namespace ligament::md
 namespace
 {
 constexpr int padding = 16;
-/// m: where empty sites lie, far out of everybody's range.
-constexpr double nowhere = 1;
+/// Cut-offs: where empty sites lie, far out of everybody's range.
+constexpr double nowhere = 1e9;
 } // namespace
 
 template <int dim>
@@ -39,7 +39,7 @@ RowKernel<dim>::RowKernel(const Crystal<dim> &crystal, const packings::Packing<d
   for (const Vector<dim> &bond : rows_.bonds())
     bonds_.insert(bonds_.end(), bond.data(), bond.data() + dim);
   for (int c = 0; c < dim; ++c) {
-    displacement_[c].assign(n, nowhere);
+    displacement_[c].assign(n, nowhere * cutoff_);
     force_[c].assign(n, 0.);
   }
   density_.assign(n, 0.);

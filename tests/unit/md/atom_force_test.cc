@@ -245,6 +245,25 @@ TEST(AtomForceTest, SavedStatesGoOnToTheLastBit)
 }
 
 // 300 K for 2 ps: neighbours are many times looked for anew, the energy stays.
+// Lists last as long in any unit of length: atoms wander, and lists are built anew after many
+// steps.
+TEST(AtomForceTest, ListsLastInAnyUnits)
+{
+  const auto n_builds = [](double unit) {
+    Body<3> body = make_body<3>(lennard_jones({"A", 1}, 1, unit), CrystalKind::fcc, {4, 4, 4});
+    body.options.keeps_neighbours = false;
+    auto force = body.force();
+    for (int k = 0; k < 20; ++k) {
+      body.disturb(0.008 * k * unit);
+      force.compute(body.atoms, 0);
+    }
+    return force.list().n_builds();
+  };
+  EXPECT_LT(n_builds(3.4e-10), 6);
+  for (const double unit : {1e-3, 1., 1e3})
+    EXPECT_LE(n_builds(unit), n_builds(3.4e-10)) << unit;
+}
+
 TEST(AtomForceTest, EnergyIsKeptInMotion)
 {
   auto body = make_body<3>(foiles_copper(), CrystalKind::fcc, {3, 3, 3}, {true, true, true});

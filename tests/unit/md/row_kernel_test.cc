@@ -91,6 +91,20 @@ TEST_F(RowKernelTest, AgreesWithTheOracleOnAllInstructionSets)
 }
 
 // Runs that are longer than a block and rows in several vectors, with a last one in part.
+// Of reduced units: a spacing of about 1 m.
+TEST_F(RowKernelTest, AgreesInAnyUnits)
+{
+  for (const double unit : {1., 1e3}) {
+    Body<3> body = cut_body<3>(lennard_jones({"A", 1}, 1, unit), CrystalKind::fcc, {3, 4, 2},
+                               {true, true, true});
+    body.disturb(0.02 * unit);
+    compare(body);
+    Body<2> plane = cut_body<2>(lennard_jones({"A", 1}, 1, unit), CrystalKind::triangular, {9, 7});
+    plane.disturb(0.02 * unit);
+    compare(plane);
+  }
+}
+
 TEST_F(RowKernelTest, AgreesAlongLongRows)
 {
   auto body = make_body<2>(plane_atoms(), CrystalKind::triangular, {75, 2});
