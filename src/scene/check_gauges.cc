@@ -252,6 +252,7 @@ private:
   void virial_stress()
   {
     atoms_for("it sums what bonds between atoms bear", "choose \"stress\"");
+    particles_for("it sums what bonds between atoms bear");
     if (f_.given(key_ + "/lower") || f_.given(key_ + "/upper"))
       box_in_body();
   }
