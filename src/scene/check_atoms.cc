@@ -111,6 +111,13 @@ void check_temperature(const Scene &scene, Findings &f)
   if (!scene.initial_motion.empty())
     refuse("/initial_motion", "\"initial_motion\"", "atoms start with the velocities of their heat",
            "remove one of the two");
+  for (std::size_t l = 0; l < scene.loads.size(); ++l)
+    if (const std::string load = fmt::format("/loads/{}", l);
+        scene.loads[l].absorbing && f.sound({load}))
+      refuse(load + "/absorbing", fmt::format("\"absorbing\" in {}", load),
+             "the dashpots of such a side take the heat of what they hold, and give none back",
+             is_coupled ? "remove it; a larger mesh puts off what comes back"
+                        : "remove it; /atoms/zone_friction is a friction with its noise");
   if (is_coupled && scene.coupling.fine_damper == 0)
     f.warning(
         "/coupling/fine_damper",
