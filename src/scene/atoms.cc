@@ -91,8 +91,51 @@ md::CrystalKind kind_of(const Scene &scene)
   return scene.zone.packing == PackingKind::bcc ? md::CrystalKind::bcc : md::CrystalKind::fcc;
 }
 
-/// Shortest way along an axis after which the crystal repeats itself; 0 where it is longer than
-/// `most`.
+/// What lay on a joined side lies on it again where that has moved, and what went beyond still
+/// does: cuts and openings that went through the specimen go through.
+void follow_sides(int axis, double old_lower, double old_upper, Scene &scene)
+{
+  Specimen &s = scene.specimen;
+  const double tolerance = 1e-9 * (old_upper - old_lower);
+  const auto follow = [&](Point &p) {
+    if (p[axis] >= old_upper - tolerance)
+      p[axis] += s.upper(axis) - old_upper;
+    else if (p[axis] <= old_lower + tolerance)
+      p[axis] += s.lower(axis) - old_lower;
+  };
+  const auto follow_all = [&](auto &balls, auto &boxes) {
+    for (Hole &ball : balls)
+      follow(ball.centre);
+    for (Notch &box : boxes) {
+      follow(box.lower);
+      follow(box.upper);
+    }
+  };
+  for (Crack &crack : s.cracks)
+    for (Point &p : crack.points)
+      follow(p);
+  follow_all(s.holes, s.notches);
+  for (Substitution &substitution : scene.atoms->substitutions)
+    follow_all(substitution.balls, substitution.boxes);
+  follow(scene.zone.lower);
+  follow(scene.zone.upper);
+  for (ZoneBox &box : scene.zone.boxes) {
+    follow(box.lower);
+    follow(box.upper);
+  }
+  for (LoadParameters &load : scene.loads) {
+    follow(load.within.lower);
+    follow(load.within.upper);
+  }
+  for (GaugeParameters &gauge : scene.gauges) {
+    follow(gauge.lower);
+    follow(gauge.upper);
+    for (Point &p : gauge.points)
+      follow(p);
+  }
+}
+} // namespace
+
 template <int dim>
 double period_along(const md::Crystal<dim> &crystal, int axis, double most)
 {
@@ -116,6 +159,8 @@ double period_along(const md::Crystal<dim> &crystal, int axis, double most)
   return shortest;
 }
 
+namespace
+{
 template <int dim>
 void fit_periods(const md::Crystal<dim> &crystal, Scene &scene)
 {
@@ -123,6 +168,7 @@ void fit_periods(const md::Crystal<dim> &crystal, Scene &scene)
     if (!scene.specimen.is_periodic(c))
       continue;
     double &size = scene.specimen.size[c];
+    const double lower = scene.specimen.lower(c), upper = scene.specimen.upper(c);
     const double period = period_along<dim>(crystal, c, size * 1.5);
     if (period == 0)
       throw core::KeyedError(
@@ -131,6 +177,7 @@ void fit_periods(const md::Crystal<dim> &crystal, Scene &scene)
           fmt::format("the specimen is {:.6g} m long there", size),
           "make it longer, or give the crystal a simpler orientation");
     size = std::max(1., std::round(size / period)) * period;
+    follow_sides(c, lower, upper, scene);
   }
 }
 
@@ -378,6 +425,8 @@ template md::ThermalLattice thermal_lattice_of<2>(const Scene &);
 template md::ThermalLattice thermal_lattice_of<3>(const Scene &);
 template md::CubicConstants thermal_constants_of<2>(const Scene &);
 template md::CubicConstants thermal_constants_of<3>(const Scene &);
+template double period_along(const md::Crystal<2> &, int, double);
+template double period_along(const md::Crystal<3> &, int, double);
 template md::Crystal<2> crystal_of(const Scene &);
 template md::Crystal<3> crystal_of(const Scene &);
 } // namespace ligament::program

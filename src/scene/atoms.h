@@ -11,6 +11,11 @@ namespace ligament::program
 template <int dim>
 md::Crystal<dim> crystal_of(const Scene &scene);
 
+/// m: shortest way along an axis after which the crystal repeats itself; 0 where it is longer than
+/// `most`.
+template <int dim>
+double period_along(const md::Crystal<dim> &crystal, int axis, double most);
+
 /// Names of the species of its atoms, that of the crystal first.
 std::vector<std::string> species_of(const Scene &scene);
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::program
 {
@@ -156,6 +157,12 @@ packings::Packing<dim> make_crystal_packing(const Scene &scene, core::Log &log)
     return body.distance(x) > -1e-9 * crystal.spacing() &&
            (parts.boxes.empty() || parts.distance(x) > 0);
   };
+  for (int c = 0; c < dim; ++c)
+    if (specimen.periodic[c]) {
+      const double size = specimen.upper[c] - specimen.lower[c];
+      log.info("along {} the specimen's size is now {:.6g} m ({} periods of the crystal)", "xyz"[c],
+               size, std::lround(size / period_along<dim>(crystal, c, 1.5 * size)));
+    }
   packings::Packing<dim> packing = md::cut_crystal<dim>(crystal, shape);
   packing.cuts = body.cracks;
   substitute<dim>(scene, packing, log);

@@ -1,9 +1,18 @@
-// Cracks and openings of crystals go on across joined sides; forces act on parts of others.
+// Cracks and openings of crystals go on across joined sides, wherever these come to lie; gauges
+// know initial cracks; forces and supports act on parts of sides; what heat begins with and says.
+#include "src/output/run_folder.h"
+#include "src/simulation/doubts.h"
+#include "src/simulation/gauges/gauge_set.h"
+#include "src/simulation/heat.h"
+#include "src/simulation/make_force.h"
+#include "src/simulation/simulation.h"
 #include "tests/support/atom_bodies.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 
 using namespace ligament;
 using namespace ligament::program;
@@ -69,5 +78,29 @@ TEST(AtomsUnderLoad, ForcesOnPartsOfSidesAreMet)
     const double before = unit.body.force()->reaction(0)[1];
     EXPECT_NEAR(std::abs(before), 1e-9, 1e-15) << half;
   }
+}
+
+// The thickness of iron becomes seven periods, a little more than 2 nm.
+TEST(AtomsAtJoinedSides, CutsFollowSidesThatMove)
+{
+  const double half = 1.5e-9;
+  const std::vector<std::string> overrides = {
+      R"(/atoms={"potential": "zhou", "species": "Fe"})", R"(/discrete_zone/packing="bcc")",
+      R"(/specimen/size=["6.5 nm", "5.4 nm", "2 nm"])",
+      R"(/specimen/cracks=[{"points": [["-1.5 nm", 0, "-1 nm"], ["1.5 nm", 0, "-1 nm"],
+                                       ["1.5 nm", 0, "1 nm"], ["-1.5 nm", 0, "1 nm"]]}])"};
+  AtomsOfScene<3> unit(copper_bar, overrides);
+  ASSERT_GT(std::abs(unit.scene.specimen.size[2] - 2e-9), 1e-12);
+  auto &atoms = unit.atoms();
+  int n_beside = 0;
+  unit.body.force()->for_each_neighbour(atoms, [&](const particles::Neighbour &n) {
+    const Vector<3> a = get(atoms.reference, n.i), b = get(atoms.reference, n.j);
+    if (a[1] * b[1] >= 0)
+      return;
+    const double x = a[0] + (b[0] - a[0]) * a[1] / (a[1] - b[1]);
+    EXPECT_GT(std::abs(x), half * (1 - 1e-9));
+    ++n_beside;
+  });
+  EXPECT_GT(n_beside, 100);
 }
 } // namespace
