@@ -40,6 +40,21 @@ AtomBody<dim> make_body(const Crystal<dim> &crystal, const packings::Packing<dim
   return body;
 }
 
+/// Bonds that are gone; the others have kept their order.
+template <int dim>
+std::vector<Bond<dim>> missing_ones(const std::vector<Bond<dim>> &before,
+                                    const std::vector<Bond<dim>> &after)
+{
+  std::vector<Bond<dim>> missing;
+  auto kept = after.begin();
+  for (const Bond<dim> &b : before)
+    if (kept != after.end() && kept->i == b.i && kept->j == b.j && kept->reference == b.reference)
+      ++kept;
+    else
+      missing.push_back(b);
+  return missing;
+}
+
 double sum(const std::vector<double> &values)
 {
   return particles::block_sum(int(values.size()), [&](int i) { return values[i]; }).value();
@@ -58,14 +73,12 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
   const Particles atoms = at_rest();
   list_.build<dim>(atoms.reference, atoms.displacement);
   whole_coordination_ = count_neighbours(atoms);
+  const std::vector<Bond<dim>> uncut = nearest_neighbours(atoms);
   body_.screen.apply(list_);
   reference_density_ = densities(atoms);
   reference_energy_ = whole_energy(atoms);
-  std::vector<Bond<dim>> nearest;
-  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
-    if (b.length < 1.05 * crystal.spacing())
-      nearest.push_back(b);
-  });
+  std::vector<Bond<dim>> nearest = nearest_neighbours(atoms);
+  cut_ = missing_ones(uncut, nearest);
   const double n_nearest = double(
       std::count_if(crystal.half_bonds().begin(), crystal.half_bonds().end(),
                     [&](const Vector<dim> &b) { return b.norm() < 1.05 * crystal.spacing(); }));
@@ -81,6 +94,17 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
   if (options.keeps_neighbours && body_.screen.is_empty() &&
       std::adjacent_find(species.begin(), species.end(), std::not_equal_to<>()) == species.end())
     rows_.emplace(crystal, packing, species[0], list_.cutoff() + list_.skin());
+}
+
+template <int dim>
+std::vector<Bond<dim>> AtomForce<dim>::nearest_neighbours(const Particles &atoms) const
+{
+  std::vector<Bond<dim>> nearest;
+  for_each_present_bond(atoms, false, [&](const Bond<dim> &b) {
+    if (b.length < 1.05 * crystal_.spacing())
+      nearest.push_back(b);
+  });
+  return nearest;
 }
 
 template <int dim>

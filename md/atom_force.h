@@ -80,7 +80,7 @@ public:
 
   /// Between nearest neighbours, with areas that close around an atom of the crystal and fill its
   /// volume (in triangular and face-centred crystals those of its cell); atoms at the surface have
-  /// no faces there.
+  /// no faces there. Pairs that the cuts part have one that is not bonded.
   void for_each_face(const Particles &atoms,
                      const std::function<void(const particles::FaceView<dim> &)> &visit,
                      const std::vector<int> *of = nullptr) const override;
@@ -124,6 +124,8 @@ public:
 private:
   /// m: farther apart, two atoms are no nearest neighbours.
   double shell_limit() const;
+  /// Pairs of the list as it stands.
+  std::vector<Bond<dim>> nearest_neighbours(const Particles &atoms) const;
   /// Within the shell limit; of an atom of the crystal, and of all as the list stands.
   int coordination_of_crystal() const;
   std::vector<int> count_neighbours(const Particles &atoms) const;
@@ -158,6 +160,7 @@ private:
   AtomLoads<dim> loads_;
   particles::CoupledEdge<dim> edge_;
   PartedBonds<dim> parted_;
+  std::vector<Bond<dim>> cut_; // nearest neighbours of the reference that the cuts part
   int looked_build_ = 0; // number of the list at the last look for parted bonds
   std::vector<int> whole_coordination_; // at rest, of the body without its cuts
   std::vector<double> reference_density_;

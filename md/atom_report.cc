@@ -49,13 +49,16 @@ void AtomForce<dim>::for_each_face(
 {
   const double area = parted_.area();
   const auto is_asked = [&](int i) { return !of || std::binary_search(of->begin(), of->end(), i); };
-  parted_.for_each_bond([&](const Bond<dim> &b, bool is_parted) {
+  const auto both_sides = [&](const Bond<dim> &b, bool is_parted) {
     const Vector<dim> normal = b.reference.normalized(), half = b.reference / 2;
     if (is_asked(b.i))
       visit({b.i, b.j, normal, area, get(atoms.reference, b.i) + half, !is_parted});
     if (is_asked(b.j))
       visit({b.j, b.i, -normal, area, get(atoms.reference, b.j) - half, !is_parted});
-  });
+  };
+  parted_.for_each_bond(both_sides);
+  for (const Bond<dim> &b : cut_)
+    both_sides(b, true);
 }
 
 template <int dim>

@@ -26,7 +26,7 @@ bool cuts(const Crack &crack, const BrokenBond &face, double spacing, int dim)
 template <int dim>
 void doubt_cracks(const Scene &scene, const CoupledBody<dim> &body, core::Log &log)
 {
-  if (!body.zone || scene.atoms)
+  if (!body.zone)
     return;
   const auto &cracks = scene.specimen.cracks;
   for (std::size_t k = 0; k < cracks.size(); ++k)

@@ -103,4 +103,33 @@ TEST(AtomsAtJoinedSides, CutsFollowSidesThatMove)
   });
   EXPECT_GT(n_beside, 100);
 }
+
+TEST(AtomsWithACrack, ItsFacesAreKnownFromTheStart)
+{
+  const double d = AtomsOfScene<2>(plane_of_atoms).scene.zone.spacing;
+  AtomsOfScene<2> unit(
+      plane_of_atoms,
+      {fmt::format(R"(/specimen/cracks=[{{"points": [[{:.17g}, 0], [{:.17g}, 0]]}}])", -10 * d,
+                   10 * d),
+       R"(/gauges=[{"name": "tip", "kind": "crack_tip", "points": [[0, 0]], "direction": [1, 0]}])"});
+  // Two pairs per atom of a row, whose middles are half a spacing apart.
+  const auto values = GaugeSet<2>(unit.scene, unit.body).read(unit.body, 0);
+  EXPECT_NEAR(values[0], 10 * d, 0.5 * d);
+  EXPECT_EQ(values[1], 0);
+  double length = 0;
+  for (const BrokenBond &face : unit.body.cut_faces) {
+    EXPECT_NEAR(face.centroid[1], 0, 1e-6 * d);
+    length += face.size * std::abs(face.normal[1]);
+  }
+  EXPECT_NEAR(length, 20 * d, d);
+  doubt_body(unit.scene, unit.body, unit.log);
+  EXPECT_TRUE(unit.log.warnings().empty());
+  // One in a hole cuts nothing.
+  AtomsOfScene<2> none(plane_of_atoms,
+                       {R"(/specimen/notches=[{"lower": ["-4 nm", "-2 nm"],
+                                                              "upper": ["4 nm", "2 nm"]}])",
+                        R"(/specimen/cracks=[{"points": [["-3 nm", 0], ["3 nm", 0]]}])"});
+  doubt_body(none.scene, none.body, none.log);
+  EXPECT_EQ(none.log.warnings().size(), 1u);
+}
 } // namespace
