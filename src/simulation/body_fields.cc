@@ -128,6 +128,7 @@ CellFields cell_fields(const CoupledBody<dim> &body)
     for (int c = 0; c < dim; ++c)
       fields.reference[3 * i + c] = mesh.nodes[i][c];
   std::vector<double> tensor(6 * mesh.n_nodes(), 0.), count(mesh.n_nodes(), 0.);
+  const FarStress<dim> far_stress(body);
   for (int cell = 0; cell < mesh.n_cells(); ++cell) {
     const auto gradients = fem::centre_gradients(mesh, cell);
     Eigen::Matrix<double, dim, dim> gradient = Eigen::Matrix<double, dim, dim>::Zero();
@@ -136,7 +137,7 @@ CellFields cell_fields(const CoupledBody<dim> &body)
       gradient += get(body.far->displacement, mesh.cells[cell][a]) * gradients.col(a).transpose();
     }
     double stress[6];
-    put_tensor<dim>(far_stress<dim>(*body.far, gradient), body, stress);
+    put_tensor<dim>(far_stress(gradient), body, stress);
     for (const int node : mesh.cells[cell]) {
       count[node] += 1;
       for (int k = 0; k < 6; ++k)

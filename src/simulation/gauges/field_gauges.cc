@@ -145,7 +145,7 @@ void StressGauge<dim>::read(GaugeLook<dim> &look, double *values)
       stress[c] = sums[c].value();
   }
   if (mesh_share_ > 0)
-    stress += mesh_share_ * far_stress<dim>(*look.body.far, mesh_.gradient(look.body));
+    stress += mesh_share_ * FarStress<dim>(look.body)(mesh_.gradient(look.body));
   put_turned<dim>(tensor_of<dim>(stress), angle_, values);
 }
 

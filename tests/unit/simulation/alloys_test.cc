@@ -1,5 +1,6 @@
 // Atoms of other species on sites of a crystal: who is of which one, what they weigh, their energy
-// written down plainly, how outputs call them, and that a coupled body keeps its energy.
+// written down plainly, how outputs call them, and that a coupled body keeps its energy. The stress
+// that nodes of a mesh beside atoms have.
 #include "core/check.h"
 #include "core/files.h"
 #include "md/table_file.h"
@@ -7,6 +8,8 @@
 #include "src/output/xyz.h"
 #include "src/simulation/body_fields.h"
 #include "src/simulation/energy_ledger.h"
+#include "src/simulation/gauges/gauge_set.h"
+#include "src/simulation/regime_control.h"
 #include "src/simulation/simulation.h"
 #include "tests/oracle/atom_oracle.h"
 #include "tests/support/atom_bodies.h"
@@ -242,5 +245,37 @@ TEST(Alloys, OverlapIsOfTheCrystalAlone)
 {
   EXPECT_EQ(fault_at(1.01), "");
   EXPECT_NE(fault_at(0.9).find("/atoms/substitutions"), std::string::npos);
+}
+
+// Cells that obey Cauchy and Born's law tell its stress: all atoms beside them have the same.
+TEST(CopperInAMesh, NodesHaveTheStressOfTheAtoms)
+{
+  for (const double strain : {0.03, -0.02}) {
+    AtomsOfScene<2> unit(
+        copper_plane, {R"(/atoms={"potential": "zhou", "species": "Cu"})",
+                       R"(/coupling={"overlap_cells": 6, "regime": "nonlinear"})",
+                       R"(/gauges=[{"name": "s", "kind": "stress", "points": [["20 nm", 0]]}])"});
+    const RegimeControl<2> regime(unit.scene.coupling.regime, unit.body);
+    Eigen::Matrix2d gradient;
+    gradient << 0.3 * strain, 0.5 * strain, 0, strain;
+    unit.impose([&](const Vector<2> &x) { return Vector<2>(gradient * x); });
+    Components<3> stress;
+    unit.body.force()->stresses(unit.atoms(), stress);
+    int middle = 0;
+    for (int i = 0; i < unit.atoms().size(); ++i)
+      if (get(unit.atoms().reference, i).norm() < get(unit.atoms().reference, middle).norm())
+        middle = i;
+    const Vector<3> expected = get(stress, middle);
+    const CellFields cells = cell_fields(unit.body);
+    const Field *of_nodes = find_field(cells.node_fields, "stress");
+    ASSERT_TRUE(of_nodes);
+    const int voigt[] = {0, 1, 3};
+    for (std::size_t n = 0; n < cells.reference.size() / 3; ++n)
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(of_nodes->values[6 * n + voigt[c]], expected[c], 1e-3 * expected.norm());
+    const auto gauge = GaugeSet<2>(unit.scene, unit.body).read(unit.body, 0);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(gauge[c], expected[c], 1e-3 * expected.norm()) << c;
+  }
 }
 } // namespace
