@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 
 namespace ligament::md
@@ -19,11 +20,13 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
   for (auto &component : stiffness_)
     component.assign(packing.size(), 0.);
   std::map<std::pair<int, int>, int> holder; // load that holds component c of atom i
+  // And of sides: how much of its share of their area supports hold already, m^2.
+  std::map<std::array<int, 3>, double> held;
   const auto for_each_face_of = [&](int l, auto &&visit) {
     for (const auto &face : packing.boundary_faces)
       if (face.boundary == loads_[l].boundary)
         if (const auto inside = packings::OuterFace<dim>(face, packing).inside({loads_[l].part}))
-          visit(face.i, inside->area);
+          visit(face, inside->area);
   };
   for (int l = 0; l < int(loads_.size()); ++l) {
     core::require(!loads_[l].pressure,
@@ -31,11 +34,15 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
                               "traction",
                               l));
     if (loads_[l].kind == Kind::velocity || loads_[l].kind == Kind::displacement)
-      for_each_face_of(l, [&](int i, double area) {
+      for_each_face_of(l, [&](const packings::BoundaryFace<dim> &face, double area) {
+        const int i = face.i;
         for (int c = 0; c < dim; ++c)
           if (loads_[l].value[c]) {
-            const int first = holder.emplace(std::pair(i, c), l).first->second;
-            core::require(loads_[first].boundary != loads_[l].boundary || first == l,
+            holder.emplace(std::pair(i, c), l);
+            // Parts of a side that meet share the atoms there.
+            double &sum = held[{i, c, face.boundary}];
+            sum += area;
+            core::require(sum <= face.area * (1 + 1e-6),
                           fmt::format("two loads prescribe component {} of an atom on boundary {}",
                                       c, loads_[l].boundary));
             springs_.push_back({i, c, l, stiffness * area});
@@ -45,7 +52,8 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
   }
   for (int l = 0; l < int(loads_.size()); ++l)
     if (loads_[l].kind == Kind::traction)
-      for_each_face_of(l, [&](int i, double area) {
+      for_each_face_of(l, [&](const packings::BoundaryFace<dim> &face, double area) {
+        const int i = face.i;
         Vector<dim> acting = Vector<dim>::Constant(area);
         for (int c = 0; c < dim; ++c)
           if (const auto held = holder.find({i, c});

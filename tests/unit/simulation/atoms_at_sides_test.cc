@@ -132,4 +132,49 @@ TEST(AtomsWithACrack, ItsFacesAreKnownFromTheStart)
   doubt_body(none.scene, none.body, none.log);
   EXPECT_EQ(none.log.warnings().size(), 1u);
 }
+
+// Atoms where two parts of a side meet belong to both, by their shares.
+TEST(AtomsUnderLoad, SupportsOnAdjoiningPartsAreThatOfTheWhole)
+{
+  const auto reactions = [](const std::string &loads, int n) {
+    AtomsOfScene<2> unit(plane_of_atoms, {"/loads=" + loads});
+    auto &state = unit.atoms();
+    for (double &u : state.displacement[1])
+      u = 1e-12;
+    unit.body.force()->compute(state, 0);
+    double sum = 0;
+    for (int l = 0; l < n; ++l)
+      sum += unit.body.force()->reaction(l)[1];
+    return sum;
+  };
+  const double whole = reactions(R"([{"boundary": "top", "velocity": [null, 0]}])", 1);
+  EXPECT_LT(whole, 0);
+  for (const char *at : {"0", "\"0.07 nm\"", "\"3.31 nm\""})
+    EXPECT_NEAR(reactions(fmt::format(R"([{{"boundary": "top", "velocity": [null, 0], "to": {0}}},
+                                          {{"boundary": "top", "velocity": [null, 0], "from": {0}}}])",
+                                      at),
+                          2) /
+                    whole,
+                1, 1e-9)
+        << at;
+}
+
+TEST(AtomsUnderLoad, ForcesAtPointsActOnTheNearestAtoms)
+{
+  for (const char *at : {"0", "\"1.23 nm\"", "\"-4.56 nm\""}) {
+    AtomsOfScene<2> unit(
+        plane_of_atoms,
+        {fmt::format(R"(/loads=[{{"boundary": "top", "force": [0, "1 nN"], "from": {0}, "to": {0}}},
+                            {{"boundary": "bottom", "velocity": [0, 0]}}])",
+                     at)});
+    unit.body.force()->compute(unit.atoms(), 0);
+    EXPECT_NEAR(unit.body.force()->reaction(0)[1], 1e-9, 1e-15) << at;
+  }
+  AtomsOfScene<3> bar(copper_bar, {R"(/loads=[{"boundary": "top", "force": [0, "1 nN", 0],
+                   "within": {"lower": ["0.1 nm", "-9 nm", "0.2 nm"],
+                              "upper": ["0.1 nm", "9 nm", "0.2 nm"]}},
+                  {"boundary": "bottom", "velocity": [0, 0, 0]}])"});
+  bar.body.force()->compute(bar.atoms(), 0);
+  EXPECT_NEAR(bar.body.force()->reaction(0)[1], 1e-9, 1e-15);
+}
 } // namespace
