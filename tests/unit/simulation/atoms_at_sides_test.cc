@@ -177,4 +177,29 @@ TEST(AtomsUnderLoad, ForcesAtPointsActOnTheNearestAtoms)
   bar.body.force()->compute(bar.atoms(), 0);
   EXPECT_NEAR(bar.body.force()->reaction(0)[1], 1e-9, 1e-15);
 }
+
+const std::vector<std::string> warm = {R"(/atoms/temperature="5 K")",
+                                       R"(/atoms/lattice_parameter="3.79 angstrom")",
+                                       "/time/step_fraction=0.1"};
+
+TEST(WarmAtoms, DriftOnlyWhereASupportTakesThem)
+{
+  const auto drift = [](const std::vector<std::string> &further) {
+    auto overrides = warm;
+    overrides.insert(overrides.end(), further.begin(), further.end());
+    AtomsOfScene<2> unit(plane_of_atoms, overrides);
+    start_heat(unit.scene, unit.body, unit.log);
+    Vector<2> momentum = Vector<2>::Zero(), all = momentum;
+    for (int i = 0; i < unit.atoms().size(); ++i) {
+      const Vector<2> p = unit.atoms().mass[i] * get(unit.atoms().velocity, i);
+      momentum += p;
+      all += p.cwiseAbs();
+    }
+    return Vector<2>(momentum.cwiseAbs().cwiseQuotient(all));
+  };
+  EXPECT_LT(drift({}).maxCoeff(), 1e-13);
+  const Vector<2> held = drift({R"(/loads=[{"boundary": "bottom", "velocity": [null, 0]}])"});
+  EXPECT_LT(held[0], 1e-13);
+  EXPECT_GT(held[1], 1e-6); // as drawn
+}
 } // namespace
