@@ -79,7 +79,7 @@ template <int dim>
 void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
 {
   auto bodies = body.bodies();
-  if (auto *const alone = dynamic_cast<coupling::HeatedParticles<dim> *>(body.coupler.get()))
+  if (auto *const alone = dynamic_cast<coupling::HeatedParticles<dim> *>(body.coupler.get())) {
     alone->start(bodies);
     stop_drift(scene, body.zone->state);
   } else
@@ -90,6 +90,29 @@ void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log)
   body.started += read_ledger(body, first, 0).residual();
 }
 
+template <int dim>
+void tell_heat(Reference &reference, CoupledBody<dim> &body)
+{
+  const std::string error = "thermal_load_error";
+  auto &figures = body.figures;
+  // A run that goes on need not look for it again.
+  reference.value("thermal_lattice", [&] { return figures.at("lattice_parameter").value; });
+  if (const auto found = figures.find(error); found != figures.end())
+    reference.value(error, [&] { return found->second.value; });
+  for (const std::string &name : reference.names(error))
+    figures[name] = {reference.value(name, {}), ""};
+  for (const char *name : {"C11", "C12", "C33", "C44"})
+    figures.erase(name); // of a body without mesh they are not asked for
+  if (!body.far)
+    return;
+  const auto &c = body.far->body().stiffness;
+  figures["C11"] = {c(0, 0), "Pa"};
+  figures["C12"] = {c(0, 1), "Pa"};
+  figures[dim == 2 ? "C33" : "C44"] = {c(dim, dim), "Pa"};
+}
+
+template void tell_heat(Reference &, CoupledBody<2> &);
+template void tell_heat(Reference &, CoupledBody<3> &);
 template void start_heat(const Scene &, CoupledBody<2> &, core::Log &);
 template void start_heat(const Scene &, CoupledBody<3> &, core::Log &);
 } // namespace ligament::program

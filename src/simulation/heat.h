@@ -14,4 +14,9 @@ Stiffness<dim> thermal_stiffness(const Scene &scene, Reference &reference, core:
 /// (theory.md eq. (C30)).
 template <int dim>
 void start_heat(const Scene &scene, CoupledBody<dim> &body, core::Log &log);
+
+/// Puts into the figures of the body what is known of its heat, also where a run goes on: the error
+/// of the thermal load, and C at its temperature in place of that of the crystal at rest.
+template <int dim>
+void tell_heat(Reference &reference, CoupledBody<dim> &body);
 } // namespace ligament::program

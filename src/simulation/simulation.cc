@@ -39,6 +39,8 @@ Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FI
     start_motion(scene_, body_);
   if (!from && scene_.is_warm())
     start_heat(scene_, body_, log_);
+  if (scene_.is_warm())
+    tell_heat(reference_, body_);
   if (from)
     go_on_from(*from);
   else if (body_.seeds && ranks.is_first())

@@ -202,4 +202,32 @@ TEST(WarmAtoms, DriftOnlyWhereASupportTakesThem)
   EXPECT_LT(held[0], 1e-13);
   EXPECT_GT(held[1], 1e-6); // as drawn
 }
+
+TEST(WarmAtoms, FiguresAreThoseOfTheTemperatureAfterAResumeToo)
+{
+  auto overrides = warm;
+  overrides.push_back("/coupling/gap_filter=0");
+  const Scene scene = scene_of(plane_of_atoms, in_a_mesh(overrides));
+  Reference reference;
+  const std::map<std::string, double> found = {
+      {"thermal_c11", 5e9}, {"thermal_c12", 2e9}, {"thermal_c44", 1.5e9}, {"thermal_c_error", 1e7}};
+  for (const auto &[name, value] : found)
+    reference.value(name, [v = value] { return v; });
+  core::Log log;
+  core::Timers timers;
+  const auto figures_of = [&](std::optional<double> error) {
+    auto body = make_body<2>(scene, log, timers, reference, make_zone_force<2>);
+    if (error)
+      body.figures["thermal_load_error"] = {*error, ""};
+    tell_heat(reference, body);
+    return body.figures;
+  };
+  auto first = figures_of(3e-5), again = figures_of({});
+  for (auto *figures : {&first, &again}) {
+    EXPECT_EQ(figures->at("thermal_load_error").value, 3e-5);
+    EXPECT_NEAR(figures->at("C11").value, 5e9, 1);
+    EXPECT_NEAR(figures->at("C12").value, 2e9, 1);
+    EXPECT_NEAR(figures->at("C33").value, 1.5e9, 1);
+  }
+}
 } // namespace
