@@ -410,13 +410,16 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   const auto timing = timers_.scope(section_);
   if (const auto finding = guard_.look(body, step.time))
     report(*finding, step);
-  if (const auto finding = guard_.look_at_flow(body); finding && finding->is_excess)
-    report(finding->text, step);
+  if (can_look_)
+    if (const auto finding = guard_.look_at_flow(body); finding && finding->is_excess)
+      report(finding->text, step);
   attempt([&] {
-    record_history(body, step, damping);
+    if (can_look_)
+      record_history(body, step, damping);
     history_.flush();
   });
-  progress_.finish(progress_state(body, step, read_ledger(body, step, damping)));
+  progress_.finish(progress_state(
+      body, step, can_look_ ? read_ledger(body, step, damping) : EnergyLedger()));
   const auto bonds = broken_bonds(body);
   attempt([&] { write_bonds(folder_.broken_bonds(), bonds); });
   if (!body.cut_faces.empty())
@@ -437,8 +440,10 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
          record.peak_load ? "near the peak load" : "near the largest load");
   if (break_state_)
     keep(std::move(*break_state_), "broken", "when the load path is gone");
-  keep(present_state(body, step.time), "end", "at the end");
-  keep_states(body, std::move(states), record, pictures_until);
+  if (can_look_)
+    keep(present_state(body, step.time), "end", "at the end");
+  if (!states.empty())
+    keep_states(body, std::move(states), record, pictures_until);
   record.broken_time = broken_time_;
   record.trusted_until = trusted_until_;
   record.broken_bonds = n_broken(body);

@@ -58,6 +58,9 @@ public:
 
   /// Logs what is no state of the body any more, from when on nothing counts.
   Stop stop_by_guard(const std::string &finding, const coupling::StepTime &step);
+  /// The run ends within a step, where the state of the body can't be looked at: finish() completes
+  /// what has been seen before.
+  void look_no_more() { can_look_ = false; }
 
   /// Last row, last fields, pictures, tables; completes the record. A file that cannot be written
   /// does not keep the others from it: pictures are missed with a warning, the rest is a failure().
@@ -130,7 +133,7 @@ private:
   Progress progress_;
   FieldSeries fields_;
   long n_steps_, first_step_ = 0;
-  bool draws_pictures_, writes_, writes_pieces_ = false, in_static_phase_ = false;
+  bool draws_pictures_, writes_, writes_pieces_ = false, in_static_phase_ = false, can_look_ = true;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
   OverlapGuard<dim> guard_;

@@ -277,6 +277,15 @@ void Simulation<dim>::run_loop(const EndRequest &request, RunRecord &record)
       record.reason = fmt::format("{} at {:.4g} s, in step {} of {}", asked_by_, clock_.now.time,
                                   clock_.now.step, clock_.n_steps);
     }
+  } catch (const core::GuardStop &error) {
+    if (!ranks_.is_one())
+      throw; // the others wait
+    // Within a step: places and forces are of different times, if they are numbers.
+    if (!stop_)
+      stop_ = recorder_.stop_by_guard(error.what(), clock_.now);
+    recorder_.look_no_more();
+    record.status = "stopped";
+    record.reason = stop_->reason;
   } catch (const core::EnvironmentError &error) {
     if (!ranks_.is_one())
       throw; // the others wait

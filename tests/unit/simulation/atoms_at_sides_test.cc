@@ -230,4 +230,43 @@ TEST(WarmAtoms, FiguresAreThoseOfTheTemperatureAfterAResumeToo)
     EXPECT_NEAR(figures->at("C33").value, 1.5e9, 1);
   }
 }
+
+TEST(WarmAtoms, ALatticeThatWasFoundBelongsToItsTemperature)
+{
+  const auto read = [](const std::string &text, const std::string &temperature) {
+    return parse_scene(text, "atoms",
+                       {fmt::format(R"(/atoms/temperature="{}")", temperature), warm[2]});
+  };
+  const ReadResult first = read(plane_of_atoms, "5 K");
+  ASSERT_TRUE(first.scene);
+  const double cold = first.scene->atoms->lattice_parameter;
+  const ReadResult again = read(first.resolved.dump(), "5 K"),
+                   warmer = read(first.resolved.dump(), "15 K");
+  ASSERT_TRUE(again.scene && warmer.scene);
+  EXPECT_EQ(again.scene->atoms->lattice_parameter, cold);
+  EXPECT_GT(warmer.scene->atoms->lattice_parameter, cold * 1.001);
+}
+
+// A mesh that loads crush within a few steps: what the run has seen until then stays.
+TEST(AtomsInMotion, ARunThatEndsWithinAStepLeavesItsResults)
+{
+  const RunFolder folder{"blown_up"};
+  std::filesystem::remove_all(folder.path);
+  folder.create();
+  std::FILE *quiet = std::fopen("/dev/null", "w");
+  const Scene scene = scene_of(
+      plane_of_atoms,
+      in_a_mesh({R"(/coupling={"overlap_cells": 6, "regime": "nonlinear", "guard": "warn"})",
+                 R"(/loads=[{"boundary": "top", "velocity": [null, "-400 m/s"]},
+                            {"boundary": "bottom", "velocity": [null, "400 m/s"]}])",
+                 R"(/time/duration="100 ps")", R"(/output={"history_interval": "0.2 ps"})"}));
+  const RunRecord record = Simulation<2>(scene, folder, quiet, false).run();
+  std::fclose(quiet);
+  EXPECT_EQ(record.status, "stopped") << record.reason;
+  EXPECT_NE(record.reason.find("compressed by more than a fifth"), std::string::npos)
+      << record.reason;
+  EXPECT_TRUE(record.trusted_until.has_value());
+  for (const std::string &file : {folder.broken_bonds(), folder.history(), folder.record()})
+    EXPECT_TRUE(std::filesystem::exists(file)) << file;
+}
 } // namespace
