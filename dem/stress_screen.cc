@@ -16,6 +16,19 @@ constexpr int several_pages = 4096;
 /// Candidates in one table, or a quarter of all particles: more of them are looked at table by
 /// table, and none is kept.
 constexpr int most_at_once = 1 << 15;
+
+/// Ascending. Where a wave or a crack runs, those beside the ones of a step come next.
+template <int dim>
+std::vector<int> with_neighbours(const std::vector<int> &particles, const BondNetwork<dim> &bonds)
+{
+  std::vector<int> all = particles;
+  for (const int i : particles)
+    bonds.for_each_bond_of(
+        i, [&](BondId, const Bond<dim> &b) { all.push_back(b.i == i ? b.j : b.i); });
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
 } // namespace
 
 template <int dim>
@@ -30,7 +43,10 @@ std::vector<int> StressScreen<dim>::keep(const std::vector<int> &candidates, boo
     constexpr int slack = 1024;
     const bool mostly_others = n_candidates_ > 4 * n + slack;
     if (mostly_others || !find_lanes(candidates)) {
-      std::vector<int> all = candidates;
+      std::vector<int> all = with_neighbours(candidates, body.bonds);
+      constexpr int most_neighbours = 3;
+      if (int(all.size()) > most_neighbours * n)
+        all = candidates;
       if (!mostly_others && n_candidates_ < 2 * n) // those of before are likely to come again
         all.insert(all.end(), table_.particle.begin(), table_.particle.begin() + n_candidates_);
       lay_out(std::move(all), body);
