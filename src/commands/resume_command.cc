@@ -10,6 +10,7 @@
 #include "src/launcher/program.h"
 #include "src/scene/check_ranks.h"
 #include "src/scene/scene_difference.h"
+#include "src/simulation/reference.h"
 
 #include <fmt/format.h>
 
@@ -40,12 +41,22 @@ Checkpoint newest_checkpoint(const RunFolder &folder)
 
 /// The run's own scene unless another one is named. Particles that the run read from a file, or
 /// packed itself, lie in its folder.
-ReadResult scene_of(const CommandLine &line, const RunFolder &folder,
-                    const CheckpointManifest &manifest)
+ReadResult scene_of(const CommandLine &line, const RunFolder &folder, const Checkpoint &checkpoint)
 {
-  ReadResult input = line.scene.empty() ? parse_scene(json_text(manifest.scene, 2),
-                                                      folder.resolved_scene(), line.overrides)
-                                        : read_scene(line.scene, line.overrides);
+  const nlohmann::ordered_json &was = checkpoint.manifest.scene;
+  std::vector<std::string> overrides = line.overrides;
+  // That of a warm crystal takes a while to find, and is no key of the scene.
+  const std::string lattice = "thermal_lattice", key = "/atoms/lattice_parameter";
+  Reference reference(checkpoint.reference);
+  const bool is_known = line.scene.empty() && !reference.names(lattice).empty() &&
+                        was.value(nlohmann::ordered_json::json_pointer(key), 1.) == 0;
+  if (is_known)
+    overrides.push_back(fmt::format("{}={:.17g}", key, reference.value(lattice, {})));
+  ReadResult input = line.scene.empty()
+                         ? parse_scene(json_text(was, 2), folder.resolved_scene(), overrides)
+                         : read_scene(line.scene, overrides);
+  if (is_known && input.scene)
+    input.resolved["atoms"]["lattice_parameter"] = 0.;
   if (input.scene && input.scene->zone.packing == PackingKind::file)
     input.scene->zone.packing_file = folder.packing();
   return input;
@@ -126,7 +137,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
     checkpoint.reference.clear();
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
-  const ReadResult input = scene_of(line, folder, manifest);
+  const ReadResult input = scene_of(line, folder, checkpoint);
   const std::string name = line.scene.empty() ? folder.resolved_scene() : line.scene;
   require_one_mind(bool(input.scene), ranks);
   if (!input.scene)

@@ -255,10 +255,8 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
     if (!scene.atoms->file.empty())
       result.resolved["atoms"]["file"] = std::filesystem::absolute(scene.atoms->file).string();
   }
-  if (found_lattice > 0) { // whoever resumes the run need not look for it again
+  if (found_lattice > 0) // not echoed: whoever reads the scene may choose another temperature
     scene.atoms->lattice_parameter = found_lattice;
-    result.resolved["atoms"]["lattice_parameter"] = found_lattice;
-  }
   complete(scene);
   result.scene = std::move(scene);
   return result;
