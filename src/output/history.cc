@@ -63,7 +63,7 @@ void HistoryWriter::set(const std::string &name, double value)
   row_[column - columns_.begin()] = value;
 }
 
-void HistoryWriter::end_row()
+std::string HistoryWriter::take_row()
 {
   std::string line;
   for (double &value : row_) {
@@ -71,10 +71,22 @@ void HistoryWriter::end_row()
     line += fmt::format("{}{}", line.empty() ? "" : ",", value);
     value = std::numeric_limits<double>::quiet_NaN();
   }
-  file_.write(line + "\n");
+  return line + "\n";
+}
+
+void HistoryWriter::end_row()
+{
+  written_ = take_row();
+  file_.write(written_);
   if (++unflushed_ >= rows_per_flush_) {
     file_.flush();
     unflushed_ = 0;
   }
+}
+
+void HistoryWriter::end_last_row()
+{
+  if (const std::string row = take_row(); row != written_)
+    file_.write(row);
 }
 } // namespace ligament::program

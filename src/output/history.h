@@ -35,13 +35,18 @@ public:
   void set(const std::string &name, double value);
   /// Writes the values set since the last row; the others are nan.
   void end_row();
+  /// The same, but nothing where it would be the row before again.
+  void end_last_row();
   void flush() { file_.flush(); }
   /// All rows are on the disk.
   void sync() { file_.sync(); }
 
 private:
+  std::string take_row();
+
   std::vector<Column> columns_;
   std::vector<double> row_;
+  std::string written_; // the row before
   core::OutputFile file_;
   int rows_per_flush_;
   int unflushed_ = 0;

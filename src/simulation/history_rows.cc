@@ -74,7 +74,7 @@ HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
 
 template <int dim>
 void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTime &step,
-                           const HistoryRow &row)
+                           const HistoryRow &row, bool is_last)
 {
   const std::vector<double> values = gauges_.read(body, step.time);
   std::vector<double> errors;
@@ -112,7 +112,10 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
     writer_->set(gauges_.columns()[k].name, values[k]);
   for (std::size_t k = 0; k < servos_.size(); ++k)
     writer_->set(servos_[k].column().name, errors[k]);
-  writer_->end_row();
+  if (is_last)
+    writer_->end_last_row();
+  else
+    writer_->end_row();
 }
 
 template class HistoryRows<2>;

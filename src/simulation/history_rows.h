@@ -29,7 +29,9 @@ public:
   HistoryRows(const Scene &scene, const RunFolder &folder, const CoupledBody<dim> &body,
               bool goes_on);
 
-  void add(const CoupledBody<dim> &body, const coupling::StepTime &step, const HistoryRow &row);
+  /// The last row may have been written by the look before.
+  void add(const CoupledBody<dim> &body, const coupling::StepTime &step, const HistoryRow &row,
+           bool is_last = false);
   void flush()
   {
     if (writer_)

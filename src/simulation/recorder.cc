@@ -167,7 +167,8 @@ std::optional<Stop> Recorder<dim>::look_at_flow(const CoupledBody<dim> &body,
 
 template <int dim>
 EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
-                                           const coupling::StepTime &step, double damping)
+                                           const coupling::StepTime &step, double damping,
+                                           bool is_last)
 {
   next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
   const Reading r = machine_.read(body, step.time);
@@ -180,7 +181,8 @@ EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
     keep_copies(body, step.time, r.load);
-  history_.add(body, step, row); // last: a disk may refuse it, when ranks have told each other all
+  // Behind all else: a disk may refuse it, when ranks have told each other all.
+  history_.add(body, step, row, is_last);
   return ledger;
 }
 
@@ -415,7 +417,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
       report(finding->text, step);
   attempt([&] {
     if (can_look_)
-      record_history(body, step, damping);
+      record_history(body, step, damping, true);
     history_.flush();
   });
   progress_.finish(progress_state(

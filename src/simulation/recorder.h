@@ -99,9 +99,9 @@ private:
   template <typename Write>
   void attempt(Write &&write);
   std::optional<Stop> look_at_flow(const CoupledBody<dim> &body, const coupling::StepTime &step);
-  /// A row; returns its energies.
+  /// A row; returns its energies. The last one is not written twice.
   EnergyLedger record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
-                              double damping);
+                              double damping, bool is_last = false);
   bool keeps_copies(const CoupledBody<dim> &body) const;
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 using namespace ligament::tests;
 
@@ -214,6 +215,79 @@ TEST(Program, CheckRefusesWithTheKeyToChange)
     EXPECT_EQ(outcome.code, 2) << setting;
     EXPECT_NE(outcome.json()["errors"].dump().find(key), std::string::npos) << outcome.last_line;
   }
+}
+
+std::vector<std::string> lines_of(const std::string &file)
+{
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);)
+    lines.push_back(line);
+  return lines;
+}
+
+// A run that is asked to end does so behind a look, which has written its last row.
+TEST(Program, NoRowIsWrittenTwice)
+{
+  std::filesystem::remove_all("rows");
+  const auto outcome = ligament("run " + scene_file("rows.json") + pulled +
+                                "--set /output/history_interval=1e-3 --set /time/duration=1e4 "
+                                "--wall-time 0.3 --output rows");
+  ASSERT_EQ(outcome.code, 124);
+  const auto lines = lines_of("rows/history.csv");
+  ASSERT_GE(lines.size(), 5u);
+  for (std::size_t row = 1; row < lines.size(); ++row)
+    EXPECT_NE(lines[row], lines[row - 1]);
+}
+
+TEST(Program, NewToStandardOutputEndsWithAnObject)
+{
+  const auto plain = ligament("new three_point_bending -o -");
+  const auto outcome = ligament("new three_point_bending -o - --json");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.output, plain.output + outcome.last_line + "\n");
+  EXPECT_EQ(outcome.json()["status"], "done");
+  EXPECT_EQ(outcome.json()["kind"], "three_point_bending");
+}
+
+TEST(Program, CheckDrawsTheBoxesOfGauges)
+{
+  const std::string crystal = LIGAMENT_SOURCE_DIR "/tests/support/scenes/crystal.json";
+  const auto drawn = [&](const std::string &gauge) {
+    std::filesystem::remove_all("drawn");
+    const auto outcome =
+        ligament("check " + crystal + " --draw -o drawn --set '/gauges=[" + gauge + "]'");
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    std::ifstream in("drawn/check.png", std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string bare = drawn("");
+  EXPECT_EQ(drawn(R"({"name": "all", "kind": "virial_stress"})"), bare);
+  EXPECT_NE(drawn(R"({"name": "box", "kind": "virial_stress", "lower": [0, 0]})"), bare);
+}
+
+// The advice is of other settings of the scene, wherever it lies.
+TEST(Program, CheckAdvisesOnPackingsFromFiles)
+{
+  std::filesystem::remove_all("advised");
+  std::filesystem::create_directory("advised");
+  scene_file("advised/scene.json");
+  const std::string large =
+      R"(--set '/discrete_zone/region={"lower": [null, -40], "upper": [null, 40]}' )"
+      "--set '/specimen/size=[24, 100]' --set /coupling/overlap_cells=13 "
+      "--set /far_field/cell_size=2.5 --set /coupling/step_ratio=1 ";
+  ASSERT_EQ(ligament("run advised/scene.json " + large + pulled +
+                     "--set /discrete_zone/packing=random --set /time/duration=1 -o advised/run")
+                .code,
+            0);
+  const auto outcome = ligament("check advised/scene.json --json " + large + pulled +
+                                "--set /discrete_zone/packing=file "
+                                "--set /discrete_zone/packing_file=run/packing.csv");
+  ASSERT_EQ(outcome.code, 0);
+  const auto json = outcome.json();
+  if (json["predicted_saving"] >= 1) // 0.7 on an idle machine
+    GTEST_SKIP() << "nothing to advise on";
+  EXPECT_GE(json["advice"]["options"].size(), 1u) << json["advice"].dump(1);
 }
 
 TEST(Program, AnOlderRunIsKept)

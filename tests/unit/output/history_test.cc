@@ -45,6 +45,23 @@ TEST(History, GivesTheSameNumbersBack)
   EXPECT_THROW(writer.set("laod", 1), core::InputError);
 }
 
+// A run may end where a look has written its state.
+TEST(History, HasTheLastRowOnce)
+{
+  for (const double last : {2., 3.}) {
+    HistoryWriter writer("last.csv", history_columns(2), 1);
+    for (const double time : {1., 2.}) {
+      writer.set("time", time);
+      writer.end_row();
+    }
+    writer.set("time", last);
+    writer.end_last_row();
+    writer.flush();
+    EXPECT_EQ(read_csv("last.csv").n_rows(), last == 2 ? 2u : 3u);
+    EXPECT_EQ(read_csv("last.csv").column("time", "s").back(), last);
+  }
+}
+
 // Phases add columns and change none.
 TEST(History, HasColumnsForPhases)
 {
