@@ -199,7 +199,7 @@ void StateFields<dim>::look_at_what_stays(const CoupledBody<dim> &body)
   const auto &state = body.zone->state;
   n_faces_.assign(state.size(), 0);
   body.force()->for_each_face(state, [&](const auto &face) {
-    if (face.bonded)
+    if (face.bonded && !face.is_rebonded) // those are in the list of broken ones
       ++n_faces_[face.i];
   });
   for (const auto &broken : body.force()->broken_bonds())
