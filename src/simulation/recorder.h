@@ -78,10 +78,9 @@ public:
   /// The copies of earlier times, which checkpoints keep beside it; to be taken before the next
   /// look, on all ranks at once: the first one gets them.
   std::vector<KeptState> kept(const CoupledBody<dim> &body) const;
-  /// The body has its motion already, and the files have been cut back. Copies that are lost are
-  /// missing in the outputs.
+  /// The body has its motion already. Copies that are lost are missing in the outputs. `now` in s.
   void load(const core::State &state, const std::map<std::string, core::State> &kept,
-            const CoupledBody<dim> &body);
+            const CoupledBody<dim> &body, double now);
   /// The part of load() that goes by particles.
   void load_copies(const core::State &state, const std::map<std::string, core::State> &kept,
                    const CoupledBody<dim> &body);

@@ -3,10 +3,22 @@
 #include "src/simulation/recorder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace ligament::program
 {
+namespace
+{
+/// When an output is due that was due then: a run may go on with another interval.
+double due_output(double then, double interval, double now)
+{
+  if (std::isinf(interval))
+    return interval;
+  return then > now + (1 + 1e-6) * interval ? now + interval : then;
+}
+} // namespace
+
 template <int dim>
 std::map<std::string, std::int64_t> Recorder<dim>::sync()
 {
@@ -70,10 +82,12 @@ std::vector<KeptState> Recorder<dim>::kept(const CoupledBody<dim> &body) const
 
 template <int dim>
 void Recorder<dim>::load(const core::State &state, const std::map<std::string, core::State> &kept,
-                         const CoupledBody<dim> &body)
+                         const CoupledBody<dim> &body, double now)
 {
-  next_history_ = core::load_real(state, "recorder", "next_history");
-  next_fields_ = core::load_real(state, "recorder", "next_fields");
+  next_history_ =
+      due_output(core::load_real(state, "recorder", "next_history"), history_interval_, now);
+  next_fields_ = due_output(core::load_real(state, "recorder", "next_fields"),
+                            scene_.output.field_interval, now);
   quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
   in_static_phase_ = core::load_integer(state, "recorder", "in_static_phase") != 0;
   fields_copied_at_ = core::load_real(state, "recorder", "fields_copied_at");
@@ -132,7 +146,7 @@ template std::map<std::string, std::int64_t> Recorder<2>::sync();
 template void Recorder<2>::save(core::State &) const;
 template std::vector<KeptState> Recorder<2>::kept(const CoupledBody<2> &) const;
 template void Recorder<2>::load(const core::State &, const std::map<std::string, core::State> &,
-                                const CoupledBody<2> &);
+                                const CoupledBody<2> &, double);
 template void Recorder<2>::load_copies(const core::State &,
                                        const std::map<std::string, core::State> &,
                                        const CoupledBody<2> &);
@@ -141,7 +155,7 @@ template std::map<std::string, std::int64_t> Recorder<3>::sync();
 template void Recorder<3>::save(core::State &) const;
 template std::vector<KeptState> Recorder<3>::kept(const CoupledBody<3> &) const;
 template void Recorder<3>::load(const core::State &, const std::map<std::string, core::State> &,
-                                const CoupledBody<3> &);
+                                const CoupledBody<3> &, double);
 template void Recorder<3>::load_copies(const core::State &,
                                        const std::map<std::string, core::State> &,
                                        const CoupledBody<3> &);

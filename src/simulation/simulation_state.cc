@@ -35,7 +35,7 @@ void Simulation<dim>::go_on_from(Checkpoint &checkpoint)
   damping_.load(run);
   phases_.load(run);
   servos_.load(run);
-  recorder_.load(run, checkpoint.kept, body_);
+  recorder_.load(run, checkpoint.kept, body_, clock_.now.time);
   recorder_.start_at(clock_.now.step);
   checkpoint.states.clear();
   checkpoint.kept.clear();
@@ -231,7 +231,7 @@ bool Simulation<dim>::skip_steps_at_first()
   for (auto &[name, state] : told)
     if (name.compare(0, 5, "kept ") == 0)
       kept[name.substr(5)] = std::move(state);
-  recorder_.load(run, kept, body_);
+  recorder_.load(run, kept, body_, clock_.now.time);
   return true;
 }
 
