@@ -104,19 +104,39 @@ std::vector<std::string> what_is_new(const CheckpointManifest &manifest)
   return warnings;
 }
 
-/// Takes off what the run wrote behind the checkpoint.
-void cut_back(const RunFolder &folder, const CheckpointManifest &manifest)
+/// In bytes; 0 where there is no file.
+std::int64_t size_of(const std::string &file)
+{
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  return error ? 0 : std::int64_t(size);
+}
+
+/// A power failure may have taken the end of the log, which nobody waited for; other files have to
+/// be as long as they were.
+void refuse_what_is_lost(const RunFolder &folder, const CheckpointManifest &manifest)
+{
+  for (const auto &[name, bytes] : manifest.positions) {
+    const std::string file = folder.path + "/" + name;
+    const std::int64_t size = size_of(file);
+    core::require(file == folder.log() || size >= bytes,
+                  fmt::format("{} has {} bytes where {} were written", file, size, bytes));
+  }
+}
+
+/// Takes off what the run wrote behind the checkpoint. Of the log that is what lies before `end`:
+/// behind it the set-up has written.
+void cut_back(const RunFolder &folder, const CheckpointManifest &manifest, std::int64_t end)
 {
   Checkpoints(folder.checkpoints()).remove_newer_than(manifest.number);
   for (const auto &[name, bytes] : manifest.positions) {
     const std::string file = folder.path + "/" + name;
-    std::error_code none;
-    // A power failure may have taken the end of the log, which nobody waited for.
-    if (file != folder.log() || std::int64_t(std::filesystem::file_size(file, none)) > bytes)
+    if (file != folder.log())
+      core::cut_file(file, bytes);
+    else if (end > bytes) {
+      const std::string set_up = core::read_file(file).substr(std::size_t(end));
       core::cut_file(file, bytes);
   }
-  std::error_code none; // without states there is no collection
-  std::filesystem::remove(folder.pvd(), none);
 }
 } // namespace
 
@@ -130,6 +150,8 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (ranks.is_first())
     run.emplace(folder);
   ranks.any(false);
+      core::OutputFile(file, core::OutputFile::Mode::append).write(set_up);
+    }
   Checkpoint checkpoint = newest_checkpoint(folder);
   // Ranks read it for themselves, maybe not from the same machine.
   ranks.agree_on("the newest checkpoint that can be read", double(checkpoint.manifest.number));
@@ -152,10 +174,16 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (!ranks.is_first())
     return follow(input, folder, interruption, options);
 
-  RunRecord first = first_record(*input.scene, ranks);
-  first.started = manifest.started;
-  run->go_on(first);
-  cut_back(folder, manifest);
+  refuse_what_is_lost(folder, manifest);
+  const std::int64_t end_of_log = size_of(folder.log());
+  // A run whose set-up fails stays as it is.
+  options.make_way = [&] {
+    RunRecord first = first_record(*input.scene, ranks);
+    first.started = manifest.started;
+    run->go_on(first);
+    write_resolved(input, folder);
+    cut_back(folder, manifest, end_of_log);
+  };
   const RunRecord record = simulate(input, warnings, *run, interruption, options);
   return end_of_run(line, line.run, folder, record, interruption);
 }

@@ -34,6 +34,10 @@ RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &w
 {
   Simulation<dim> simulation(*input.scene, folder, stderr, true, options.from, make_zone_force<dim>,
                              options.ranks);
+  if (options.from)
+    options.ranks.any(false);
+  if (options.make_way)
+    options.make_way();
   for (const std::string &text : warnings)
     simulation.warn(text);
   simulation.keep_checkpoints(input.resolved);
@@ -45,6 +49,11 @@ RunRecord simulate_in(const ReadResult &input, const std::vector<std::string> &w
 }
 } // namespace
 
+void write_resolved(const ReadResult &input, const RunFolder &folder)
+{
+  core::write_file(folder.resolved_scene(), json_text(input.resolved, 2) + "\n");
+}
+
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
                    core::Interruption &interruption, const RunOptions &options)
 {
@@ -52,7 +61,8 @@ RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warn
     run.end("interrupted", std::string(core::Interruption::name(signal)) + " asked for the end");
   });
   try {
-    core::write_file(run.folder().resolved_scene(), json_text(input.resolved, 2) + "\n");
+    if (!options.from)
+      write_resolved(input, run.folder());
     const auto &in_space = input.scene->dimension == 2 ? simulate_in<2> : simulate_in<3>;
     return in_space(input, warnings, run.folder(), interruption, options);
   } catch (const core::GuardStop &error) {

@@ -8,6 +8,8 @@
 #include "src/scene/read_scene.h"
 #include "src/simulation/end_request.h"
 
+#include <functional>
+
 namespace ligament::program
 {
 /// What the record says before the body is built.
@@ -20,7 +22,12 @@ struct RunOptions
   int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
   core::Ranks ranks = {};           // that compute it together
   bool in_pieces = false;           // each writes the fields of its particles
+  /// Of the first rank: what of an older run makes way, once all ranks have set up.
+  std::function<void()> make_way = {};
 };
+
+/// The scene of a run, which stays where it goes on until that has been set up.
+void write_resolved(const ReadResult &input, const RunFolder &folder);
 
 /// With checkpoints; what stops it is in its record, and warnings in its log.
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,

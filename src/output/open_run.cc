@@ -102,13 +102,6 @@ OpenRun::OpenRun(RunFolder folder) : folder_(std::move(folder))
   lock_.emplace(folder_.path, "run");
 }
 
-void OpenRun::go_on(const RunRecord &first)
-{
-  folder_.create();
-  reserve_.emplace(folder_.record(), reserved_bytes);
-  write_run_record(folder_.record(), first);
-}
-
 namespace
 {
 void complete(const RunFolder &folder, RunRecord record, const std::string &status,
@@ -119,6 +112,19 @@ void complete(const RunFolder &folder, RunRecord record, const std::string &stat
   write_run_record(folder.record(), record);
 }
 } // namespace
+
+void OpenRun::go_on(const RunRecord &first)
+{
+  folder_.create();
+  reserve_.emplace(folder_.record(), reserved_bytes);
+  RunRecord record = first;
+  try {
+    record = read_run_record(folder_.record());
+  } catch (const core::InputError &) {
+    // The disk lost it.
+  }
+  complete(folder_, record, first.status, first.reason);
+}
 
 void OpenRun::end(const std::string &status, const std::string &reason) noexcept
 {

@@ -22,7 +22,8 @@ public:
 
   /// Locks the folder of an older run. Throws core::InputError where there is none.
   explicit OpenRun(RunFolder folder);
-  /// The older run goes on: its record, or what is left of it, makes way for this one.
+  /// The older run goes on: its record keeps its figures and says that it runs. Where it cannot be
+  /// read this one takes its place.
   void go_on(const RunRecord &first);
 
   const RunFolder &folder() const { return folder_; }

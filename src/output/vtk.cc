@@ -352,8 +352,11 @@ void FieldSeries::go_on(const std::vector<double> &times, bool has_particles, bo
     add(time, name, files_of(name, has_particles, has_cells, in_pieces));
     times_.push_back(time);
   }
+  std::error_code none;
   if (!times.empty())
     write_collection();
+  else // without states there is no collection
+    std::filesystem::remove(folder_.pvd(), none);
 }
 
 void FieldSeries::add(double time, const std::string &name, const StateFiles &files)

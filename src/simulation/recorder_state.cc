@@ -100,12 +100,12 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   work_ = core::table(state, "history").reals("work");
   for (const double work : work_)
     most_work_ = std::max(most_work_, work);
+  load_copies(state, kept, body);
   const std::vector<double> written = core::table(state, "field_outputs").reals("time");
   if (!writes_)
     fields_.count_on(written);
   else if (fields_.times().empty()) // else they are its own
     fields_.go_on(written, body.zone != nullptr, body.far != nullptr);
-  load_copies(state, kept, body);
 }
 
 template <int dim>

@@ -21,8 +21,8 @@ class Simulation
 public:
   /// Builds the body (core::InputError when that can't be done) and opens the output folder. Small
   /// scenes take less time than their pictures, which may be left out. With a checkpoint the run
-  /// goes on from it, and uses its states up, which are as large as the body: the files that grow
-  /// have been cut back to its positions. Several ranks, which
+  /// goes on from it, and uses its states up, which are as large as the body: before run() the
+  /// files that grow have to be cut back to its positions. Several ranks, which
   /// all make the same calls, run one body together; only the first one writes. What goes wrong on
   /// one of them is thrown there: it has to end the others.
   Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
