@@ -10,6 +10,7 @@
 #include "src/launcher/program.h"
 #include "src/scene/check_ranks.h"
 #include "src/scene/scene_difference.h"
+#include "src/simulation/gauges/gauge_set.h"
 #include "src/simulation/reference.h"
 
 #include <fmt/format.h>
@@ -60,6 +61,21 @@ ReadResult scene_of(const CommandLine &line, const RunFolder &folder, const Chec
   if (input.scene && input.scene->zone.packing == PackingKind::file)
     input.scene->zone.packing_file = folder.packing();
   return input;
+}
+
+/// What a gauge left open follows from the duration that the run began with, also where it is
+/// longer now.
+void keep_smoothing(nlohmann::ordered_json &was, ReadResult &input)
+{
+  const double duration = was.at("time").at("duration");
+  for (std::size_t k = 0; k < input.scene->gauges.size() && k < was["gauges"].size(); ++k) {
+    GaugeParameters &gauge = input.scene->gauges[k];
+    const double smoothing = was["gauges"][k].value("smoothing", 0.);
+    if (gauge.kind != GaugeKind::crack_tip || gauge.smoothing > 0)
+      continue;
+    gauge.smoothing = smoothing > 0 ? smoothing : default_smoothing(duration);
+    was["gauges"][k]["smoothing"] = input.resolved["gauges"][k]["smoothing"] = gauge.smoothing;
+  }
 }
 
 void refuse_another_scene(const nlohmann::ordered_json &was, const nlohmann::ordered_json &is)
@@ -136,6 +152,8 @@ void cut_back(const RunFolder &folder, const CheckpointManifest &manifest, std::
     else if (end > bytes) {
       const std::string set_up = core::read_file(file).substr(std::size_t(end));
       core::cut_file(file, bytes);
+      core::OutputFile(file, core::OutputFile::Mode::append).write(set_up);
+    }
   }
 }
 } // namespace
@@ -150,8 +168,6 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (ranks.is_first())
     run.emplace(folder);
   ranks.any(false);
-      core::OutputFile(file, core::OutputFile::Mode::append).write(set_up);
-    }
   Checkpoint checkpoint = newest_checkpoint(folder);
   // Ranks read it for themselves, maybe not from the same machine.
   ranks.agree_on("the newest checkpoint that can be read", double(checkpoint.manifest.number));
@@ -159,7 +175,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
     checkpoint.reference.clear();
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
-  const ReadResult input = scene_of(line, folder, checkpoint);
+  ReadResult input = scene_of(line, folder, checkpoint);
   const std::string name = line.scene.empty() ? folder.resolved_scene() : line.scene;
   require_one_mind(bool(input.scene), ranks);
   if (!input.scene)
@@ -167,8 +183,10 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   if (!ranks.is_one())
     if (const auto refused = refused_on_ranks(input); !refused.empty())
       return refuse(line, name, refused, input.warnings);
-  refuse_another_scene(manifest.scene, input.resolved);
-  refuse_what_has_ended(folder, manifest.scene, input.resolved);
+  nlohmann::ordered_json was = manifest.scene;
+  keep_smoothing(was, input);
+  refuse_another_scene(was, input.resolved);
+  refuse_what_has_ended(folder, was, input.resolved);
   const std::vector<std::string> warnings = what_is_new(manifest);
   ranks.any(false); // all have read what the first one now changes
   if (!ranks.is_first())

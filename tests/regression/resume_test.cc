@@ -299,6 +299,114 @@ TEST_F(Resume, ARunCanBeProlonged)
   expect_same("first", "whole");
 }
 
+// Also where the first part of the run wrote none, and where it wrote more.
+TEST_F(Resume, WhatIsWrittenMayChange)
+{
+  const auto fields_of = [](const std::string &run) {
+    int n = 0;
+    for (const auto &entry : fs::directory_iterator(run + "/fields"))
+      n += entry.path().filename().string().rfind("particles_0", 0) == 0;
+    return n;
+  };
+  const std::string first = "run torn.json --set /time/duration=100 -o written";
+  ASSERT_EQ(run_ligament(first + " --set /output/field_interval=never").code, 0);
+  EXPECT_EQ(fields_of("written"), 1);
+  ASSERT_EQ(run_ligament("resume written --set /time/duration=200 --set /output/field_interval=30 "
+                         "--set /output/history_interval=50")
+                .code,
+            0);
+  EXPECT_EQ(fields_of("written"), 1 + 3);
+  const auto rows = [] {
+    const std::string text = file_text("written/history.csv");
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const auto before = rows();
+  ASSERT_EQ(run_ligament("resume written --set /time/duration=250 --set "
+                         "/output/field_interval=never --set /output/history_interval=1")
+                .code,
+            0);
+  EXPECT_EQ(fields_of("written"), 1 + 3);
+  EXPECT_GE(rows(), before + 45);
+}
+
+// The speed of a crack is a mean over a time that the first part of the run chose.
+TEST_F(Resume, TheDefaultSmoothingIsThatOfTheFirstStart)
+{
+  const std::string open = " --set /gauges/6/smoothing=0 ";
+  ASSERT_EQ(run_ligament("run torn.json -o smooth --set /gauges/6/smoothing=2.5").code, 0);
+  ASSERT_EQ(run_ligament("run torn.json --set /time/duration=125 -o longer" + open).code, 0);
+  std::ofstream("open.json") << std::string(torn).replace(torn.find(", \"smoothing\": 20"), 17, "");
+  const std::string scene = " --scene open.json ";
+  for (const std::string duration : {"300", "400"}) {
+    const auto outcome = run_ligament("resume longer" + (duration == "400" ? scene : "") +
+                                      " --set /time/duration=" + duration);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  }
+  expect_same("longer", "smooth");
+}
+
+// Faces that were cut, touch and are bonded again: they are in the list of cut faces, not of bonds.
+TEST_F(Resume, ARunWithRebondingGoesOnAsWell)
+{
+  const std::string pressed =
+      R"( --set '/specimen/cracks=[{"points": [[-12, 0], [4, 0]]}]' )"
+      R"( --set '/material/fracture/rebonding={"pressure": 1e-4, "strength": 2e-3}' )"
+      "--set /loads/0/velocity/1=-2e-4 --set /loads/1/velocity/1=2e-4 --set '/tools=[]' "
+      "--set '/gauges=[]' ";
+  ASSERT_EQ(run_ligament("run torn.json -o bonded_whole" + pressed).code, 0);
+  ASSERT_EQ(run_ligament("run torn.json --set /time/duration=200 -o bonded" + pressed).code, 0);
+  const std::string rows = file_text("bonded/history.csv");
+  const std::string names = rows.substr(0, rows.find('\n'));
+  ASSERT_TRUE(has(names, ",rebonding"));
+  const std::size_t last = rows.find_last_of('\n', rows.size() - 2);
+  EXPECT_FALSE(has(rows.substr(last), ",0\n")) << "nothing was bonded again";
+  const auto outcome = run_ligament("resume bonded --set /time/duration=400");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  expect_same("bonded", "bonded_whole");
+}
+
+// A run that is to be longer loses nothing by what keeps it from going on.
+TEST_F(Resume, ASetUpThatFailsLeavesTheRunAsItIs)
+{
+  const auto contents = [](const std::string &run) {
+    std::map<std::string, std::string> files;
+    for (const auto &entry : fs::recursive_directory_iterator(run))
+      if (entry.is_regular_file() && entry.path().filename() != "run.log")
+        files[entry.path()] = file_text(entry.path());
+    return files;
+  };
+  const std::string bare = " --set '/tools=[]' --set '/gauges=[]' --set /time/duration=",
+                    of_file = " --set /discrete_zone/packing=file --set "
+                              "/discrete_zone/packing_file=cells.csv";
+  ASSERT_EQ(
+      run_ligament("run torn.json -o random --set /discrete_zone/packing=random" + bare + "1").code,
+      0);
+  fs::copy("random/packing.csv", "cells.csv", fs::copy_options::overwrite_existing);
+  ASSERT_EQ(run_ligament("run torn.json -o uncut" + of_file + bare + "150").code, 0);
+  ASSERT_EQ(run_ligament("run torn.json -o failing" + of_file + bare + "110").code, 0);
+  fs::copy("failing", "kept", fs::copy_options::recursive);
+  // Without what the set-up had found the particles are read again.
+  std::ofstream("failing/packing.csv") << "x,y,r\nm,m,m\n0,0,none\n";
+  std::ofstream("failing/checkpoints/reference.bin") << "nothing";
+  const auto before = contents("failing");
+  const auto outcome = run_ligament("resume failing --set /time/duration=150");
+  EXPECT_EQ(outcome.code, 2) << outcome.errors;
+  EXPECT_TRUE(contents("failing") == before);
+  EXPECT_EQ(file_text("failing/run.log").rfind(file_text("kept/run.log"), 0), 0u);
+  EXPECT_EQ(file_json("failing/run.json")["status"], "done");
+
+  for (const char *file : {"/packing.csv", "/checkpoints/reference.bin"})
+    std::ofstream(std::string("failing") + file, std::ios::binary)
+        << file_text(std::string("kept") + file);
+  const auto more = run_ligament("resume failing --set /time/duration=150");
+  EXPECT_EQ(more.code, 0) << more.errors;
+  expect_same("failing", "uncut");
+  EXPECT_EQ(file_json("failing/scene.resolved.json")["time"]["duration"], 150);
+  const std::string log = file_text("failing/run.log"), end = " done after ";
+  EXPECT_TRUE(has(log, "goes on from checkpoint"));
+  EXPECT_EQ(log.find(end), log.rfind(end)) << "of the part that was taken off";
+}
+
 /// What bodies and loops may be made of, in overrides of the scene.
 const std::vector<std::pair<std::string, std::string>> other_scenes = {
     {"random", " --set /discrete_zone/packing=random --set /discrete_zone/relaxation_sweeps=4 "},

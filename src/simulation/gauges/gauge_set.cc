@@ -15,16 +15,18 @@
 
 namespace ligament::program
 {
+double default_smoothing(double duration)
+{
+  return 1. / 50 * duration;
+}
+
 namespace
 {
-// Of the duration of a scene: the time over which the speed of a crack is a mean.
-constexpr double smoothing_share = 1. / 50;
-
 template <int dim>
 std::unique_ptr<Gauge<dim>> make_gauge(const GaugeParameters &gauge, const GaugePlaces<dim> &places)
 {
   const double smoothing =
-      gauge.smoothing > 0 ? gauge.smoothing : smoothing_share * places.scene.time.duration;
+      gauge.smoothing > 0 ? gauge.smoothing : default_smoothing(places.scene.time.duration);
   switch (gauge.kind) {
   case GaugeKind::distance:
   case GaugeKind::opening:

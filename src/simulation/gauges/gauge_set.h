@@ -8,6 +8,9 @@
 
 namespace ligament::program
 {
+/// Time over which the speed of a crack is a mean where a scene of this duration does not say it.
+double default_smoothing(double duration);
+
 template <int dim>
 class GaugeSet
 {
