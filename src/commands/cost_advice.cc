@@ -18,24 +18,19 @@ constexpr double moment = 0.15;
 // Cells over particle spacing: below, the overlap is refused or inaccurate; above, it is coarse.
 constexpr double least_ratio = 2.5, largest_ratio = 8;
 
-/// How much faster than pure discrete elements the scene is with these overrides; empty where they
-/// are refused.
+/// How much faster than pure discrete elements the scene is with these overrides; InputError where
+/// they are refused.
 template <int dim>
-std::optional<double> saving_with(const ReadResult &input,
-                                  const std::vector<std::string> &overrides)
+double saving_with(const ReadResult &input, const std::vector<std::string> &overrides)
 {
   const ReadResult changed = parse_scene(input.resolved.dump(), "scene", overrides);
-  if (!changed.scene)
-    return {};
-  try {
-    core::Log log;
-    core::Timers timers;
-    auto body = make_body<dim>(*changed.scene, log, timers);
-    const StepCost cost = measure_step_cost(*changed.scene, body, timers, moment);
-    return cost.saving(body.equivalent_particles, body.zone->state.size());
-  } catch (const core::InputError &) {
-    return {};
-  }
+  core::require(changed.scene.has_value(),
+                changed.errors.empty() ? "" : changed.errors.front().message);
+  core::Log log;
+  core::Timers timers;
+  auto body = make_body<dim>(*changed.scene, log, timers);
+  const StepCost cost = measure_step_cost(*changed.scene, body, timers, moment);
+  return cost.saving(body.equivalent_particles, body.zone->state.size());
 }
 
 /// The settings worth a measurement: each cell size with the largest step ratio that its stable
@@ -74,8 +69,12 @@ CostAdvice advise(const ReadResult &input, const CoupledBody<dim> &body, const S
 {
   CostAdvice advice;
   for (const auto &overrides : candidates(*input.scene, body))
-    if (const auto saving = saving_with<dim>(input, overrides))
-      advice.options.push_back({overrides, *saving});
+    try {
+      advice.options.push_back({overrides, saving_with<dim>(input, overrides)});
+    } catch (const core::InputError &error) {
+      ++advice.n_refused;
+      advice.refused_because = error.what();
+    }
   std::stable_sort(advice.options.begin(), advice.options.end(),
                    [](const auto &a, const auto &b) { return a.saving > b.saving; });
   // What is not the particles' stays when the zone shrinks: overlap and far field.
@@ -91,10 +90,17 @@ std::string to_text(const CostAdvice &advice, std::int64_t particles)
 {
   std::string text = "  coupling costs more than it saves";
   if (advice.pure_is_better()) {
-    text += ": pure discrete elements, --set /far_field=none, are the better choice;\n"
-            "  no cell size, step ratio or overlap that was tried changes that";
-    if (!advice.options.empty())
-      text += fmt::format(", the best reaches {:.2f}x", advice.options.front().saving);
+    text += ": pure discrete elements, --set /far_field=none, are the better choice;\n";
+    if (advice.options.empty())
+      text += advice.n_refused == 0
+                  ? "  there is no other cell size, step ratio or overlap to try"
+                  : fmt::format("  none of {} other cell sizes, step ratios and overlaps could be "
+                                "measured: {}",
+                                advice.n_refused, advice.refused_because);
+    else
+      text += fmt::format("  no cell size, step ratio or overlap that was tried changes that, the "
+                          "best reaches {:.2f}x",
+                          advice.options.front().saving);
   } else
     text += "; faster than pure discrete elements would be";
   text += "\n";
@@ -113,7 +119,8 @@ nlohmann::ordered_json to_json(const CostAdvice &advice)
 {
   nlohmann::ordered_json json = {{"pure_is_better", advice.pure_is_better()},
                                  {"break_even_particles", nullptr},
-                                 {"options", nlohmann::ordered_json::array()}};
+                                 {"options", nlohmann::ordered_json::array()},
+                                 {"refused", advice.n_refused}};
   if (advice.break_even_particles)
     json["break_even_particles"] = *advice.break_even_particles;
   for (const auto &option : advice.options)

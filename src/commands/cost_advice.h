@@ -19,6 +19,9 @@ struct CostAdvice
     double saving;
   };
   std::vector<Option> options;
+  /// Settings that could not be measured, and why not the last one of them.
+  int n_refused = 0;
+  std::string refused_because;
   /// A zone of so many particles would cost what it saves; empty where none would.
   std::optional<std::int64_t> break_even_particles;
 
@@ -26,8 +29,8 @@ struct CostAdvice
 };
 
 /// Measures the scene with other cell sizes, step ratios and overlaps, as `check` measures the
-/// scene itself: each is set up and stepped for a moment. Values that the scene refuses are left
-/// out.
+/// scene itself: each is set up and stepped for a moment. Values that the scene refuses are
+/// counted.
 template <int dim>
 CostAdvice advise(const ReadResult &input, const CoupledBody<dim> &body, const StepCost &cost);
 

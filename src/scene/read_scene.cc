@@ -249,6 +249,9 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
   locate_files(name, scene);
   if (!scene.specimen.file.empty()) // whoever resumes the run reads it from another folder
     result.resolved["specimen"]["file"] = std::filesystem::absolute(scene.specimen.file).string();
+  if (scene.zone.packing == PackingKind::file)
+    result.resolved["discrete_zone"]["packing_file"] =
+        std::filesystem::absolute(scene.zone.packing_file).string();
   if (scene.atoms) {
     result.resolved.erase("material");
     result.resolved["discrete_zone"].erase("spacing");
