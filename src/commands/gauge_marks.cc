@@ -1,6 +1,7 @@
 #include "src/commands/gauge_marks.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::program
 {
@@ -67,6 +68,13 @@ Point along_front(const GaugeParameters &gauge, Point corner, double end)
       corner[c] = end;
   return corner;
 }
+/// Else the gauge reads all that is there.
+bool is_bounded(const GaugeParameters &gauge)
+{
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  return std::any_of(gauge.lower.begin(), gauge.lower.end(), is_finite) ||
+         std::any_of(gauge.upper.begin(), gauge.upper.end(), is_finite);
+}
 } // namespace
 
 void add_gauges(const Scene &scene, Picture &picture)
@@ -85,7 +93,8 @@ void add_gauges(const Scene &scene, Picture &picture)
       lines.box(end(gauge.lower, -infinity), end(gauge.upper, infinity));
       lines.box(end(gauge.inner_lower, -infinity), end(gauge.inner_upper, infinity));
     }
-    const bool has_box = gauge.kind == GaugeKind::strain || gauge.kind == GaugeKind::stress;
+    const bool has_box = gauge.kind == GaugeKind::strain || gauge.kind == GaugeKind::stress ||
+                         (gauge.kind == GaugeKind::virial_stress && is_bounded(gauge));
     if (has_box && gauge.points.empty())
       lines.box(gauge.lower, gauge.upper);
   }

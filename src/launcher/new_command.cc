@@ -52,6 +52,8 @@ int new_command(const CommandLine &line)
   const std::string file = line.output.empty() ? kind.name + ".json" : line.output;
   if (file == "-") {
     fmt::print("{}", kind.text);
+    if (line.json)
+      fmt::print("{}\n", json_text({{"status", "done"}, {"kind", kind.name}, {"scene", "-"}}));
     return int(ExitCode::done);
   }
   // Also a link that leads nowhere is somebody's.

@@ -1,5 +1,6 @@
 #include "src/launcher/sweep_command.h"
 
+#include "core/input_file.h"
 #include "core/tell.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
@@ -16,6 +17,8 @@ namespace
 /// study.json in a folder of its own is named after the folder.
 std::string default_folder(const std::string &study)
 {
+  if (!core::is_named_file(study))
+    return "ligament-sweep";
   const std::filesystem::path file = std::filesystem::absolute(study);
   const std::string name =
       file.stem() == "study" ? file.parent_path().filename().string() : file.stem().string();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <thread>
@@ -93,6 +94,17 @@ bool wait_for(const std::function<bool()> &condition)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return false;
+}
+
+TEST(Sweep, OfStandardInputHasAFolderWithAName)
+{
+  core::write_file("scene.json", scene);
+  core::write_file("study.json", study("[2]"));
+  ASSERT_EQ(std::system(LIGAMENT_PROGRAM " sweep - --dry-run --json < study.json > out.txt"), 0);
+  std::string text = core::read_file("out.txt");
+  text.pop_back();
+  const auto json = nlohmann::json::parse(text.substr(text.rfind('\n') + 1));
+  EXPECT_EQ(json["output"], "ligament-sweep");
 }
 
 TEST(Sweep, SurvivesAKillAndComputesNothingTwice)
