@@ -3,6 +3,7 @@
 #include "core/check.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/kept_tables.h"
+#include "src/simulation/phase_list.h"
 #include "src/simulation/static_stretch.h"
 #include "src/simulation/test_machine.h"
 
@@ -18,55 +19,6 @@ namespace ligament::program
 namespace
 {
 using Seconds = std::chrono::duration<double>;
-
-enum class PhaseEnd
-{
-  bond_breaks,
-  above_strength,
-  end_of_run,
-  out_of_balance,
-  no_resistance,
-  stopped,
-  calm,
-  restless,
-  face_torn
-};
-
-std::string text_of(PhaseEnd end)
-{
-  switch (end) {
-  case PhaseEnd::bond_breaks:
-    return "a bond bears its strength";
-  case PhaseEnd::above_strength:
-    return "a bond bears more than its strength in equilibrium";
-  case PhaseEnd::end_of_run:
-    return "end of the run";
-  case PhaseEnd::out_of_balance:
-    return "no equilibrium was found";
-  case PhaseEnd::no_resistance:
-    return "the body no longer carries";
-  case PhaseEnd::stopped:
-    return "the run was stopped";
-  case PhaseEnd::calm:
-    return "the body is calm";
-  case PhaseEnd::restless:
-    return "nothing broke for 50 transits";
-  case PhaseEnd::face_torn:
-    return "a face has softened to the end";
-  }
-  return {};
-}
-
-struct Phase
-{
-  bool is_static;
-  long begin, end; // steps
-  int solves = 0, iterations = 0;
-  double load = 0; // N
-  long broken = 0;
-  PhaseEnd reason = PhaseEnd::end_of_run;
-  double seconds = 0;
-};
 
 constexpr double quiet_share = 0.01; // of the potential energy
 constexpr double most_transits = 50;
@@ -483,20 +435,8 @@ std::vector<PhaseEntry> StaticPhases<dim>::entries(const CoupledBody<dim> &body,
     phase.seconds = work_->dynamic_seconds();
     phases.push_back(phase);
   }
-  for (const Phase &p : phases) {
-    PhaseEntry e;
-    e.kind = p.is_static ? "static" : "dynamic";
-    e.begin = work_->time_of(clock, p.begin);
-    e.end = work_->time_of(clock, p.end);
-    (p.is_static ? e.steps_skipped : e.steps) = p.end - p.begin;
-    e.solves = p.solves;
-    e.iterations = p.iterations;
-    e.load = p.load;
-    e.broken = p.broken;
-    e.reason = text_of(p.reason);
-    e.seconds = p.seconds;
-    entries.push_back(e);
-  }
+  for (const Phase &p : phases)
+    entries.push_back(entry_of(p, clock.now.dt));
   return entries;
 }
 
@@ -522,24 +462,7 @@ void StaticPhases<dim>::save(core::State &state) const
   core::Table shares = numbered_rows(free.shares.size());
   shares.add("share", free.shares);
   state["free_motions"] = std::move(shares);
-  core::Table rows = numbered_rows(work_->phases.size());
-  const auto add = [&](const char *name, auto &&value) {
-    std::vector<std::decay_t<decltype(value(work_->phases[0]))>> column;
-    for (const Phase &p : work_->phases)
-      column.push_back(value(p));
-    rows.add(name, column);
-  };
-  const auto whole = [](auto value) { return std::int64_t(value); };
-  add("is_static", [&](const Phase &p) { return whole(p.is_static); });
-  add("begin", [&](const Phase &p) { return whole(p.begin); });
-  add("end", [&](const Phase &p) { return whole(p.end); });
-  add("solves", [&](const Phase &p) { return whole(p.solves); });
-  add("iterations", [&](const Phase &p) { return whole(p.iterations); });
-  add("broken", [&](const Phase &p) { return whole(p.broken); });
-  add("reason", [&](const Phase &p) { return whole(p.reason); });
-  add("load", [](const Phase &p) { return p.load; });
-  add("seconds", [](const Phase &p) { return p.seconds; });
-  state["phases"] = std::move(rows);
+  state["phases"] = table_of(work_->phases);
 }
 
 template <int dim>
@@ -563,17 +486,7 @@ void StaticPhases<dim>::load(const core::State &state)
     work_->solver->set_largest_load(work_->largest_load);
     work_->solver->set_free_shares(work_->free_shares);
   }
-  const core::Table &rows = core::table(state, "phases");
-  const auto numbers = [&](const char *name) { return rows.integers(name); };
-  const auto is_static = numbers("is_static"), begin = numbers("begin"), end = numbers("end"),
-             solves = numbers("solves"), iterations = numbers("iterations"),
-             broken = numbers("broken"), reason = numbers("reason");
-  const auto load = rows.reals("load"), seconds = rows.reals("seconds");
-  work_->phases.clear();
-  for (std::size_t k = 0; k < rows.n_rows(); ++k)
-    work_->phases.push_back({is_static[k] != 0, long(begin[k]), long(end[k]), int(solves[k]),
-                             int(iterations[k]), load[k], long(broken[k]), PhaseEnd(reason[k]),
-                             seconds[k]});
+  work_->phases = phases_of(core::table(state, "phases"));
 }
 
 template class StaticPhases<2>;
