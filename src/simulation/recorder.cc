@@ -420,8 +420,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
       record_history(body, step, damping, true);
     history_.flush();
   });
-  progress_.finish(progress_state(
-      body, step, can_look_ ? read_ledger(body, step, damping) : EnergyLedger()));
+  progress_.finish(
+      progress_state(body, step, can_look_ ? read_ledger(body, step, damping) : EnergyLedger()));
   const auto bonds = broken_bonds(body);
   attempt([&] { write_bonds(folder_.broken_bonds(), bonds); });
   if (!body.cut_faces.empty())
