@@ -98,10 +98,11 @@ void follow_sides(int axis, double old_lower, double old_upper, Scene &scene)
   Specimen &s = scene.specimen;
   const double tolerance = 1e-9 * (old_upper - old_lower);
   const auto follow = [&](Point &p) {
-    if (p[axis] >= old_upper - tolerance)
-      p[axis] += s.upper(axis) - old_upper;
-    else if (p[axis] <= old_lower + tolerance)
-      p[axis] += s.lower(axis) - old_lower;
+    double &x = p[axis];
+    if (x >= old_upper - tolerance)
+      x = s.upper(axis) + std::max(0., x - old_upper);
+    else if (x <= old_lower + tolerance)
+      x = s.lower(axis) + std::min(0., x - old_lower);
   };
   const auto follow_all = [&](auto &balls, auto &boxes) {
     for (Hole &ball : balls)
