@@ -181,10 +181,11 @@ Solid<3> extrude(const std::vector<Polygon> &polygons, double lower, double uppe
       vertices.emplace_back(x[0], x[1], lower);
       vertices.emplace_back(x[0], x[1], upper);
       const int a = first + 2 * k, b = first + 2 * ((k + 1) % n);
-      facets[0].edges.push_back({b, a});
       facets[1].edges.push_back({a + 1, b + 1});
       facets.push_back({{{a, b}, {b, b + 1}, {b + 1, a + 1}, {a + 1, a}}, polygon[k].boundary});
     }
+    for (int k = n - 1; k >= 0; --k) // the other way round, each edge behind the one before
+      facets[0].edges.push_back({first + 2 * ((k + 1) % n), first + 2 * k});
   }
   return {std::move(vertices), std::move(facets)};
 }

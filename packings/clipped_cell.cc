@@ -98,9 +98,11 @@ void for_each_convex_part(const VoronoiCell<dim> &cell, const SpecimenShape<dim>
 template <int dim>
 void clip_by_sides(VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape, const Vector<dim> &x)
 {
+  // A solid has facets there, which round-off must not take for what lies outside.
+  const double off = shape.solid ? 1e-3 * shape.spacing : 0;
   for (int a = 0; a < dim; ++a) {
-    cell.clip(-Vector<dim>::Unit(a), x[a] - shape.lower[a], first_side_plane - 2 * a);
-    cell.clip(Vector<dim>::Unit(a), shape.upper[a] - x[a], first_side_plane - 2 * a - 1);
+    cell.clip(-Vector<dim>::Unit(a), x[a] - shape.lower[a] + off, first_side_plane - 2 * a);
+    cell.clip(Vector<dim>::Unit(a), shape.upper[a] - x[a] + off, first_side_plane - 2 * a - 1);
   }
 }
 
@@ -181,7 +183,8 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
       parts.push_back({sum.id, -1, sum.normal, sum.distance, sum.area, sum.moment});
     else if (sum.id == start_plane || sum.id == border_of_piece)
       is_open = true;
-    else if (is_facet(sum.id)) // its plane may be the one of a neighbour's facet, but not its name
+    else if (shape.solid &&
+             is_facet(sum.id)) // its plane may be the one of a neighbour's facet, but not its name
       parts.push_back({-1, shape.solid->facets()[first_facet - sum.id].boundary, sum.normal,
                        sum.distance, sum.area, sum.moment, std::move(sum.corners)});
     else if (sum.id > first_void_plane)

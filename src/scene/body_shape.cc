@@ -363,15 +363,22 @@ std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int bound
     if (facet.boundary != boundary)
       continue;
     auto &face = faces.emplace_back();
-    int next = facet.edges[0][0]; // edges follow each other round the outer loop
-    for (const auto &[a, b] : facet.edges) {
-      if (a != next && b != facet.edges[0][0])
-        continue;
-      face.push_back(solid->vertices()[a]);
-      next = b;
+    const auto place = [&](int vertex) { return solid->vertices()[vertex]; };
+    const auto &edges = facet.edges;
+    // Edges follow each other round the outer loop, then round openings, to which a cut leads.
+    for (std::size_t k = 0; k < edges.size();) {
+      const int start = edges[k][0];
+      if (k > 0)
+        face.push_back(place(edges[0][0]));
+      const bool is_opening = k > 0;
+      do
+        face.push_back(place(edges[k][0]));
+      while (edges[k++][1] != start && k < edges.size());
+      if (is_opening)
+        face.push_back(place(start));
     }
     if (dim == 2)
-      face.push_back(solid->vertices()[next]);
+      face.push_back(place(edges.back()[1]));
   }
   return faces;
 }

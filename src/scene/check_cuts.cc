@@ -138,8 +138,8 @@ private:
     for (int c = 0; c < scene_.dimension; ++c)
       extent += fmt::format("{}{} from {} to {} m", c == 0 ? "" : ", ", axis_names[c],
                             specimen_.lower[c], specimen_.upper[c]);
-    f_.error(key, name + " is outside the specimen",
-             "the specimen is centred at the origin: " + extent, "move it");
+    f_.error(key, name + " is outside the specimen", "the specimen extends over " + extent,
+             "move it");
   }
 
   void in_zone(const Box &cut, const std::string &name, const std::string &key)

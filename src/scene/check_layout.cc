@@ -79,7 +79,7 @@ std::optional<Layout> check_region(const Scene &scene, const Box &specimen, Find
       f.error(place, fmt::format("{} is outside the specimen in {}", name, axis_names[c]),
               fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m", lower, upper,
                           specimen.lower[c], specimen.upper[c]),
-              "move it; the specimen is centred at the origin");
+              "move it into the specimen");
       return {};
     }
     layout.zone.lower[c] = std::max(lower, specimen.lower[c]);
@@ -165,7 +165,9 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
       if (width <= 0)
         refuse(c, "is empty", "give \"lower\" below \"upper\"");
       else if (box.lower[c] >= layout.specimen.upper[c] || box.upper[c] <= layout.specimen.lower[c])
-        refuse(c, "is outside the specimen", "move it; the specimen is centred at the origin");
+        refuse(c, "is outside the specimen",
+               fmt::format("move it into the specimen, which goes from {} m to {} m",
+                           layout.specimen.lower[c], layout.specimen.upper[c]));
       else if (std::min(box.upper[c], layout.specimen.upper[c]) -
                    std::max(box.lower[c], layout.specimen.lower[c]) <=
                needed)

@@ -148,6 +148,33 @@ TEST(SolidPackings, ABoxAsSolidIsTheBox)
     EXPECT_NEAR(surfaces(solid).at(boundary) / area, 1, 1e-12);
 }
 
+// All sides of the body lie on the box around it, and keep their numbers: also where round-off of
+// places is more than that of a cell.
+TEST(SolidPackings, SidesOnTheBoxKeepTheirNumbersFarFromTheOrigin)
+{
+  for (const double shift : {0., 40.}) // spacings are 0.01
+    for (const auto &angle : orientations<2>()) {
+      auto p = specimen<2>(LatticeKind::hexagonal, 20);
+      p.orientation = angle;
+      const Vector<2> off(shift, -0.7 * shift), lower = p.lower + off, upper = p.upper + off;
+      put<2>(std::make_shared<Solid<2>>(
+                 make_solid({polygon(rectangle(lower, upper, {11, 12, 13, 14}), 1)})),
+             p);
+      const auto found = surfaces(make_lattice_packing(p));
+      const Vector<2> size = upper - lower;
+      ASSERT_EQ(found.size(), 4u) << shift;
+      double sum = 0;
+      for (const auto &[boundary, area] : found) {
+        EXPECT_GE(boundary, 11) << shift;
+        sum += area;
+        const double across = area / p.thickness;
+        EXPECT_LT(std::min(std::abs(across / size[0] - 1), std::abs(across / size[1] - 1)), 1e-9)
+            << boundary;
+      }
+      EXPECT_NEAR(sum / (2 * p.thickness * size.sum()), 1, 1e-9);
+    }
+}
+
 TEST(SolidPackings, SlitsThinnerThanParticlesAreRefusedWhereCellsWouldReachAcross)
 {
   auto p = specimen<2>(LatticeKind::hexagonal, 20);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <map>
 #include <random>
+#include <regex>
 
 namespace
 {
@@ -83,6 +84,27 @@ TEST(Shape, CutsAndNamesComeThrough)
   EXPECT_NEAR(length_of("roof"), 2 * std::hypot(30., 10.) - 1.5, 1e-3);
   EXPECT_EQ(scene.specimen.lower(0), 0);
   EXPECT_EQ(scene.specimen.upper(1), 40);
+}
+
+// Both ends of a prism are the outline without its openings, and parts of them are parts of that.
+TEST(Shape, EndsOfPrismsHaveTheAreaOfTheOutline)
+{
+  std::string prism = std::regex_replace(odd, std::regex(R"((\[\d+, \d+)\])"), "$1, 0]");
+  prism.insert(prism.rfind('}'), R"(, "thickness": 8)");
+  const Scene scene = scene_of(
+      prism,
+      R"(, "dimension": 3, "discrete_zone": {"extent": "all", "packing": "fcc", "spacing": 1}, "far_field": "none")");
+  const double side = 60. / 400, whole = area(outline_of(scene.specimen, 3, side, true));
+  for (const int boundary : {4, 5}) {
+    double sum = 0, below = 0;
+    for (const auto &face : faces_of<3>(scene.specimen, boundary)) {
+      sum += core::face_area<3>(face);
+      const auto part = core::Part<3>::box({-100, -100, -100}, {100, 11, 100});
+      below += core::face_area<3>(part.clip(face));
+    }
+    EXPECT_NEAR(sum / whole, 1, 1e-9) << boundary;
+    EXPECT_NEAR(below / (60 * 11 - 2 * 10 - M_PI / 2), 1, 1e-3) << boundary; // beside the slot
+  }
 }
 
 // Turned and mirrored bodies have the same area; the order of corners counts nothing.
