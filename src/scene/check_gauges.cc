@@ -166,7 +166,7 @@ private:
             fmt::format("the box of {} is empty or outside the specimen in {}", key_, "xyz"[c]),
             fmt::format("it goes from {} m to {} m, the specimen from {} m to {} m", g_.lower[c],
                         g_.upper[c], specimen_.lower[c], specimen_.upper[c]),
-            "move it; the specimen is centred at the origin");
+            "move it into the specimen");
       if (has_particles() && upper - lower < 2 * scene_.zone.spacing * (1 - 1e-9))
         return f_.error(
             key_,
