@@ -249,7 +249,7 @@ Picture picture_of(const BodyState &state, int dimension, const FieldView &view)
       Segments lines;
       lines.color = tool_color;
       lines.width = dimension == 2 ? 2.5 : 1.5;
-      lines.points = tool.points;
+      lines.points = turned_points(tool);
       for (std::size_t k = 0; k < lines.points.size(); ++k)
         lines.points[k] += (magnify > 0 ? magnify : 1) * tool.displacement[k % 3];
       picture.segments.push_back(std::move(lines));

@@ -76,4 +76,16 @@ const Field *find_field(const std::vector<Field> &fields, const std::string &nam
       std::find_if(fields.begin(), fields.end(), [&](const Field &f) { return f.name == name; });
   return field == fields.end() ? nullptr : &*field;
 }
+
+std::vector<double> turned_points(const ToolOutline &tool)
+{
+  if (tool.turn.size() != 12)
+    return tool.points;
+  std::vector<double> points;
+  for (std::size_t k = 0; k < tool.points.size(); k += 3)
+    for (const double *row = tool.turn.data(); row < tool.turn.data() + 12; row += 4)
+      points.push_back(row[0] * tool.points[k] + row[1] * tool.points[k + 1] +
+                       row[2] * tool.points[k + 2] + row[3]);
+  return points;
+}
 } // namespace ligament::program

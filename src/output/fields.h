@@ -73,7 +73,12 @@ struct ToolOutline
 {
   std::vector<double> points;         // m, two ends of x, y, z per edge, where the run began
   std::array<double, 3> displacement; // m
+  /// Three rows of a turn x' = R x + t of the points, before the displacement; empty: it has none.
+  std::vector<double> turn = {};
 };
+
+/// Its points turned, without the displacement.
+std::vector<double> turned_points(const ToolOutline &tool);
 
 /// A body at one time that is worth keeping: what pictures are drawn from, during a run and later.
 struct BodyState

@@ -82,6 +82,7 @@ void for_each_field(ToolOutline &r, Visit &&visit)
 {
   visit("points", r.points);
   visit("displacement", r.displacement);
+  visit.if_any("turn", r.turn);
 }
 
 template <typename Visit>

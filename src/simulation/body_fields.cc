@@ -281,6 +281,31 @@ bool clip_to_box(const Vector<dim> &lower, const Vector<dim> &upper,
 constexpr double shown_margin = 0.25;
 } // namespace
 
+namespace
+{
+/// As ToolOutline has it.
+template <int dim>
+std::vector<double> turn_of(const Eigen::Matrix<double, dim, dim> &rotation,
+                            const Vector<dim> &centre)
+{
+  if (rotation.isIdentity(0))
+    return {};
+  const Vector<dim> moved = centre - rotation * centre;
+  std::vector<double> turn;
+  for (int row = 0; row < 3; ++row) {
+    for (int c = 0; c < 3; ++c)
+      turn.push_back(row < dim && c < dim ? rotation(row, c) : row == c);
+    turn.push_back(row < dim ? moved[row] : 0);
+  }
+  return turn;
+}
+
+std::string turn_name(std::size_t tool, int number)
+{
+  return fmt::format("{}_turn_{}", tool, number);
+}
+} // namespace
+
 template <int dim>
 std::vector<ToolOutline> tool_outlines(const CoupledBody<dim> &body)
 {
@@ -295,9 +320,10 @@ std::vector<ToolOutline> tool_outlines(const CoupledBody<dim> &body)
         for (int c = 0; c < 3; ++c)
           outline.points.push_back(c < dim ? end[c] : 0);
     }
-    const Vector<dim> u = body.tools->read(k).displacement;
+    const ToolReading<dim> now = body.tools->read(k);
     for (int c = 0; c < dim; ++c)
-      outline.displacement[c] = u[c];
+      outline.displacement[c] = now.displacement[c];
+    outline.turn = turn_of<dim>(now.rotation, body.tools->place(k));
     outlines.push_back(std::move(outline));
   }
   return outlines;
@@ -323,6 +349,8 @@ core::State save_fields(const BodyState &kept, BodyNames<dim> &names)
                        kept.tools[k].displacement[c]);
     core::save_value(state, "tools", fmt::format("{}_gone", k),
                      std::int64_t(kept.tools[k].points.empty()));
+    for (std::size_t number = 0; number < kept.tools[k].turn.size(); ++number)
+      core::save_value(state, "tools", turn_name(k, int(number)), kept.tools[k].turn[number]);
   }
   return state;
 }
@@ -342,6 +370,10 @@ BodyState load_fields(const core::State &state, BodyNames<dim> &names, BodyState
           core::load_real(state, "tools", fmt::format("{}_displacement_{}", k, c));
     if (core::load_integer(state, "tools", fmt::format("{}_gone", k)))
       like.tools[k].points.clear();
+    like.tools[k].turn.clear();
+    for (int number = 0; number < 12 && core::table(state, "tools").has(turn_name(k, number));
+         ++number)
+      like.tools[k].turn.push_back(core::load_real(state, "tools", turn_name(k, number)));
   }
   return like;
 }

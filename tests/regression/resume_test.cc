@@ -299,6 +299,19 @@ TEST_F(Resume, ARunCanBeProlonged)
   expect_same("first", "whole");
 }
 
+// The ball spins, the stamp does not.
+TEST_F(Resume, ToolsAreKeptAsTheyHaveTurned)
+{
+  const auto states = file_json("whole/run.json")["states"];
+  ASSERT_GE(states.size(), 2u);
+  for (const auto &state : states) {
+    ASSERT_EQ(state["tools"].size(), 2u);
+    EXPECT_EQ(state["tools"][0]["turn"].size(), 12u);
+    EXPECT_FALSE(state["tools"][1].contains("turn"));
+  }
+  EXPECT_NE(states.front()["tools"][0]["turn"], states.back()["tools"][0]["turn"]);
+}
+
 // Also where the first part of the run wrote none, and where it wrote more.
 TEST_F(Resume, WhatIsWrittenMayChange)
 {

@@ -102,7 +102,7 @@ ToolReading<dim> RigidTools<dim>::read(int k) const
 {
   const RigidTool<dim> &tool = tools_[k];
   return {zone_force_[k] + far_force_[k], tool.displacement(), tool.velocity(),
-          tool.is_gone() ? 0 : contacts_[k].area()};
+          tool.is_gone() ? 0 : contacts_[k].area(), tool.rotation()};
 }
 
 template <int dim>

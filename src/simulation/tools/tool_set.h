@@ -27,6 +27,7 @@ struct ToolReading
   Vector<dim> displacement; // m, of the tool
   Vector<dim> velocity;     // m/s, of a free tool half a step ago
   double area = 0;          // m^2 that the tool touches
+  Eigen::Matrix<double, dim, dim> rotation; // about its centre
 };
 
 /// Rigid tools that touch the body. A body without tools has none of this.

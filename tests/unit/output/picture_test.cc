@@ -352,4 +352,16 @@ TEST(Drawing, TextsHaveWidths)
               Drawing::text_width("a", font) + Drawing::text_width("b", font), 0.1);
   EXPECT_NEAR(Drawing::text_width("abc", {24}), 2 * Drawing::text_width("abc", font), 0.2);
 }
+
+// A quarter turn about (2, 1), then a way along x.
+TEST(FieldView, ToolsAreShownAsTheyHaveTurned)
+{
+  BodyState state;
+  state.tools = {{{2, 1, 0, 4, 1, 0}, {0.5, 0, 0}, {0, -1, 0, 3, 1, 0, 0, -1, 0, 0, 1, 0}}};
+  FieldView view;
+  view.magnify = 1;
+  const Picture picture = picture_of(state, 2, view);
+  ASSERT_EQ(picture.segments.size(), 1u);
+  EXPECT_EQ(picture.segments[0].points, (std::vector<double>{2.5, 1, 0, 2.5, 3, 0}));
+}
 } // namespace

@@ -37,8 +37,14 @@ TEST(RunRecord, ComesBackWhole)
   r.peak_load = -1e5;
   r.figures = {{"strength", {2.5e7, "Pa"}}, {"c", {0.82, ""}}};
   r.magnification = 500;
-  r.states = {{"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""},
-              {"end", "at the end", 2e-3, "", "", {{{0, 0, 0, 1, 0, 0}, {0, -0.25, 0}}, {}}}};
+  r.states = {
+      {"peak", "near the peak load", 1e-3, "fields/particles_peak.vtp", ""},
+      {"end",
+       "at the end",
+       2e-3,
+       "",
+       "",
+       {{{0, 0, 0, 1, 0, 0}, {0, -0.25, 0}}, {{}, {}, {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}}}}};
   r.pictures = {{"pictures/peak.png", "at the peak"}};
   r.trusted_until = 2e-4;
   r.broken_in_overlap = 7;
@@ -65,6 +71,8 @@ TEST(RunRecord, ComesBackWhole)
   ASSERT_EQ(back.states[1].tools.size(), 2u);
   EXPECT_EQ(back.states[1].tools[0].points, r.states[1].tools[0].points);
   EXPECT_EQ(back.states[1].tools[0].displacement, r.states[1].tools[0].displacement);
+  EXPECT_TRUE(back.states[1].tools[0].turn.empty());
+  EXPECT_EQ(back.states[1].tools[1].turn, r.states[1].tools[1].turn);
   EXPECT_EQ(back.skipped.at(0).why, "nothing is broken");
   EXPECT_EQ(back.figures.at("strength").value, 2.5e7);
   EXPECT_EQ(back.figures.at("strength").unit, "Pa");
