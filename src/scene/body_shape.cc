@@ -349,21 +349,24 @@ std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, 
 }
 
 template <int dim>
-std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int boundary)
+SurfaceFaces<dim>::SurfaceFaces(const Specimen &specimen)
+    : specimen_(specimen),
+      solid_(solid_of<dim>(specimen, std::max(specimen.size[0], specimen.size[1]) / 400))
 {
-  if (boundary < 0) // no side
-    return {};
-  const double size = std::max(specimen.size[0], specimen.size[1]);
-  const auto solid = solid_of<dim>(specimen, size / 400);
-  if (!solid)
-    return {core::side_corners<dim>(Vector<dim>(specimen.lower().data()),
-                                    Vector<dim>(specimen.upper().data()), boundary)};
+}
+
+template <int dim>
+std::vector<core::FaceCorners<dim>> SurfaceFaces<dim>::of(int boundary) const
+{
+  if (!solid_)
+    return {core::side_corners<dim>(Vector<dim>(specimen_.lower().data()),
+                                    Vector<dim>(specimen_.upper().data()), boundary)};
   std::vector<core::FaceCorners<dim>> faces;
-  for (const auto &facet : solid->facets()) {
+  for (const auto &facet : solid_->facets()) {
     if (facet.boundary != boundary)
       continue;
     auto &face = faces.emplace_back();
-    const auto place = [&](int vertex) { return solid->vertices()[vertex]; };
+    const auto place = [&](int vertex) { return solid_->vertices()[vertex]; };
     const auto &edges = facet.edges;
     // Edges follow each other round the outer loop, then round openings, to which a cut leads.
     for (std::size_t k = 0; k < edges.size();) {
@@ -416,8 +419,8 @@ template std::shared_ptr<const core::Solid<2>> mesh_outline_of<2>(const Specimen
                                                                   const core::BoxUnion<2> &);
 template std::shared_ptr<const core::Solid<2>> mesh_outline_of<3>(const Specimen &, double,
                                                                   const core::BoxUnion<3> &);
-template std::vector<core::FaceCorners<2>> faces_of<2>(const Specimen &, int);
-template std::vector<core::FaceCorners<3>> faces_of<3>(const Specimen &, int);
+template class SurfaceFaces<2>;
+template class SurfaceFaces<3>;
 template std::shared_ptr<const core::Solid<2>> solid_of(const Specimen &, double);
 template std::shared_ptr<const core::Solid<3>> solid_of(const Specimen &, double);
 } // namespace ligament::program

@@ -35,9 +35,27 @@ template <int dim>
 std::shared_ptr<const core::Solid<2>> mesh_outline_of(const Specimen &specimen, double side,
                                                       const core::BoxUnion<dim> &left_out);
 
-/// The plane faces of one of its sides. Ends of a prism with openings are given without these.
+/// The plane faces of the body's surface by side. Ends of a prism with openings are given without
+/// these, a cut leads to each. The body is made once, which takes seconds for large surfaces.
 template <int dim>
-std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int boundary);
+class SurfaceFaces
+{
+public:
+  explicit SurfaceFaces(const Specimen &specimen);
+  std::vector<core::FaceCorners<dim>> of(int boundary) const;
+
+private:
+  const Specimen &specimen_;
+  std::shared_ptr<const core::Solid<dim>> solid_; // null: a box
+};
+
+/// Of one side.
+template <int dim>
+std::vector<core::FaceCorners<dim>> faces_of(const Specimen &specimen, int boundary)
+{
+  return boundary < 0 ? std::vector<core::FaceCorners<dim>>()
+                      : SurfaceFaces<dim>(specimen).of(boundary);
+}
 
 /// Whether points lie in the body.
 class BodyTest

@@ -276,7 +276,7 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
       continue; // crystals have faces on the sides of the box alone
     const std::string key = fmt::format("/loads/{}", l);
     double area = body.zone ? body.loaded_faces[l] : 0;
-    const double whole = loaded_area<dim>(scene, load);
+    const double whole = body.load_places[l].area;
     if (is_held) {
       const int n_nodes = body.far ? body.far->n_held_nodes(int(l)) : 0;
       if (area == 0 && n_nodes == 0)
@@ -353,8 +353,9 @@ CoupledBody<dim> make_body(const Scene &scene, core::Log &log, core::Timers &tim
   body.spacing = scene.zone.spacing;
   body.loads = make_loads<dim>(scene);
   body.load_places = load_places(scene, body.loads);
+  const SurfaceFaces<dim> sides(scene.specimen);
   for (int boundary = 0; boundary < 2 * dim; ++boundary)
-    for (const auto &face : faces_of<dim>(scene.specimen, boundary))
+    for (const auto &face : sides.of(boundary))
       body.side_areas[boundary] += body.thickness * core::face_area<dim>(face);
   if (scene.zone.spacing > 0 && scene.zone.packing)
     body.equivalent_particles = std::llround(material_volume(scene) / mean_cell_volume(scene));

@@ -106,11 +106,12 @@ std::vector<LoadPlace<dim>> load_places(const Scene &scene,
 {
   const double thickness = dim == 2 ? scene.specimen.thickness : 1;
   std::vector<LoadPlace<dim>> places(loads.size());
+  const SurfaceFaces<dim> surface(scene.specimen);
   for (std::size_t l = 0; l < loads.size(); ++l) {
     if (loads[l].boundary < 0)
       continue;
     LoadPlace<dim> &place = places[l];
-    for (const auto &face : faces_of<dim>(scene.specimen, loads[l].boundary)) {
+    for (const auto &face : surface.of(loads[l].boundary)) {
       place.side_area += thickness * core::face_area<dim>(face);
       const auto piece = loads[l].part.clip(face);
       if (const double area = thickness * core::face_area<dim>(piece); area > 0) {

@@ -128,7 +128,7 @@ void fit_forces(const Scene &scene, CoupledBody<dim> &body)
   for (std::size_t l = 0; l < scene.loads.size(); ++l) {
     if (scene.loads[l].kind != LoadKind::force || body.loaded_faces[l] <= 0)
       continue;
-    const double share = loaded_area<dim>(scene, body.loads[l]) / body.loaded_faces[l];
+    const double share = body.load_places[l].area / body.loaded_faces[l];
     for (auto &component : body.loads[l].value)
       if (component)
         *component *= share;
