@@ -175,7 +175,7 @@ TEST(RecorderOfPhases, GoesOnInsideAStaticPhase)
   core::State state;
   run.recorder.save(state);
   Recorded again("begun_again", {loading});
-  again.recorder.load(state, {}, again.small.body);
+  again.recorder.load(state, {}, again.small.body, 0);
   again.look(1);
   again.recorder.sync();
   EXPECT_EQ(again.history().raw("static"), (std::vector<double>{1}));
