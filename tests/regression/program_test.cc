@@ -280,14 +280,20 @@ TEST(Program, CheckAdvisesOnPackingsFromFiles)
                      "--set /discrete_zone/packing=random --set /time/duration=1 -o advised/run")
                 .code,
             0);
-  const auto outcome = ligament("check advised/scene.json --json " + large + pulled +
-                                "--set /discrete_zone/packing=file "
-                                "--set /discrete_zone/packing_file=run/packing.csv");
+  const std::string file = "--set /discrete_zone/packing=file "
+                           "--set /discrete_zone/packing_file=run/packing.csv ";
+  // What a run has resolved finds the packing from its own folder, too.
+  ASSERT_EQ(ligament("run advised/scene.json " + large + pulled + file +
+                     "--set /time/duration=1 -o advised/again")
+                .code,
+            0);
+  EXPECT_EQ(ligament("check advised/again/scene.resolved.json").code, 0);
+  const auto outcome = ligament("check advised/scene.json --json " + large + pulled + file);
   ASSERT_EQ(outcome.code, 0);
   const auto json = outcome.json();
-  if (json["predicted_saving"] >= 1) // 0.7 on an idle machine
-    GTEST_SKIP() << "nothing to advise on";
-  EXPECT_GE(json["advice"]["options"].size(), 1u) << json["advice"].dump(1);
+  if (json["predicted_saving"] < 1) { // it is measured: 0.7 on an idle machine
+    EXPECT_GE(json["advice"]["options"].size(), 1u) << json["advice"].dump(1);
+  }
 }
 
 TEST(Program, AnOlderRunIsKept)
