@@ -279,10 +279,7 @@ bool clip_to_box(const Vector<dim> &lower, const Vector<dim> &upper,
 
 // Around the body, as a share of its longest edge: pictures show what of a tool lies there.
 constexpr double shown_margin = 0.25;
-} // namespace
 
-namespace
-{
 /// As ToolOutline has it.
 template <int dim>
 std::vector<double> turn_of(const Eigen::Matrix<double, dim, dim> &rotation,

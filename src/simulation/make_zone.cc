@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
 
 namespace ligament::program
 {
@@ -103,19 +102,18 @@ std::vector<std::vector<int>> load_layers(const CoupledBody<dim> &body,
     const auto &load = body.loads[l];
     if (load.boundary <= inner_surface<dim> || load.kind != core::BoundaryLoad<dim>::Kind::traction)
       continue;
-    std::set<int> loaded;
+    std::vector<char> is_loaded(packing.size(), 0);
     for (const auto &face : packing.boundary_faces)
-      if (face.boundary == load.boundary &&
+      if (face.boundary == load.boundary && !is_loaded[face.i] &&
           packings::OuterFace<dim>(face, packing).inside({load.part}))
-        loaded.insert(face.i);
-    std::set<int> layer = loaded;
-    for (const auto &face : packing.faces) {
-      if (loaded.count(face.i) > 0)
-        layer.insert(face.j);
-      if (loaded.count(face.j) > 0)
-        layer.insert(face.i);
-    }
-    layers[l].assign(layer.begin(), layer.end());
+        is_loaded[face.i] = 1;
+    std::vector<char> is_in = is_loaded;
+    for (const auto &face : packing.faces)
+      if (is_loaded[face.i] || is_loaded[face.j])
+        is_in[face.i] = is_in[face.j] = 1;
+    for (int i = 0; i < packing.size(); ++i)
+      if (is_in[i])
+        layers[l].push_back(i);
   }
   return layers;
 }
