@@ -58,7 +58,8 @@ void find_tensions(const StressSweep<2> &sweep);
 void find_tensions(const StressSweep<3> &sweep);
 
 /// Keeps the table of the bonds from one step to the next, in which mostly the same particles are
-/// asked for; about 1 kB for each of them. None when nothing was asked for some time.
+/// asked for, or some beside them; about 1 kB for each, at most three times as many. None when
+/// nothing was asked for some time.
 template <int dim>
 class StressScreen
 {
