@@ -90,9 +90,12 @@ AtomForce<dim>::AtomForce(const Crystal<dim> &crystal, const packings::Packing<d
                        dim * crystal.volume() / (n_nearest * crystal.spacing()), lasting);
   looked_build_ = list_.n_builds();
   const auto &species = body_.species;
+  const bool is_of_one_kind =
+      std::adjacent_find(species.begin(), species.end(), std::not_equal_to<>()) == species.end();
+  if (is_of_one_kind && !species.empty())
+    energy_change_.emplace(body_.potential, species[0], packing.period);
   // Rows know no cuts.
-  if (options.keeps_neighbours && body_.screen.is_empty() &&
-      std::adjacent_find(species.begin(), species.end(), std::not_equal_to<>()) == species.end())
+  if (options.keeps_neighbours && body_.screen.is_empty() && is_of_one_kind)
     rows_.emplace(crystal, packing, species[0], list_.cutoff() + list_.skin());
 }
 
@@ -222,6 +225,14 @@ std::vector<double> AtomForce<dim>::energy_changes(const Particles &atoms) const
 }
 
 template <int dim>
+double AtomForce<dim>::energy_change(const Particles &atoms) const
+{
+  return energy_change_ && body_.weight.empty()
+             ? energy_change_->find(list_, atoms, reference_density_)
+             : sum(energy_changes(atoms));
+}
+
+template <int dim>
 double AtomForce<dim>::whole_energy(const Particles &atoms) const
 {
   return body_.weight.empty() ? kernel_.energy(list_) : sum(energies(atoms));
@@ -232,7 +243,7 @@ double AtomForce<dim>::potential_energy(const Particles &atoms) const
 {
   update_list(atoms);
   const double bonds =
-      list_is_reference_ ? sum(energy_changes(atoms)) : whole_energy(atoms) - reference_energy_;
+      list_is_reference_ ? energy_change(atoms) : whole_energy(atoms) - reference_energy_;
   return bonds + loads_.energy(atoms);
 }
 

@@ -5,6 +5,7 @@
 #include "md/atom_loads.h"
 #include "md/atom_tangent.h"
 #include "md/crystal.h"
+#include "md/energy_change.h"
 #include "md/parted_bonds.h"
 #include "md/row_kernel.h"
 #include "packings/packing.h"
@@ -148,6 +149,8 @@ private:
   /// more than in the reference, bond by bond.
   std::vector<double> energies(const Particles &atoms) const;
   std::vector<double> energy_changes(const Particles &atoms) const;
+  /// Sum of the latter, by vectors where it can be.
+  double energy_change(const Particles &atoms) const;
   /// Of all bonds of the list, which is up to date; J.
   double whole_energy(const Particles &atoms) const;
   /// Vectors to the present neighbours of each atom within `reach`, in m.
@@ -157,6 +160,7 @@ private:
   AtomBody<dim> body_;
   Components<dim> reference_; // m
   mutable AtomKernel kernel_; // has work space of its own
+  mutable std::optional<EnergyChange<dim>> energy_change_; // of bodies of one species, likewise
   AtomLoads<dim> loads_;
   particles::CoupledEdge<dim> edge_;
   PartedBonds<dim> parted_;

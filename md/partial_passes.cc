@@ -181,10 +181,11 @@ void change_pass(const PartialArrays &k)
     const LanePairs<dim> pairs(k, p);
     const V rest = hn::LoadU(d, k.rest + p), step = hn::Set(d, k.inverse_step),
             end = hn::Set(d, k.end);
-    const V longer =
-        hn::Div(pairs.stretched(k, p), hn::Add(rest, hn::Sqrt(pairs.r2))); // all digits
-    const V at_rest = hn::Mul(rest, step), first = hn::Min(at_rest, end),
-            last = hn::Min(hn::MulAdd(longer, step, at_rest), end), way = hn::Sub(last, first);
+    const V longer = hn::Mul(
+        step, hn::Div(pairs.stretched(k, p), hn::Add(rest, hn::Sqrt(pairs.r2)))); // all digits
+    const V at_rest = hn::Mul(rest, step), now = hn::Add(at_rest, longer),
+            first = hn::Min(at_rest, end), last = hn::Min(now, end),
+            way = hn::IfThenElse(hn::Lt(hn::Max(at_rest, now), end), longer, hn::Sub(last, first));
     if (hn::AllTrue(d, hn::Eq(way, hn::Zero(d))))
       continue;
     const LaneGains gains(first, last);
