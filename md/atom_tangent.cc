@@ -109,7 +109,7 @@ void AtomTangent<dim>::for_each_pair(Visit &&visit) const
 template <int dim>
 void AtomTangent<dim>::keep_stiffness()
 {
-  constexpr long most = 4'000'000; // 72 bytes each
+  constexpr long most = 14'000'000; // 72 bytes each: half a million atoms
   if (bonds_.n_pairs() > most)
     return;
   std::vector<KeptPair> kept;
