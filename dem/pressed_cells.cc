@@ -4,7 +4,6 @@
 #include "dem/turn.h"
 
 #include <algorithm>
-#include <map>
 
 namespace ligament::dem
 {
@@ -26,6 +25,7 @@ void PressedCells<dim>::add_face(const packings::OuterFace<dim> &face, double sh
         for (int c = 0; c < dim; ++c)
           if (other.value[c])
             acting[c] = 0;
+    faces_of_[face.of.i].push_back(int(faces_.size()));
     faces_.push_back(
         {face.of.i, inside->lever, face.of.normal, inside->area, int(l), acting, shear_modulus});
   }
@@ -118,12 +118,14 @@ template <int dim>
 void PressedCells<dim>::add_force_on(int i, const Particles &p, const Evaluation<dim> &e,
                                      Wrench<dim> &sum) const
 {
-  for (const Face &face : faces_)
-    if (face.i == i) {
-      const Vector<dim> f = force(face, p, e);
-      sum.force += f;
-      sum.torque += cross(lever(face, p), f);
-    }
+  const auto faces = faces_of_.find(i);
+  if (faces == faces_of_.end())
+    return;
+  for (const int k : faces->second) {
+    const Vector<dim> f = force(faces_[k], p, e);
+    sum.force += f;
+    sum.torque += cross(lever(faces_[k], p), f);
+  }
 }
 
 template <int dim>
@@ -149,14 +151,16 @@ void PressedCells<dim>::book_work(const Particles &p, const Evaluation<dim> &e,
                                    face.lever.dot(unit_traction(face)) / (2 * face.shear_modulus);
     now.push_back({place, force(face, p, e), pressure(face, e), slope});
   }
-  if (!booked_.empty())
-    for (std::size_t f = 0; f < faces_.size(); ++f) {
-      if (!p.part.owns(faces_[f].i))
-        continue;
-      const Booked &old = booked_[f];
-      work.add(0.5 * (now[f].force + old.force).dot(now[f].place - old.place));
-      work.add(0.5 * (now[f].slope + old.slope) * (now[f].pressure - old.pressure));
-    }
+  if (booked_.empty()) // as if pressures that are there at once had come in proportion
+    for (const Booked &b : now)
+      booked_.push_back({b.place, Vector<dim>::Zero(), 0, 0});
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    if (!p.part.owns(faces_[f].i))
+      continue;
+    const Booked &old = booked_[f];
+    work.add(0.5 * (now[f].force + old.force).dot(now[f].place - old.place));
+    work.add(0.5 * (now[f].slope + old.slope) * (now[f].pressure - old.pressure));
+  }
   booked_ = std::move(now);
 }
 

@@ -8,6 +8,7 @@
 #include "packings/outer_face.h"
 
 #include <functional>
+#include <map>
 
 namespace ligament::dem
 {
@@ -79,6 +80,7 @@ private:
   names_of_faces(const core::Names &names) const;
 
   std::vector<Face> faces_;
+  std::map<int, std::vector<int>> faces_of_; // of particles
   std::vector<double> pressure_; // Pa, of each load
   std::vector<Booked> booked_;   // empty: nothing yet
 };

@@ -328,22 +328,27 @@ void SurfaceLoads<dim>::book_work(const Particles &p, const Evaluation<dim> &e)
     now.gradient.push_back(
         law_of(face).gradient(face.acting.cwiseProduct(face.lever + change), e.pressure[face.i]));
   }
-  if (booked_) {
-    const Booked &old = *booked_;
-    for (std::size_t w = 0; w < walls_.size(); ++w)
-      for (int c = 0; c < dim && p.part.owns(walls_[w].i); ++c)
-        if (const int l = walls_[w].load[c]; l >= 0)
-          if (const double moved = now.displacement[l][c] - old.displacement[l][c]; moved != 0)
-            work_.add(0.5 * (now.wall_force[w][c] + old.wall_force[w][c]) * moved);
-    for (std::size_t f = 0; f < tractions_.size(); ++f) {
-      const auto &face = tractions_[f];
-      if (!p.part.owns(face.i))
-        continue;
-      const Vector<dim> t = now.traction[face.load], t_old = old.traction[face.load];
-      work_.add(0.5 * face.area *
-                face.acting.cwiseProduct(t + t_old).dot(now.place[f] - old.place[f]));
-      work_.add(0.5 * (now.gradient[f] + old.gradient[f]).dot(t - t_old));
-    }
+  if (!booked_) { // as if loads that are there at once had come in proportion
+    const auto none = [](std::size_t n) {
+      return std::vector<Vector<dim>>(n, Vector<dim>::Zero());
+    };
+    booked_ = Booked{none(loads_.size()), none(loads_.size()), none(walls_.size()), now.place,
+                     none(tractions_.size())};
+  }
+  const Booked &old = *booked_;
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    for (int c = 0; c < dim && p.part.owns(walls_[w].i); ++c)
+      if (const int l = walls_[w].load[c]; l >= 0)
+        if (const double moved = now.displacement[l][c] - old.displacement[l][c]; moved != 0)
+          work_.add(0.5 * (now.wall_force[w][c] + old.wall_force[w][c]) * moved);
+  for (std::size_t f = 0; f < tractions_.size(); ++f) {
+    const auto &face = tractions_[f];
+    if (!p.part.owns(face.i))
+      continue;
+    const Vector<dim> t = now.traction[face.load], t_old = old.traction[face.load];
+    work_.add(0.5 * face.area *
+              face.acting.cwiseProduct(t + t_old).dot(now.place[f] - old.place[f]));
+    work_.add(0.5 * (now.gradient[f] + old.gradient[f]).dot(t - t_old));
   }
   booked_ = std::move(now);
   pressed_.book_work(p, e, work_);

@@ -60,6 +60,29 @@ TYPED_TEST(Energy, SlowFreeVibrationOver1e5Steps)
   EXPECT_LT(std::abs(drift), 3 * wander);
 }
 
+// Through theta loaded faces have energy before anything has moved: the work of loads that are
+// there at once, as if they had come in proportion.
+TYPED_TEST(Energy, LoadsThatAreThereAtOnceAreBooked)
+{
+  constexpr int dim = TypeParam::dim;
+  const auto packing = packings::make_lattice_packing<dim>(box<TypeParam>(dim == 2 ? 10 : 4));
+  std::vector<core::BoundaryLoad<dim>> loads(2);
+  loads[0].boundary = 3;
+  loads[0].kind = core::BoundaryLoad<dim>::Kind::traction;
+  loads[0].value[0] = 1e7;
+  loads[0].value[1] = 2e7;
+  loads[1].boundary = 2;
+  loads[1].kind = core::BoundaryLoad<dim>::Kind::traction;
+  loads[1].pressure = 3e7;
+  Run<dim> run(packing, DemMaterial{7e10, 0.3, 2500, PlaneMode::strain, 0}, loads);
+  const double energy = run.mechanical();
+  EXPECT_GT(std::abs(energy), 1e-3 * packing.volume[0] * 4e14 / 7e10);
+  EXPECT_NEAR(run.residual(), 0, 1e-13 * std::abs(energy));
+  for (int s = 0; s < 100; ++s)
+    run.step();
+  EXPECT_NEAR(run.residual(), 0, 1e-4 * run.force->external_work());
+}
+
 /// A specimen torn apart by its two ends: the largest residual of all steps, the energy that
 /// breaking took, the number of broken bonds.
 template <typename C>
