@@ -166,10 +166,26 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
   if (bonds.empty() || !fracture().faces_open())
     return bonds;
   const StressedBody<dim> state = stressed(p, evaluation_);
-  std::vector<BondId> at_once;
+  // Stresses are found at once: each look goes through all faces that soften. One that begins has
+  // no opening yet and changes nothing for the others.
+  std::vector<int> materials_of, ends;
   for (const BondId &id : bonds) {
     const Bond<dim> b = body_.bonds().bond(id);
-    const int material = search_.failing_material(id, b, state);
+    materials_of.push_back(search_.failing_material(id, b, state));
+    if (fracture().energy_of(materials_of.back()) > 0)
+      ends.insert(ends.end(), {b.i, b.j});
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  const auto stress = state.stresses_of(ends);
+  const auto stress_of = [&](int i) -> const Strain<dim> & {
+    return stress[std::lower_bound(ends.begin(), ends.end(), i) - ends.begin()];
+  };
+  std::vector<BondId> at_once;
+  for (std::size_t k = 0; k < bonds.size(); ++k) {
+    const BondId &id = bonds[k];
+    const Bond<dim> b = body_.bonds().bond(id);
+    const int material = materials_of[k];
     const double energy = fracture().energy_of(material);
     const Vector<dim> force = state.force(b, state.motion(b));
     if (energy == 0) {
@@ -184,8 +200,7 @@ std::vector<BondId> ManyBodyForce<dim>::begin_softening(const Particles &p,
       double whole = b.weight * energy * b.area;
       if (search_.strengths_scatter())
         whole = std::max(whole, least_energy(b, force, fracture().softening_of(material)));
-      const auto stress = state.stresses_of({std::min(b.i, b.j), std::max(b.i, b.j)});
-      const Strain<dim> mean = (stress[0] + stress[1]) / 2;
+      const Strain<dim> mean = (stress_of(b.i) + stress_of(b.j)) / 2;
       const Vector<dim> way = PrincipalTension<dim>::direction(mean);
       cohesive_.begin(id, b, p, force, way, material, whole);
     }

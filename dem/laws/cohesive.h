@@ -124,6 +124,13 @@ struct CohesiveLaw
                     along * stiffness * along + stiffness.trace() * across, across + beta2 * along);
   }
 
+  /// Whether the sides of a face are apart. Rounding alone opens nothing: what is closed slides in
+  /// its plane to some last digits.
+  static bool is_apart(const Vector<dim> &jump, const Vector<dim> &normal)
+  {
+    return normal.dot(jump) > 1e-9 * jump.norm();
+  }
+
   /// Whether an open face would go back on its secant.
   bool unloads(const Opening<dim> &o, const Vector<dim> &normal) const
   {

@@ -286,9 +286,9 @@ template <typename Visit>
 void CohesiveFaces<dim>::for_each_torn(Visit &&visit) const
 {
   for (const auto &[name, face] : faces_) {
-    const double open = face.bond.normal.dot(face.opening.jump);
-    const bool has_left = face.opening.jump.norm() > body_.spacing() / 4;
-    if (face.law.left(face.opening) == 0 && (open > 0 || has_left))
+    const bool is_apart = face.law.is_apart(face.opening.jump, face.bond.normal),
+               has_left = face.opening.jump.norm() > body_.spacing() / 4;
+    if (face.law.left(face.opening) == 0 && (is_apart || has_left))
       visit(name, face);
   }
 }
@@ -421,15 +421,18 @@ template <int dim>
 void CohesiveFaces<dim>::add_force_on(int i, const Particles &p, const Evaluation<dim> &e,
                                       Wrench<dim> &wrench) const
 {
-  for (const auto &[name, face] : faces_) {
-    if (face.bond.i != i && face.bond.j != i)
-      continue;
-    const auto change = SofteningFace<dim>(face, p, strains_)
-                            .change(p, e.pressure[face.bond.i], e.pressure[face.bond.j]);
-    const Wrench<dim> &own = change[face.bond.i == i ? 0 : 1];
+  if (faces_.empty())
+    return;
+  body_.bonds().for_each_bond_of(i, [&](BondId, const Bond<dim> &b) {
+    const Face *const face = find(b, p);
+    if (!face)
+      return;
+    const auto change = SofteningFace<dim>(*face, p, strains_)
+                            .change(p, e.pressure[face->bond.i], e.pressure[face->bond.j]);
+    const Wrench<dim> &own = change[face->bond.i == i ? 0 : 1];
     wrench.force += own.force;
     wrench.torque += own.torque;
-  }
+  });
 }
 
 template <int dim>

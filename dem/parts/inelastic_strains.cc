@@ -70,6 +70,9 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
   if (std::none_of(materials.begin(), materials.end(),
                    [](const DemMaterial &m) { return has_own_strains(m); }))
     return;
+  std::stable_sort(
+      walls_.begin(), walls_.end(),
+      [](const WallFace<dim> &first, const WallFace<dim> &second) { return first.i < second.i; });
   core::require(3 * materials.size() < most_laws, "a body that flows has too many materials");
   for (const DemMaterial &m : materials) {
     check(m.plasticity);
@@ -126,6 +129,16 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
 }
 
 template <int dim>
+template <typename Visit>
+void InelasticStrains<dim>::for_each_wall_of(int i, Visit &&visit) const
+{
+  auto wall = std::lower_bound(walls_.begin(), walls_.end(), i,
+                               [](const WallFace<dim> &w, int of) { return w.i < of; });
+  for (; wall != walls_.end() && wall->i == i; ++wall)
+    visit(*wall);
+}
+
+template <int dim>
 bool InelasticStrains<dim>::is_held(int i, double volume) const
 {
   Matrix held = Matrix::Zero();
@@ -144,9 +157,9 @@ bool InelasticStrains<dim>::is_held(int i, double volume) const
             (q * other * n * n.transpose() + 0.5 * (other - q) * (mixed + mixed.transpose()) -
              side * side.transpose());
   });
-  for (const auto &wall : walls_)
-    if (wall.i == i)
-      held += 0.5 * wall.area * wall.q * wall.normal * wall.normal.transpose();
+  for_each_wall_of(i, [&](const WallFace<dim> &wall) {
+    held += 0.5 * wall.area * wall.q * wall.normal * wall.normal.transpose();
+  });
   constexpr double least = 0.05; // 1/2 in a whole cell; edges of clipped lattices have 0.06
   return Eigen::SelfAdjointEigenSolver<Matrix>(held, Eigen::EigenvaluesOnly).eigenvalues()[0] >=
          least * volume;
@@ -183,13 +196,13 @@ std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volu
   });
   std::array<Matrix, dim> rows;
   rows.fill(of_bonds / volume);
-  for (const auto &wall : walls_)
-    if (wall.i == i)
-      for (int c = 0; c < dim; ++c)
-        if (wall.prescribed[c] != 0) {
-          is_closed = false;
-          rows[c] += wall.area * wall.q / volume * wall.normal * wall.normal.transpose();
-        }
+  for_each_wall_of(i, [&](const WallFace<dim> &wall) {
+    for (int c = 0; c < dim; ++c)
+      if (wall.prescribed[c] != 0) {
+        is_closed = false;
+        rows[c] += wall.area * wall.q / volume * wall.normal * wall.normal.transpose();
+      }
+  });
   constexpr double round_off = 1e-9;
   if (is_closed && (rows[0] - Matrix::Identity()).norm() < round_off)
     return std::nullopt;

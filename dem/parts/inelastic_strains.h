@@ -191,6 +191,8 @@ private:
   /// Of a particle that stays elastic from now on.
   void forget_viscosity(int i);
   int law_number(int i) const { return law_of_.empty() ? 0 : law_of_[i]; }
+  template <typename Visit>
+  void for_each_wall_of(int i, Visit &&visit) const;
   /// Of the particle, V M of its bonds and walls; null: a whole cell.
   std::optional<OpenCell<dim>> find_cell(int i, double volume) const;
   void set_cell(int i, double volume);
@@ -201,7 +203,7 @@ private:
 
   const BondedBody<dim> *body_;
   particles::Part part_;
-  std::vector<WallFace<dim>> walls_;
+  std::vector<WallFace<dim>> walls_; // by particles
   std::vector<FlowLaw> laws_;
   std::vector<Plasticity> parameters_;          // of the laws, whose tables they hold
   mutable std::vector<ViscousNumbers> viscous_; // of the materials, twice

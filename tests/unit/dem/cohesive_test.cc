@@ -332,6 +332,12 @@ TYPED_TEST(Cohesive, FaceFollowsThePlainLaw)
       else
         ASSERT_GE(plain.damage, 1 - 1e-9);
       const bool open = next.jump.dot(n) > 1e-12;
+      // As it is kept, in axes that turn.
+      const Eigen::Matrix<double, dim, dim> axes =
+          Eigen::Matrix<double, dim, dim>::NullaryExpr([&] { return normal(random); })
+              .householderQr()
+              .householderQ();
+      ASSERT_EQ(law.is_apart(axes * next.jump, axes * n), open) << k << ' ' << step;
       grown += open && next.damage > last.damage && next.damage < 1;
       unloaded += open && next.damage == last.damage;
       stuck += !open && next.jump == last.jump - last.jump.dot(n) * n && last.damage > 0;
