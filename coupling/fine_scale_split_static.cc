@@ -51,6 +51,8 @@ void FineScaleSplit<dim>::start_velocities(Bodies<dim> &bodies, const StepTime &
 {
   const int m = parameters_.step_ratio;
   if (m > 1) {
+    if (fast_)
+      slow_force_ = slow_force_at(near_.displacement());
     Nodal<dim> swing = Nodal<dim>::Zero(overlap_.n_nodes(), dim);
     add_impulse(-(m - 1) * step.dt / 2, swing);
     mass_solver_->solve(swing.data(), dim);

@@ -40,6 +40,7 @@ public:
       drucker_prager();
     if (p_.criterion == Criterion::mohr_coulomb)
       mohr_coulomb();
+    stress_out_of_plane();
   }
 
 private:
@@ -97,6 +98,23 @@ private:
           "it becomes a strength of faces that grows as the spacing falls, which is right at "
           "the tip of a crack alone: the load at which one begins depends on the spacing",
           "give \"strength\" beside it: faces then soften from it on and take G_c");
+  }
+
+  // Flow takes sigma_zz towards the mean of the others, which lowers sigma_e.
+  void stress_out_of_plane()
+  {
+    const bool reads_it = p_.criterion == Criterion::von_mises ||
+                          p_.criterion == Criterion::drucker_prager ||
+                          p_.criterion == Criterion::energy;
+    if (reads_it && scene_.dimension == 2 && scene_.plane == PlaneMode::strain &&
+        (material_.plasticity || material_.viscosity))
+      f_.warning(key("criterion"),
+                 fmt::format("the criterion \"{}\" in {} reads the stress out of the plane as that "
+                             "of an elastic body",
+                             word_of(p_.criterion), section_),
+                 "nu times the sum of the others in plane strain; what has flowed or relaxed bears "
+                 "another one: for small nu a von Mises stress is read by up to 15 % too large",
+                 "choose \"maximum_tension\" or \"principal_stress\", plane stress or 3D");
   }
 
   void foreign_strengths()

@@ -236,7 +236,7 @@ Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
   Eigen::VectorXd r = system_.forces(time);
   project_force(r);
   norm = r.norm();
-  largest_load_ = std::max(largest_load_, system_.load_force());
+  largest_load_ = std::max(largest_load_, system_.load_force(time));
   return r;
 }
 

@@ -39,7 +39,7 @@ public:
   {
     double norm = 0;
     balance(time, norm);
-    const double load = std::max(system_.load_force(), 1e-3 * largest_load_);
+    const double load = std::max(system_.load_force(time), 1e-3 * largest_load_);
     return load > 0 ? norm / load : 0;
   }
   /// From the present place to equilibrium at the loads of `time` (s), held components being where

@@ -150,7 +150,7 @@ Eigen::VectorXd StaticSystem<dim>::forces(double time, double noted_share)
 }
 
 template <int dim>
-double StaticSystem<dim>::load_force() const
+double StaticSystem<dim>::load_force(double time) const
 {
   double sum = 0;
   for (int l = 0; l < int(body_.loads.size()); ++l) {
@@ -159,7 +159,8 @@ double StaticSystem<dim>::load_force() const
       force += body_.force()->reaction(l);
     if (body_.far)
       force += body_.far->reaction(l);
-    sum += force.norm();
+    sum += std::max(force.norm(),
+                    std::abs(body_.loads[l].pressure_at(time)) * body_.load_places[l].area);
   }
   return sum;
 }

@@ -24,8 +24,9 @@ public:
   /// What acts on the unknowns in the present state at the loads of `time` (s), in N and N m; see
   /// ParticleForce::compute_trial.
   Eigen::VectorXd forces(double time, double noted_share = 1);
-  /// Sum over the loads of what each exerts on the body, in N; of the last forces().
-  double load_force() const;
+  /// Sum over the loads of what each exerts on the body, in N; of the last forces(), at `time` (s).
+  /// Of a pressure the force on all of its faces, however they balance: on a closed rim they do.
+  double load_force(double time) const;
 
   /// A force in N that is round-off in this body: what a strain of 1e-15 would make act on a face.
   double round_off() const;

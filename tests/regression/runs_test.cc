@@ -111,6 +111,47 @@ TEST(Runs, PureBodiesGoThroughTheSameLoop)
   }
 }
 
+// Impulses on the mesh begin with an energy and a swing of their own: neither is a gain, and the
+// guard lets them pass.
+TEST(Runs, LoadsThatAreThereAtOnceAreNoGain)
+{
+  const std::string held = R"({"boundary": "bottom", "displacement": [0, 0]})";
+  const std::vector<std::string> loads[] = {
+      {"/loads=[" + held + R"(, {"boundary": "top", "traction": [null, 1e-3]}])"},
+      {"/loads=[" + held + "]", R"(/body_force={"acceleration": [0, -1e-4]})"}};
+  for (const auto &at_once : loads)
+    for (const char *ratio : {"1", "2", "3"}) {
+      SCOPED_TRACE(at_once[0] + " " + ratio);
+      const RunRecord record =
+          run("at_once",
+              at_once + std::vector<std::string>{std::string("/coupling/step_ratio=") + ratio});
+      EXPECT_EQ(record.status, "done") << record.reason;
+      ASSERT_TRUE(record.energy_residual);
+      EXPECT_LT(*record.energy_residual, 1e-3);
+    }
+}
+
+// The pressure on a closed rim has no resultant, nor have supports any: what is out of balance is
+// measured by the force on all of its faces.
+TEST(Runs, PressureInAHoleIsOnePhase)
+{
+  for (const BodyKind &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    const RunRecord record = run(
+        "rim",
+        kind.overrides +
+            std::vector<std::string>{
+                R"(/specimen/cutouts=[{"outline": [{"at": [3, 0], "centre": [0, 0]}], "side": "rim"}])",
+                R"(/loads=[{"boundary": "rim", "pressure": 1e-3, "ramp": 1e4}])",
+                "/time/loading=static", "/time/duration=2e4", "/output/history_interval=1e3"});
+    EXPECT_EQ(record.status, "done") << record.reason;
+    ASSERT_EQ(record.phases.size(), 1u);
+    EXPECT_LE(record.phases[0].solves, 60);
+    ASSERT_TRUE(record.energy_residual);
+    EXPECT_LT(*record.energy_residual, 1e-6);
+  }
+}
+
 // Both ends move sideways, the plate turns by a third of a degree. A linear coarse model would feel
 // the strain phi^2/2; at 0.1 degrees it becomes corotated, and log and record say so.
 TEST(Runs, ATurningPlateChangesItsRegimeByItself)
