@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace ligament::program
 {
@@ -40,6 +42,7 @@ StaticSystem<dim>::StaticSystem(CoupledBody<dim> &body)
       n_nodes_(body.far ? body.far->mesh().n_nodes() : 0)
 {
   find_inert();
+  find_node_masses();
   if (!body.zone)
     return;
   motion_ = body.zone->state;
@@ -150,6 +153,17 @@ Eigen::VectorXd StaticSystem<dim>::forces(double time, double noted_share)
 }
 
 template <int dim>
+double StaticSystem<dim>::whole_mass() const
+{
+  const auto sum = [](const std::vector<double> &masses) {
+    return std::accumulate(masses.begin(), masses.end(), 0., [](double all, double mass) {
+      return std::isfinite(mass) ? all + mass : all; // held ones have no end
+    });
+  };
+  return sum(node_mass_) + (body_.zone ? sum(body_.zone->state.mass) : 0.);
+}
+
+template <int dim>
 double StaticSystem<dim>::load_force(double time) const
 {
   double sum = 0;
@@ -159,8 +173,10 @@ double StaticSystem<dim>::load_force(double time) const
       force += body_.force()->reaction(l);
     if (body_.far)
       force += body_.far->reaction(l);
-    sum += std::max(force.norm(),
-                    std::abs(body_.loads[l].pressure_at(time)) * body_.load_places[l].area);
+    const auto &load = body_.loads[l];
+    if (load.kind == core::BoundaryLoad<dim>::Kind::acceleration)
+      force = whole_mass() * load.traction(time);
+    sum += std::max(force.norm(), std::abs(load.pressure_at(time)) * body_.load_places[l].area);
   }
   return sum;
 }
@@ -256,7 +272,22 @@ Eigen::VectorXd StaticSystem<dim>::stiffness_times(const Eigen::VectorXd &y)
   return give(motion_, force, -1);
 }
 
-// In the cells that the coupler took over the particles are the mass, pads included.
+// In the cells that the coupler took over the mass is that of a body force.
+template <int dim>
+void StaticSystem<dim>::find_node_masses()
+{
+  if (!body_.far)
+    return;
+  node_mass_ = body_.far->lumped_mass();
+  if (const auto *overlap = body_.coupler->overlap()) {
+    const auto &members = body_.whole_overlap ? body_.whole_overlap->state : body_.zone->state;
+    const auto weight = body_.coupler->near_weight(members);
+    for (std::size_t k = 0; k < weight.size(); ++k)
+      node_mass_[overlap->near_nodes[k]] = weight[k];
+  }
+}
+
+// Pads included.
 template <int dim>
 Eigen::VectorXd StaticSystem<dim>::momentum_of(const Eigen::VectorXd &y)
 {
@@ -270,7 +301,7 @@ Eigen::VectorXd StaticSystem<dim>::momentum_of(const Eigen::VectorXd &y)
       motion_.torque[c][i] = motion_.inertia(i) * motion_.spin[c][i];
   for (int c = 0; c < dim; ++c)
     for (int i = 0; i < n_nodes_; ++i)
-      nodal[c][i] *= body_.far->lumped_mass()[i];
+      nodal[c][i] *= node_mass_[i];
   body_.coupler->restrict_forces(motion_, nodal);
   return give(motion_, nodal, 1);
 }

@@ -26,6 +26,7 @@ public:
   Eigen::VectorXd forces(double time, double noted_share = 1);
   /// Sum over the loads of what each exerts on the body, in N; of the last forces(), at `time` (s).
   /// Of a pressure the force on all of its faces, however they balance: on a closed rim they do.
+  /// Of a body force the body's weight.
   double load_force(double time) const;
 
   /// A force in N that is round-off in this body: what a strain of 1e-15 would make act on a face.
@@ -90,6 +91,8 @@ public:
 private:
   int node_block(int node) const { return n_particles_ + node; }
   void find_inert();
+  void find_node_masses();
+  double whole_mass() const; // kg
   /// Forces and torques of the bonds about_, moved by scale times motion_'s velocities.
   void compute_bonds_near(double scale);
   void take(const Eigen::VectorXd &y, particles::Particles<dim> &zone,
@@ -102,6 +105,7 @@ private:
   CoupledBody<dim> &body_;
   int n_particles_, n_nodes_;
   std::vector<char> is_inert_;       // of each number of y
+  std::vector<double> node_mass_;    // kg, beside that of the particles
   particles::Particles<dim> motion_; // scratch: a small motion of the zone
   Place about_;                      // what K is linearised about; far is not asked for
   bool is_at_reference_ = true;      // about_ is

@@ -131,6 +131,29 @@ TEST(Runs, LoadsThatAreThereAtOnceAreNoGain)
     }
 }
 
+// Where nothing holds a body it is sought where it moves as a whole, by the mass that it has: under
+// its weight alone nothing is strained, and a push strains it as its twins.
+TEST(Runs, FreeBodiesInEquilibriumMoveByTheirMass)
+{
+  std::map<std::string, double> work;
+  for (const BodyKind &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    const std::vector<std::string> by_equilibria =
+        kind.overrides + std::vector<std::string>{"/time/loading=static", "/time/duration=2e4",
+                                                  "/output/history_interval=1e3"};
+    run("free", by_equilibria + std::vector<std::string>{
+                                    R"(/body_force={"acceleration": [0, -1e-5], "ramp": 1e4})"});
+    const auto fallen = read_csv("free/history.csv");
+    EXPECT_LT(std::abs(fallen.column("external_work", "J").back()), 1e-15);
+    run("free", by_equilibria +
+                    std::vector<std::string>{
+                        R"(/loads=[{"boundary": "top", "traction": [null, 1e-3], "ramp": 1e4}])"});
+    work[kind.name] = read_csv("free/history.csv").column("external_work", "J").back();
+  }
+  EXPECT_NEAR(work["coupled"] / work["pure_dem"], 1, 0.02);
+  EXPECT_NEAR(work["coupled"] / work["pure_fem"], 1, 0.02);
+}
+
 // The pressure on a closed rim has no resultant, nor have supports any: what is out of balance is
 // measured by the force on all of its faces.
 TEST(Runs, PressureInAHoleIsOnePhase)

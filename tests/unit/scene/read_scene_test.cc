@@ -200,6 +200,29 @@ TEST(ReadScene, EchoOfAlternativesReadsBackToItself)
   }
 }
 
+// In plane strain flow changes the stress out of the plane, which these criteria don't see.
+TEST(ReadScene, CriteriaOfAllStressesAreDoubtedInWhatFlows)
+{
+  const auto is_doubted = [&](const std::string &criterion, const std::string &of) {
+    const ReadResult result = read_scene(
+        plate, {R"(/material/fracture={"strength": "5 MPa", "compressive_strength": "50 MPa",
+                                       "criterion": ")" +
+                    criterion + "\"}",
+                of});
+    return std::any_of(
+        result.warnings.begin(), result.warnings.end(),
+        [](const core::Diagnostic &d) { return d.key == "/material/fracture/criterion"; });
+  };
+  const std::string flow = R"(/material/plasticity={"yield_stress": "200 MPa"})",
+                    creep = R"(/material/viscosity={"branches": [{"share": 0.5,
+                                                                 "relaxation_time": "1 ms"}]})";
+  EXPECT_TRUE(is_doubted("von_mises", flow));
+  EXPECT_TRUE(is_doubted("drucker_prager", flow));
+  EXPECT_TRUE(is_doubted("energy", creep));
+  EXPECT_FALSE(is_doubted("von_mises", "/plane=strain"));
+  EXPECT_FALSE(is_doubted("maximum_tension", flow));
+}
+
 TEST(ReadScene, BoxesTakeThePlaceOfARegionOfNulls)
 {
   const ReadResult first =
