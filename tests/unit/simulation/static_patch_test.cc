@@ -97,7 +97,7 @@ void expect_equilibrium(const Patch &patch, bool is_drawn)
   one.system().displace(y);
 
   const double left = one.system().forces(1).cwiseAbs().maxCoeff();
-  ASSERT_GT(one.system().load_force(), 0);
+  ASSERT_GT(one.system().load_force(1), 0);
   // Over what the strain makes act on a face of a particle, or of a cell.
   const double length = body.zone ? 1 : one.body.far->mesh().cell_size[0].minCoeff();
   const double face = stress * std::pow(length, dim - 1);

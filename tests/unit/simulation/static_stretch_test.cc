@@ -65,7 +65,7 @@ TEST(StaticStretch, PhaseEndsInEquilibriumOfTheChangedKinematics)
   ASSERT_TRUE(plate.clock.is_at_end());
   ASSERT_GT(plate.n_after_change, 0);
   const Eigen::VectorXd left = plate.system().forces(plate.clock.now.time);
-  const double load = plate.system().load_force();
+  const double load = plate.system().load_force(plate.clock.now.time);
   std::printf("out of balance %.2e of the load\n", left.lpNorm<Eigen::Infinity>() / load);
   constexpr double near = 1e-6; // to which a phase that goes on is balanced, static_phases.cc
   EXPECT_LT(left.lpNorm<Eigen::Infinity>(), near * load);
