@@ -1,5 +1,5 @@
 // What atoms of one kind have gained in energy since their reference, by vectors of pairs: a row of
-// history takes about as long as the forces of a step.
+// history takes about as long as the forces of two steps.
 #pragma once
 
 #include "md/neighbour_list.h"
