@@ -80,7 +80,7 @@ void remove_all(std::string &text, const std::string &opening, char closing)
 } // namespace
 
 Drawing::Drawing(int width, int height, ImageFormat format)
-    : width_(width), height_(height), format_(format),
+    : format_(format),
       surface_(make_surface(width, height, format, svg_), cairo_surface_destroy),
       cairo_(cairo_create(surface_.get()), cairo_destroy)
 {

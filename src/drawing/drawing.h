@@ -82,7 +82,6 @@ private:
   void stroke(const Pen &pen);
   Spot snapped(const Spot &at) const;
 
-  int width_, height_;
   ImageFormat format_;
   std::string svg_, svg_texts_; // the surface writes into the first until it goes
   std::unique_ptr<_cairo_surface, void (*)(_cairo_surface *)> surface_;
