@@ -324,8 +324,18 @@ void ManyBodyForce<dim>::stresses_out_of_plane(const Particles &p,
                                                std::vector<double> &stress) const
 {
   stress.clear();
-  if (!strains_.has_law() || !body_.is_plane_strain())
+  if (!body_.is_plane_strain())
     return;
+  if (!strains_.has_law()) {
+    if (materials().all().size() == 1)
+      return; // the base material tells it
+    Components<n_strains<dim>> in_plane;
+    stresses(p, in_plane);
+    stress.resize(p.size());
+    for (int i = 0; i < body_.n_particles(); ++i)
+      stress[i] = materials().of(i).poissons_ratio * (in_plane[0][i] + in_plane[1][i]);
+    return;
+  }
   Evaluation<dim> e(body_);
   find_pressures(p, e);
   stress.resize(p.size());

@@ -1,10 +1,12 @@
 #include "md/thermal_crystal.h"
 
+#include "core/check.h"
 #include "core/thermal_noise.h"
 #include "md/atom_force.h"
 #include "md/crystal_packing.h"
 
 #include <Eigen/Dense>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,7 +190,8 @@ ThermalLattice thermal_lattice(const Potential &potential, CrystalParameters<dim
   parameters.orientation.setIdentity();
   ThermalLattice lattice;
   parameters.lattice_parameter = 0;
-  lattice.parameter = Crystal<dim>(potential, parameters).lattice_parameter();
+  const double cold = Crystal<dim>(potential, parameters).lattice_parameter();
+  lattice.parameter = cold;
   for (const double share : {0.15, 0.35, 1.}) {
     parameters.lattice_parameter = lattice.parameter;
     const double stiffness = dim * bulk_modulus(Crystal<dim>(potential, parameters));
@@ -204,6 +207,10 @@ ThermalLattice thermal_lattice(const Potential &potential, CrystalParameters<dim
     lattice.squared_displacement = state.squared_displacement;
     lattice.error = lattice.parameter * lattice.stress_error / stiffness;
     lattice.parameter *= 1 - mean / stiffness;
+    core::require(std::abs(lattice.parameter / cold - 1) < 0.1,
+                  fmt::format("heat would widen the crystal from a lattice parameter of {:.4g} m "
+                              "to {:.4g} m: it does not stay one",
+                              cold, lattice.parameter));
   }
   return lattice;
 }

@@ -30,7 +30,7 @@ template <int dim>
 core::Dashpots<dim>
 absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> &particles,
                    const std::vector<core::BoundaryLoad<dim>> &loads, double density,
-                   double wave_speed_p, double wave_speed_s, const core::Ranks &ranks)
+                   const SideSpeeds<dim> &speeds, const core::Ranks &ranks)
 {
   const particles::Part &part = particles.part;
   typename core::Dashpots<dim>::Places dashpots;
@@ -44,7 +44,7 @@ absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> 
     for (const auto &face : packing.boundary_faces)
       if (face.boundary == load.boundary && particles::contains(part.stepped, face.i))
         for (int c = 0; c < dim; ++c) {
-          const double speed = c == axis ? wave_speed_p : wave_speed_s;
+          const double speed = speeds.across[axis][c];
           dashpots[{face.i, c}].push_back(
               {core::Dashpot::Kind::face, face.area * density * speed, face.q / speed});
         }
@@ -52,8 +52,8 @@ absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> 
       const double depth = load.absorbing_layer - std::abs(packing.centre[axis][i] - *place);
       if (depth > 0)
         for (int c = 0; c < dim; ++c)
-          dashpots[{i, c}].push_back(
-              core::layer_dashpot(particles.mass[i], depth, load.absorbing_layer, wave_speed_p));
+          dashpots[{i, c}].push_back(core::layer_dashpot(
+              particles.mass[i], depth, load.absorbing_layer, speeds.across[axis][axis]));
     });
   }
   return core::Dashpots<dim>(dashpots, [&](int i) { return part.owns(i); });
@@ -61,8 +61,8 @@ absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> 
 
 template core::Dashpots<2> absorbing_dashpots(const Packing<2> &, const particles::Particles<2> &,
                                               const std::vector<core::BoundaryLoad<2>> &, double,
-                                              double, double, const core::Ranks &);
+                                              const SideSpeeds<2> &, const core::Ranks &);
 template core::Dashpots<3> absorbing_dashpots(const Packing<3> &, const particles::Particles<3> &,
                                               const std::vector<core::BoundaryLoad<3>> &, double,
-                                              double, double, const core::Ranks &);
+                                              const SideSpeeds<3> &, const core::Ranks &);
 } // namespace ligament::packings

@@ -9,6 +9,8 @@
 
 #include "dem/inelastic/tensor_lanes.h"
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace ligament::dem::HWY_NAMESPACE
 {
@@ -55,10 +57,10 @@ public:
     const auto flows = hn::And(where, hn::Gt(excess, hn::Zero(d_)));
     if (hn::AllFalse(d_, flows))
       return flows;
-    const double stiffness = law_.shear + law_.bulk * law_.dilatancy * law_.friction;
-    V cone = hn::Mul(excess, hn::Set(d_, 1 / (stiffness + law_.hardening)));
+    const V stiffness = stiffness_at(s, tau);
+    V cone = hn::Div(excess, hn::Add(stiffness, hn::Set(d_, law_.hardening)));
     if (HWY_UNLIKELY(law_.hardening < 0)) // the cohesion does not fall below 0
-      cone = hn::Min(cone, hn::Mul(borne, hn::Set(d_, 1 / stiffness)));
+      cone = hn::Min(cone, hn::Div(borne, stiffness));
     // Past the apex the shear stress would turn round: there it vanishes, and the mean stress is
     // the largest that the material bears.
     const auto apex = hn::Gt(hn::Mul(shear_modulus, cone), tau);
@@ -79,6 +81,28 @@ public:
   }
 
 private:
+  /// How much of f an increment of the plastic shear strain takes, Pa: M:C:N, theory.md
+  /// eqs. (D25), (D25b).
+  HWY_INLINE V stiffness_at(const Tensor &s, V tau) const
+  {
+    if (dim == 3 || !law_.is_plane_stress)
+      return hn::Set(d_, law_.shear + law_.bulk * law_.dilatancy * law_.friction);
+    const double b = law_.friction / 3, dilatancy = law_.dilatancy / 3;
+    const double lambda = law_.bulk - 2. / 3 * law_.shear;
+    const V per_tau = hn::Div(hn::Set(d_, 0.5), hn::Max(tau, hn::Set(d_, 1e-300)));
+    const V trace = hn::Mul(per_tau, hn::Add(s.c[0], s.c[1]));
+    // The deviator's part out of the plane is minus the trace in it: half of a square is M's.
+    const V square = hn::NegMulAdd(trace, trace, hn::Set(d_, 0.5));
+    const V both = hn::MulAdd(hn::Set(d_, b + dilatancy), trace,
+                              hn::Add(hn::Set(d_, 2 * b * dilatancy), square));
+    const V traces =
+        hn::Mul(hn::Add(hn::Set(d_, 2 * b), trace), hn::Add(hn::Set(d_, 2 * dilatancy), trace));
+    const V sum = hn::MulAdd(hn::Set(d_, lambda / (lambda + 2 * law_.shear)), traces, both);
+    // Where hardly any of the flow lies in the plane the return is left to the steps to come.
+    const double least = std::max(0.1 * law_.shear, -1.25 * law_.hardening);
+    return hn::Max(hn::Mul(hn::Set(d_, 2 * law_.shear), sum), hn::Set(d_, least));
+  }
+
   HWY_INLINE V yield_at(V history) const
   {
     return hn::Max(hn::MulAdd(hn::Set(d_, law_.hardening), history, hn::Set(d_, law_.yield)),

@@ -92,6 +92,7 @@ struct FlowLaw
     drucker_prager
   };
   Kind kind = Kind::elastic;
+  bool is_plane_stress = false;
   double shear = 0, bulk = 0;         // G, K in Pa
   double yield = 0, hardening = 0;    // Pa
   double saturation = 0, rate = 0;    // Pa, -

@@ -11,9 +11,10 @@ namespace ligament::dem
 {
 namespace
 {
-FlowLaw flow_law_of(const DemMaterial &material)
+FlowLaw flow_law_of(const DemMaterial &material, bool is_plane_stress)
 {
   FlowLaw law;
+  law.is_plane_stress = is_plane_stress;
   law.shear = material.shear_modulus();
   law.bulk = material.youngs_modulus / (3 * (1 - 2 * material.poissons_ratio));
   if (const auto *mises = std::get_if<VonMisesFlow>(&material.plasticity)) {
@@ -78,7 +79,7 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
     check(m.plasticity);
     parameters_.push_back(m.plasticity);
     has_plasticity_ = has_plasticity_ || flows(m.plasticity);
-    laws_.push_back(flow_law_of(m));
+    laws_.push_back(flow_law_of(m, dim == 2 && !body.is_plane_strain()));
     if (dem::is_viscous(m.viscosity))
       most_branches_ = std::max(most_branches_, int(m.viscosity.branches.size()));
   }

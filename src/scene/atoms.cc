@@ -127,6 +127,19 @@ void follow_sides(int axis, double old_lower, double old_upper, Scene &scene)
   for (LoadParameters &load : scene.loads) {
     follow(load.within.lower);
     follow(load.within.upper);
+    const int along = load.boundary < 2 ? 1 : 0; // "from" and "to" in 2D
+    if (scene.dimension == 2 && axis == along)
+      for (std::optional<double> *end : {&load.from, &load.to})
+        if (*end) {
+          Point p{};
+          p[axis] = **end;
+          follow(p);
+          **end = p[axis];
+        }
+  }
+  for (auto &motion : scene.initial_motion) {
+    follow(motion.within.lower);
+    follow(motion.within.upper);
   }
   for (GaugeParameters &gauge : scene.gauges) {
     follow(gauge.lower);
@@ -228,11 +241,25 @@ void derive(Scene &scene)
   const auto crystal = crystal_of<dim>(scene);
   const auto constants = crystal.elastic_constants();
   using Stiffness = Eigen::Matrix<double, n_strains<dim>, n_strains<dim>>;
+  // Wider than without heat the lattice bears a stress, which resists as well: eq. (C23).
+  Stiffness stiffness = constants.stiffness;
+  const double tension = constants.stress.template head<dim>().mean();
+  for (int c = 0; c < n_strains<dim>; ++c)
+    stiffness(c, c) += c < dim ? tension : tension / 2;
   const auto resistance =
-      Eigen::SelfAdjointEigenSolver<Stiffness>(constants.stiffness, Eigen::EigenvaluesOnly)
+      Eigen::SelfAdjointEigenSolver<Stiffness>(stiffness, Eigen::EigenvaluesOnly)
           .eigenvalues()
           .eval();
-  if (!(resistance.minCoeff() > 1e-3 * resistance.maxCoeff()))
+  const bool is_stable = resistance.minCoeff() > 1e-3 * resistance.maxCoeff();
+  if (!is_stable && scene.is_warm())
+    throw core::KeyedError(
+        section + "/temperature",
+        fmt::format("the crystal is not stable as wide as it is at {} K", scene.atoms->temperature),
+        fmt::format("at a lattice parameter of {:.4g} m the least of its elastic constants is "
+                    "{:.3g} Pa, the largest {:.3g} Pa",
+                    crystal.lattice_parameter(), resistance.minCoeff(), resistance.maxCoeff()),
+        "choose a lower one, or another potential");
+  if (!is_stable)
     throw core::KeyedError(
         "/discrete_zone/packing", "this lattice of the potential in /atoms is not stable",
         fmt::format("the least of its elastic constants is {:.3g} Pa, the largest "

@@ -44,6 +44,12 @@ void refuse_loads(const Scene &scene, Findings &f)
     if (load.pressure && f.sound({key}))
       f.error(key + "/pressure", fmt::format("\"pressure\" in {} beside \"atoms\"", key),
               "a pressure follows faces, which atoms have not", "give a \"traction\"");
+    if (load.boundary > 2 * scene.dimension && f.sound({key}) &&
+        scene.zone.extent == DiscreteZone::Extent::all)
+      f.error(key + "/boundary",
+              fmt::format("\"boundary\" in {} is \"{}\" beside \"atoms\"", key, load.side),
+              "crystals are loaded on the sides of the box around them alone",
+              "load one of these; a mesh around the crystal takes loads on sides with names");
     if (load.periodic && f.sound({key}))
       f.error(key + "/periodic", fmt::format("{} is a jump across joined sides of a crystal", key),
               "atoms do not know of jumps yet", "load another side");
@@ -118,6 +124,16 @@ void check_temperature(const Scene &scene, Findings &f)
              "the dashpots of such a side take the heat of what they hold, and give none back",
              is_coupled ? "remove it; a larger mesh puts off what comes back"
                         : "remove it; /atoms/zone_friction is a friction with its noise");
+  const bool is_moved = scene.body_force.is_any() ||
+                        std::any_of(scene.loads.begin(), scene.loads.end(), [](const auto &load) {
+                          return load.kind == LoadKind::velocity;
+                        });
+  if (a.zone_friction > 0 && is_moved)
+    f.warning("/atoms/zone_friction",
+              fmt::format("\"zone_friction\" in /atoms is {} 1/s beside loads that move the body",
+                          a.zone_friction),
+              "it is a friction against the frame at rest: what moves as a whole is held back",
+              "give a small one, or 0: the overlap is a bath already where there is one");
   if (is_coupled && scene.coupling.fine_damper == 0)
     f.warning(
         "/coupling/fine_damper",

@@ -218,6 +218,12 @@ private:
       f_.error(key_ + "/side",
                fmt::format("\"side\" in {} is \"{}\", which is free", key_, g_.side_name),
                "no load acts on it, so its force is 0", "choose a loaded side, or load this one");
+    for (std::size_t l = 0; l < n; ++l)
+      if (scene_.loads[l].absorbing &&
+          (load ? int(l) == g_.load : scene_.loads[l].boundary == g_.side))
+        f_.warning(key_, fmt::format("{} reads /loads/{}, an absorbing side", key_, l),
+                   "what its dashpots take is not a load: they are left out of the force",
+                   "read another side, or a \"stress\" beside this one");
   }
 
   void force_of_tool(bool has_other)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace ligament::program
 {
@@ -30,6 +31,7 @@ struct Cut
   Box box;
   bool is_flat;            // a crack
   bool is_slanted = false; // its flanks lie along no axis
+  std::string side = {};   // name of its flanks
 };
 
 /// It goes on outward by its width, and through along z.
@@ -60,9 +62,35 @@ std::vector<Cut> cuts_of(const Scene &scene, const Findings &f)
   for (std::size_t k = 0; k < s.slots.size(); ++k) {
     const Slot &slot = s.slots[k];
     cuts.push_back({fmt::format("/specimen/slots/{}", k), box_around(slot, s), false,
-                    slot.from[0] != slot.to[0] && slot.from[1] != slot.to[1]});
+                    slot.from[0] != slot.to[0] && slot.from[1] != slot.to[1], slot.side});
   }
   return cuts;
+}
+
+/// A place on the outer rectangle, in the middle of the third axis, that lies outside the body
+/// without its cuts.
+std::optional<Point> place_outside(const Scene &scene, const GaugeParameters &g, int along,
+                                   int across)
+{
+  Specimen whole = scene.specimen;
+  whole.slots.clear();
+  whole.cutouts.clear();
+  whole.notches.clear();
+  whole.holes.clear();
+  const BodyTest body(whole, scene.dimension);
+  constexpr int n = 64;
+  for (const auto &[way, other] : {std::pair(along, across), std::pair(across, along)})
+    for (const double end : {g.lower[other], g.upper[other]})
+      for (int k = 0; k <= n; ++k) {
+        Point x{};
+        for (int c = 0; c < 3; ++c)
+          x[c] = (whole.lower(c) + whole.upper(c)) / 2;
+        x[way] = g.lower[way] + (g.upper[way] - g.lower[way]) * k / n;
+        x[other] = end;
+        if (!body.contains(x))
+          return x;
+      }
+  return std::nullopt;
 }
 
 std::vector<Cut> openings_of(const Specimen &s)
@@ -96,6 +124,13 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
                    "it says across which axis the crack's faces lie",
                    "give it: [0, 1, 0], for example");
   const double sign = g.direction[along] > 0 ? 1 : -1;
+  if (scene.is_viscous())
+    return f.error(key + "/kind", fmt::format("\"kind\" in {} is \"j_integral\"", key),
+                   "it takes strains for elastic ones, and this material creeps", "remove it");
+  if (scene.flows())
+    f.warning(key + "/kind", fmt::format("\"kind\" in {} is \"j_integral\"", key),
+              "it takes strains for elastic ones: what flows between its rectangles is wrong",
+              "keep them around all that flows, and compare rectangles of other sizes");
   const auto axis_name = [](int c) { return "xyz"[c]; };
   // What lies between the rectangles takes part: some particles, some cells.
   const bool particles = scene.zone.extent != DiscreteZone::Extent::none;
@@ -124,6 +159,13 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
                       particles ? "four spacings" : "two cells", width),
           "move \"inner_lower\" and \"inner_upper\" inward, or \"lower\" and \"upper\" outward");
   }
+  if (scene.specimen.has_own_box() && f.sound({"/specimen"}))
+    if (const auto x = place_outside(scene, g, along, across))
+      return f.error(key, fmt::format("the outer rectangle of {} leaves the specimen", key),
+                     fmt::format("({:.6g}, {:.6g}, {:.6g}) m lies outside; a side between the "
+                                 "rectangles would have to be added",
+                                 (*x)[0], (*x)[1], (*x)[2]),
+                     "make it smaller, or move it");
   for (std::size_t k = 0; k < scene.specimen.holes.size() && particles; ++k) {
     const Hole &hole = scene.specimen.holes[k];
     double squared = 0;
@@ -167,6 +209,15 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
                       "and ends inside the inner rectangle",
                       sign > 0 ? "below" : "above", axis_name(along)),
           "move the rectangles around one tip, or turn \"direction\" round");
+    for (std::size_t l = 0; l < scene.loads.size() && !cut.side.empty(); ++l)
+      if (scene.loads[l].side == cut.side)
+        return f.error(key,
+                       fmt::format("/loads/{} acts on the flanks of {}, which cross the rectangles "
+                                   "of {}",
+                                   l, cut.key, key),
+                       "J is known where the flanks are free: the load's part would have to be "
+                       "added",
+                       "remove the gauge, or load another side");
     has_tip = true;
   }
   if (!has_tip)

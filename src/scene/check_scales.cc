@@ -77,7 +77,7 @@ void check_load_scales(const Scene &scene, Findings &f)
     if (!f.sound({key}))
       continue;
     const LoadParameters &load = scene.loads[k];
-    if (f.sound({"/material"})) {
+    if (f.sound({"/material", "/atoms"}) && scene.material.youngs_modulus > 0) {
       check_velocity(load, key, wave_speed(scene.material), f);
       check_traction(load, key, scene.material.youngs_modulus, f);
     }
@@ -122,6 +122,8 @@ void check_duration(const Scene &scene, Findings &f)
     return;
   const double step = scene.time.step.value_or(typical_step(scene));
   const double steps = scene.time.duration / step;
+  if (!(step > 0)) // the material is not known
+    return;
   // Equilibria skip most steps, but the clock counts them all: it must be able to tell two apart.
   if (scene.time.has_phases() ? steps <= 1e14 : steps <= 1e12)
     return;
@@ -173,7 +175,7 @@ void check_rows(const Scene &scene, Findings &f)
   const std::string key = "/output/history_interval";
   const double step = scene.time.step.value_or(typical_step(scene)),
                interval = scene.output.history_interval;
-  if (scene.time.has_phases() || interval == 0 || interval > 0.1 * step ||
+  if (scene.time.has_phases() || interval == 0 || !(interval <= 0.1 * step) ||
       !f.sound_and_given({key}) || !f.sound({"/material", "/discrete_zone", "/far_field", "/time"}))
     return;
   f.warning(key,

@@ -22,11 +22,22 @@ using BoostPoint = bg::model::d2::point_xy<double>;
 using BoostPolygon = bg::model::polygon<BoostPoint, false, false>; // counter-clockwise, open
 using BoostPolygons = bg::model::multi_polygon<BoostPolygon>;
 
-BoostPolygon to_boost(const Polygon &polygon)
+/// The largest coordinate, m. Boost.Geometry drops what has an area of the order of its numbers'
+/// precision, in whatever unit: it is given places of the order of 1.
+double size_of(const std::vector<Polygon> &polygons)
+{
+  double size = 0;
+  for (const Polygon &polygon : polygons)
+    for (const auto &corner : polygon)
+      size = std::max(size, corner.place.cwiseAbs().maxCoeff());
+  return size;
+}
+
+BoostPolygon to_boost(const Polygon &polygon, double size)
 {
   BoostPolygon result;
   for (const auto &corner : polygon)
-    result.outer().emplace_back(corner.place[0], corner.place[1]);
+    result.outer().emplace_back(corner.place[0] / size, corner.place[1] / size);
   return result;
 }
 
@@ -74,12 +85,12 @@ Vector<2> exact(const std::vector<Polygon> &polygons, const Vector<2> &x, double
 
 /// Without sides that are shorter than the tolerance, which intersections of sides that nearly
 /// touch leave.
-Polygon from_boost(const BoostPolygon::ring_type &ring, const std::vector<Polygon> &sources,
-                   double tolerance)
+Polygon from_boost(const BoostPolygon::ring_type &ring, double size,
+                   const std::vector<Polygon> &sources, double tolerance)
 {
   std::vector<Vector<2>> corners;
   for (const BoostPoint &point : ring) {
-    const Vector<2> x = exact(sources, Vector<2>(point.x(), point.y()), tolerance);
+    const Vector<2> x = exact(sources, size * Vector<2>(point.x(), point.y()), tolerance);
     if (corners.empty() || (x - corners.back()).norm() > tolerance)
       corners.push_back(x);
   }
@@ -96,13 +107,14 @@ Polygon from_boost(const BoostPolygon::ring_type &ring, const std::vector<Polygo
 std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::size_t n,
                                   const std::vector<std::string> &keys, double tolerance)
 {
+  const double size = size_of(polygons), least_area = std::pow(tolerance / size, 2);
   BoostPolygons left;
   for (std::size_t k = 0; k < n; ++k)
     if (core::signed_area(polygons[k]) > 0)
-      left.push_back(to_boost(polygons[k]));
+      left.push_back(to_boost(polygons[k], size));
   for (std::size_t k = 0; k < n; ++k)
     if (core::signed_area(polygons[k]) < 0) {
-      BoostPolygon hole = to_boost(polygons[k]);
+      BoostPolygon hole = to_boost(polygons[k], size);
       std::reverse(hole.outer().begin(), hole.outer().end());
       BoostPolygons next;
       bg::difference(left, hole, next);
@@ -111,7 +123,7 @@ std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::siz
   const BoostPolygons whole = left;
   for (std::size_t k = n; k < polygons.size(); ++k) {
     BoostPolygons next;
-    const BoostPolygon cut = to_boost(polygons[k]);
+    const BoostPolygon cut = to_boost(polygons[k], size);
     if (!bg::intersects(cut, whole))
       throw core::KeyedError(keys[k], fmt::format("{} lies outside the specimen", keys[k]),
                              "it takes nothing away", "move it, or remove it");
@@ -120,12 +132,12 @@ std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::siz
   }
   std::vector<Polygon> result;
   for (const BoostPolygon &piece : left) {
-    if (std::abs(bg::area(piece)) < tolerance * tolerance)
+    if (std::abs(bg::area(piece)) < least_area)
       continue;
-    result.push_back(from_boost(piece.outer(), polygons, tolerance));
+    result.push_back(from_boost(piece.outer(), size, polygons, tolerance));
     for (const auto &hole : piece.inners())
-      if (std::abs(bg::area(hole)) > tolerance * tolerance)
-        result.push_back(from_boost(hole, polygons, tolerance));
+      if (std::abs(bg::area(hole)) > least_area)
+        result.push_back(from_boost(hole, size, polygons, tolerance));
   }
   if (result.empty())
     throw core::KeyedError("/specimen", "nothing of the specimen is left",

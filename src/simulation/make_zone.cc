@@ -1,6 +1,7 @@
 #include "src/simulation/make_zone.h"
 
 #include "core/check.h"
+#include "fem/body.h"
 #include "packings/absorbing_sides.h"
 #include "packings/outer_face.h"
 #include "src/scene/geometry.h"
@@ -133,6 +134,18 @@ void fit_forces(const Scene &scene, CoupledBody<dim> &body)
   }
 }
 
+/// As those of the mesh: in a crystal they depend on the side.
+template <int dim>
+packings::SideSpeeds<dim> side_speeds(const particles::ElasticConstants<dim> &constants,
+                                      double density)
+{
+  const fem::Body<dim> solid{constants.stiffness, density, 1, constants.stress};
+  packings::SideSpeeds<dim> speeds;
+  for (int axis = 0; axis < dim; ++axis)
+    speeds.across[axis] = fem::normal_wave_speeds(solid, axis);
+  return speeds;
+}
+
 /// Faces that initial cracks cut, of the body.
 template <int dim>
 std::vector<BrokenBond> all_cut_faces(const CoupledBody<dim> &body,
@@ -251,7 +264,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   state.part = held.part;
   auto dashpots =
       packings::absorbing_dashpots(of_particles, state, body.loads, scene.material.density,
-                                   constants.wave_speed_p, constants.wave_speed_s, body.ranks);
+                                   side_speeds(constants, scene.material.density), body.ranks);
   of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);

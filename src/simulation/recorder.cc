@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace ligament::program
 {
@@ -71,6 +72,26 @@ double seconds_of(Look &&look)
     least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
   }
   return least;
+}
+
+/// When the first face broke between the rectangles of a j_integral, s; infinite: none did.
+template <int dim>
+double broken_between(const GaugeParameters &g,
+                      const std::vector<particles::BrokenBond<dim>> &bonds)
+{
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto &bond : bonds) {
+    bool in_outer = true, in_inner = true;
+    for (int c = 0; c < dim; ++c)
+      if (g.inner_lower[c] < g.inner_upper[c]) { // not along the front
+        in_outer = in_outer && bond.position[c] > g.lower[c] && bond.position[c] < g.upper[c];
+        in_inner =
+            in_inner && bond.position[c] > g.inner_lower[c] && bond.position[c] < g.inner_upper[c];
+      }
+    if (in_outer && !in_inner)
+      first = std::min(first, bond.time);
+  }
+  return first;
 }
 } // namespace
 
@@ -310,11 +331,23 @@ void Recorder<dim>::add_warnings(const CoupledBody<dim> &body, RunRecord &record
   if (std::abs(body.regime_change) > largest_regime_change * record.external_work.value_or(0))
     record.warnings.push_back(
         {"the change of regime took energy that no load had put in", body.regime_change});
+  for (std::size_t k = 0; k < scene_.gauges.size() && body.force(); ++k)
+    if (const GaugeParameters &g = scene_.gauges[k]; g.kind == GaugeKind::j_integral)
+      if (const double time =
+              broken_between<dim>(g, body.force()->broken_bonds_of_body(body.zone->state));
+          std::isfinite(time))
+        record.warnings.push_back(
+            {fmt::format("faces broke between the rectangles of /gauges/{} from {:.4g} s on: its J "
+                         "is not that of the tip alone any more",
+                         k, time)});
   // Bond by bond there are no waves: settling takes all that breaking leaves.
   if (scene_.time.loading != Loading::sequential &&
       std::abs(body.settled) > largest_settled * record.external_work.value_or(0))
-    record.warnings.push_back({"settling into equilibria took energy that was still in waves: "
-                               "/damping or absorbing sides take it as it comes",
+    record.warnings.push_back({body.settled > 0
+                                   ? "settling into equilibria took energy that was still in "
+                                     "waves: /damping or absorbing sides take it as it comes"
+                                   : "the body is given the motion of its loads after equilibria, "
+                                     "which is not slow beside what it stores: give slower loads",
                                body.settled});
 }
 

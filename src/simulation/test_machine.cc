@@ -3,11 +3,12 @@
 #include "core/exact_sum.h"
 #include "fem/part_shares.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 namespace ligament::program
@@ -51,27 +52,43 @@ public:
   bool is_poor() const { return n_particles() < 2 * n; }
   Vector<dim> middle() const { return matrix_.col(dim).template head<dim>() / n_particles(); }
   double mean() const { return right_[dim] / n_particles(); } // m
-  double at(const Vector<dim> &place) const                   // m
+  /// Standard deviation of the places, spacings.
+  Vector<dim> spread() const { return covariance().diagonal().cwiseMax(0.).cwiseSqrt(); }
+  /// In m; the same all along a direction in which the particles lie in one line.
+  double at(const Vector<dim> &place) const
   {
-    Row row = Row::Ones();
-    row.template head<dim>() = place;
-    return matrix_.ldlt().solve(right_).dot(row);
+    constexpr double least_variance = 1e-4;
+    const Vector<dim> steps = place - middle(),
+                      moved = right_.template head<dim>() / n_particles() - mean() * middle();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>> axes(covariance());
+    double sum = mean();
+    for (int k = 0; k < dim; ++k)
+      if (const double variance = axes.eigenvalues()[k]; variance > least_variance)
+        sum += axes.eigenvectors().col(k).dot(moved) * axes.eigenvectors().col(k).dot(steps) /
+               variance;
+    return sum;
   }
 
 private:
   static constexpr int n = dim + 1;
   using Row = Eigen::Matrix<double, n, 1>; // a place and 1
+
+  Eigen::Matrix<double, dim, dim> covariance() const
+  {
+    return matrix_.template topLeftCorner<dim, dim>() / n_particles() -
+           middle() * middle().transpose();
+  }
+
   std::vector<core::ExactSum> sums_ = std::vector<core::ExactSum>(n * n + n);
   Eigen::Matrix<double, n, n> matrix_;
   Row right_;
 };
 
-/// Of a side of the box, from the particles near it that the far field does not move, which lie
-/// inside it. Of the middle of the side, or of that of these particles; none where there are too
-/// few.
+/// Of an end of the box, from the particles up to this depth (spacings) that the far field does not
+/// move.
 template <int dim>
-std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, int axis,
-                                                double place, int component, bool of_side)
+AffineFit<dim> fit_near(const CoupledBody<dim> &body, int axis, double place, int component,
+                        double most)
 {
   AffineFit<dim> fit;
   const auto &state = body.zone->state;
@@ -79,18 +96,65 @@ std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, in
   const auto *overlap = body.coupler->overlap();
   particles::for_each(state.part.owned, [&](int i) {
     const double depth = std::abs(state.reference[axis][i] - place) / body.spacing;
-    if (depth > side_depth || (overlap && overlap->member_of_particle[i] >= 0))
+    if (depth > most || (overlap && overlap->member_of_particle[i] >= 0))
       return;
     Vector<dim> x = (get(state.reference, i) - middle) / body.spacing;
     x[axis] = depth;
     fit.add(x, state.displacement[component][i]);
   });
   fit.solve(body.ranks);
-  if (body.far && fit.is_poor())
-    return std::nullopt;
-  Vector<dim> at = of_side ? Vector<dim>(Vector<dim>::Zero()) : fit.middle();
-  at[axis] = 0;
-  return fit.at(at);
+  return fit;
+}
+
+/// Whether its particles lie around the axis of the body.
+template <int dim>
+bool reaches_middle(const AffineFit<dim> &fit, int axis)
+{
+  Vector<dim> beyond = fit.middle().cwiseAbs() - 2 * fit.spread();
+  beyond[axis] = 0;
+  return beyond.maxCoeff() <= 0;
+}
+
+/// Of an end of the box, from the particles near it, which lie inside it: of the middle of the side
+/// where `has_all` and they reach so far, else of theirs. A body that ends in a tip has few there:
+/// where the mesh has nothing of the end those further inside tell its motion. None where there are
+/// too few.
+template <int dim>
+std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, int axis,
+                                                double place, int component, bool has_all)
+{
+  const double most = has_all ? 8 * side_depth : side_depth;
+  for (double depth = side_depth; depth <= most; depth *= 2) {
+    const AffineFit<dim> fit = fit_near(body, axis, place, component, depth);
+    if (fit.is_poor())
+      continue;
+    Vector<dim> at = fit.middle();
+    if (has_all && depth == side_depth && reaches_middle(fit, axis))
+      at.setZero();
+    at[axis] = 0;
+    return fit.at(at);
+  }
+  return std::nullopt;
+}
+
+/// Of the nodes of the mesh that reach farthest towards an end of the box, m.
+template <int dim>
+double farthest_displacement(const CoupledBody<dim> &body, int boundary, int component)
+{
+  const auto &mesh = body.far->mesh();
+  const int axis = boundary / 2;
+  const double sign = boundary % 2 ? 1 : -1,
+               round_off = 1e-9 * (body.upper[axis] - body.lower[axis]);
+  double farthest = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (const auto &x : mesh.nodes)
+    farthest = std::max(farthest, sign * x[axis]);
+  int count = 0;
+  for (int i = 0; i < mesh.n_nodes(); ++i)
+    if (sign * mesh.nodes[i][axis] > farthest - round_off) {
+      sum += body.far->displacement[component][i];
+      ++count;
+    }
+  return sum / count;
 }
 
 /// Of the middle of what a traction on a side with a name acts on, from particles on it and their
@@ -279,6 +343,14 @@ double TestMachine<dim>::load_displacement(const CoupledBody<dim> &body, int loa
       .value_or(0);
 }
 
+/// Of the load on the other half, or where there is none of that end of the body.
+template <int dim>
+double TestMachine<dim>::opposite_displacement(const CoupledBody<dim> &body, double time) const
+{
+  return opposite_ < 0 ? mean_displacement(body, 2 * axis_ + (sign_ < 0), component_)
+                       : load_displacement(body, opposite_, time);
+}
+
 template <int dim>
 Reading TestMachine<dim>::read_jump(const CoupledBody<dim> &body, double time) const
 {
@@ -313,10 +385,9 @@ Reading TestMachine<dim>::read(const CoupledBody<dim> &body, double time) const
   if (body.far)
     r.load += sign_ * body.far->reaction(load_)[component_];
   r.stress = r.load / area_;
-  r.displacement = is_named_
-                       ? sign_ * (load_displacement(body, load_, time) -
-                                  (opposite_ < 0 ? 0 : load_displacement(body, opposite_, time)))
-                       : side_displacement(body, 1, time) - side_displacement(body, 0, time);
+  r.displacement =
+      is_named_ ? sign_ * (load_displacement(body, load_, time) - opposite_displacement(body, time))
+                : side_displacement(body, 1, time) - side_displacement(body, 0, time);
   r.strain = r.displacement / size_;
   return r;
 }
@@ -326,15 +397,14 @@ double mean_displacement(const CoupledBody<dim> &body, int boundary, int compone
 {
   const MeshReading mesh = mesh_displacement(body, boundary, core::Part<dim>(), component);
   if (!body.zone)
-    return mesh.displacement;
+    return mesh.area > 0 ? mesh.displacement : farthest_displacement(body, boundary, component);
   const int axis = boundary / 2;
-  return joint_displacement(mesh, body.side_areas[boundary] / body.thickness,
-                            [&](bool has_all) {
-                              return extrapolated_displacement(
-                                  body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
-                                  component, has_all);
-                            })
-      .value_or(0);
+  const auto joint =
+      joint_displacement(mesh, body.side_areas[boundary] / body.thickness, [&](bool has_all) {
+        return extrapolated_displacement(
+            body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis], component, has_all);
+      });
+  return joint || !body.far ? joint.value_or(0) : farthest_displacement(body, boundary, component);
 }
 
 template class TestMachine<2>;

@@ -17,10 +17,10 @@ struct Reading
 /// a load it reads the first pressure on a side of the box, or else the first tool that is driven,
 /// its force and its way.
 /// On a side with a name of its own the axis is that of the component, the area that of the box
-/// around the specimen across it, and the displacement is against the load in the other half: of
-/// what the load acts on, a mean over the mesh, of particles that of its middle.
-/// Displacements of sides of the box are prescribed ones, on whatever part of them, that of the
-/// load before others, or else means of whole sides.
+/// around the specimen across it, and the displacement is against the load in the other half, or
+/// the end of the body there: of what the load acts on, a mean over the mesh, of particles that of
+/// its middle. Displacements of sides of the box are prescribed ones, on whatever part of them,
+/// that of the load before others, or else means of whole sides.
 template <int dim>
 class TestMachine
 {
@@ -40,6 +40,7 @@ public:
 private:
   double side_displacement(const CoupledBody<dim> &body, int side, double time) const;
   double load_displacement(const CoupledBody<dim> &body, int load, double time) const;
+  double opposite_displacement(const CoupledBody<dim> &body, double time) const;
 
   void look_for_tool(const CoupledBody<dim> &body);
   void look_for_jump(const CoupledBody<dim> &body);
@@ -50,7 +51,7 @@ private:
   int jump_axis_ = -1; // the load is a jump across the sides that are joined along it
   int component_ = 0, axis_ = 0;
   bool is_named_ = false; // a side with a name of its own: the axis is that of its component
-  int opposite_ = -1;     // then: the load in the other half of the body, -1: it rests
+  int opposite_ = -1;     // then: the load in the other half of the body, -1: none
   bool is_answer_ = false;
   double sign_ = 1; // tension on the upper side is positive
   double area_ = 1, size_ = 1;
@@ -58,7 +59,8 @@ private:
 
 /// Displacement component of a side of the specimen, in m: the mean over its nodes, without a far
 /// field that of its middle after an affine fit to the particles near it; of a side that the mesh
-/// has a part of, both by their shares.
+/// has a part of, both by their shares. A body that ends in a tip or an edge has the motion of what
+/// reaches farthest: of the nodes there, or of particles further inside.
 template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component);
 } // namespace ligament::program

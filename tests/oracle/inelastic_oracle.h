@@ -295,7 +295,7 @@ private:
                  excess = law.friction * mean + tau - yield;
     if (excess <= 0)
       return;
-    const double stiffness = g + k_ * law.dilatancy * law.friction;
+    const double stiffness = unloading(law, s / (2 * tau), g);
     double shear = excess / (stiffness + law.hardening);
     if (law.cohesion + law.hardening * (history[i] + shear) < 0)
       shear = (excess + yield) / stiffness; // what is left is friction
@@ -309,6 +309,23 @@ private:
                  (mean - std::max(law.cohesion + law.hardening * (history[i] + all), 0.) /
                              law.friction) / (3 * k_) * one;
     history[i] += all;
+  }
+
+  /// How far b sigma_m + tau falls for each unit of plastic shear strain, in the direction
+  /// `sheared`: what the strain of its own takes of the stress of a body that does not move.
+  double unloading(const dem::DruckerPragerFlow &law, const Eigen::Matrix3d &sheared,
+                   double g) const
+  {
+    if (dim == 3 || is_plane_strain())
+      return g + k_ * law.dilatancy * law.friction;
+    const Eigen::Matrix2d flow =
+        (sheared + law.dilatancy / 3 * Eigen::Matrix3d::Identity()).topLeftCorner<2, 2>();
+    const double e = 9 * k_ * g / (3 * k_ + g), nu = e / (2 * g) - 1;
+    const Eigen::Matrix2d taken =
+        e / (1 - nu * nu) * ((1 - nu) * flow + nu * flow.trace() * Eigen::Matrix2d::Identity());
+    const double fall = law.friction / 3 * taken.trace() +
+                        (sheared.topLeftCorner<2, 2>().array() * taken.array()).sum();
+    return std::max({fall, 0.1 * g, -1.25 * law.hardening});
   }
 
   static Matrix rotation(const particles::Particles<dim> &p, int i)

@@ -195,6 +195,44 @@ TYPED_TEST(InelasticBody, DruckerPragerKeepsToItsConeAndDilates)
   }
 }
 
+// In plane stress a step returns to the cone at once, too, whatever nu, however much the material
+// swells: what is left of f is a small part of what the step brought.
+TEST(InelasticStrip, DilatingFlowInPlaneStressKeepsToItsCone)
+{
+  packings::LatticeParameters<2> lattice;
+  lattice.kind = Kind::hexagonal;
+  lattice.spacing = 1;
+  lattice.upper = {8, 8};
+  const auto packing = packings::make_lattice_packing<2>(lattice);
+  for (const double nu : {0.2, 0.45, 0.49}) {
+    DemMaterial material{1., nu, 1., PlaneMode::stress, 0};
+    const DruckerPragerFlow law{1e-3, 0, 0.8, 0.8};
+    material.plasticity = law;
+    for (const Eigen::Vector2d &pulled :
+         {Eigen::Vector2d(1, 0), Eigen::Vector2d(1, 1), Eigen::Vector2d(1, -1)})
+    {
+      ManyBodyForce<2> force(packing, material, {});
+      auto p = at_rest(packing, material);
+      const int inner = inner_particle(p), steps = 200;
+      const double strain = 4e-3;
+      for (int s = 1; s <= steps; ++s) {
+        deform<2>(p, strain * s / steps * Eigen::Matrix2d(pulled.asDiagonal()), Spin<2>::Zero());
+        force.compute(p, s);
+      }
+      const auto e = force.strains().tensor(inner);
+      const Eigen::Vector2d elastic = strain * pulled - e.template head<2>();
+      const Eigen::Vector3d stress(elastic[0] + nu * elastic[1], elastic[1] + nu * elastic[0], 0);
+      const Eigen::Vector3d of_plane = stress / (1 - nu * nu);
+      const double mean = of_plane.mean(),
+                   tau = (of_plane - mean * Eigen::Vector3d::Ones()).norm() / std::sqrt(2.),
+                   brought = strain / steps / (1 - nu);
+      EXPECT_GT(force.strains().history(inner), 0.1 * strain);
+      EXPECT_NEAR(law.friction * mean + tau, law.cohesion, 0.05 * brought)
+          << nu << ' ' << pulled.transpose();
+    }
+  }
+}
+
 // The area under the yield curve above its first stress, cell by cell; none without hardening.
 TYPED_TEST(InelasticBody, HardeningStoresItsPartOfTheWork)
 {

@@ -59,8 +59,9 @@ struct Solver
     solver->body_force = particles::BodyForce<dim>(scene.loads);
     const auto constants = force->elastic_constants();
     solver->dashpots = packings::absorbing_dashpots(
-        packing, solver->state, scene.loads, scene.material.density, constants.wave_speed_p,
-        constants.wave_speed_s, held ? test::ranks() : core::Ranks());
+        packing, solver->state, scene.loads, scene.material.density,
+        packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s),
+        held ? test::ranks() : core::Ranks());
     if (held)
       solver->join({test::ranks(), held->owner});
   }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -72,6 +73,21 @@ TEST(AtomScenes, PeriodicSidesAreWholePeriodsOfTheLattice)
   const double a = crystal_of<3>(scene).lattice_parameter();
   EXPECT_NEAR(scene.specimen.size[2] / a, 7, 1e-12);
   EXPECT_EQ(scene.specimen.size[0], 20e-9);
+}
+
+// What reaches to such a side moves with it.
+TEST(AtomScenes, LoadsFollowSidesThatAreMoved)
+{
+  const Scene scene =
+      *read(crystal_scene(),
+            {R"(/specimen/periodic=["y"])", R"(/discrete_zone={"extent": "all"})",
+             "/far_field=none",
+             R"(/loads=[{"boundary": "right", "traction": ["1 MPa", null], "from": "-30 nm",
+                         "to": "30 nm"}])"})
+           .scene;
+  const double size = scene.specimen.size[1];
+  EXPECT_GT(std::abs(size - 60e-9), 1e-12);
+  EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
 }
 
 TEST(AtomScenes, UnitsOfAtoms)

@@ -51,6 +51,29 @@ std::map<int, double> lengths(const std::vector<core::Polygon> &polygons)
   return sum;
 }
 
+// What cuts take does not depend on the unit of length: bodies of some nanometres have them, too.
+TEST(Shapes, CutsTakeTheSameShareAtAnyScale)
+{
+  const auto left = [](double unit) {
+    Specimen specimen;
+    for (const auto &[x, y] : {std::pair(0., 0.), {40., 0.}, {40., 30.}, {0., 30.}})
+      specimen.outline.push_back({{unit * x, unit * y, 0}, {}, false, ""});
+    Cutout cutout;
+    for (const auto &[x, y] : {std::pair(10., 10.), {14., 10.}, {14., 13.}, {10., 13.}})
+      cutout.outline.push_back({{unit * x, unit * y, 0}, {}, false, ""});
+    specimen.cutouts.push_back(cutout);
+    Slot slot;
+    slot.from = {30 * unit, 0, 0};
+    slot.to = {30 * unit, 10 * unit, 0};
+    slot.width = unit;
+    specimen.slots.push_back(slot);
+    enclose_body(specimen, 2);
+    return area(outline_of(specimen, 2, unit, true)) / (unit * unit);
+  };
+  for (const double unit : {1., 1e-9, 1e-3, 1e6})
+    EXPECT_NEAR(left(unit), 40 * 30 - 12 - 10, 1e-6) << unit;
+}
+
 // A slot across a slanted side, one with a round tip, a hole that opens a side.
 const std::string odd = R"({
   "outline": [{"at": [0, 0]}, {"at": [0, 30]}, {"at": [30, 40], "side": "roof"}, {"at": [60, 30], "side": "roof"}, {"at": [60, 0]}],

@@ -35,6 +35,23 @@ TEST(Inclusions, TakeTheParticlesOfTheirRegionsLaterOnesFirst)
   EXPECT_GT(n[2], 10);
 }
 
+// Under plane strain each material has the stress across the plane of its own nu.
+TEST(Inclusions, HaveTheStressAcrossThePlaneOfTheirNu)
+{
+  SmallBody small(small_scene({"/inclusions=[" + box + "]", "/far_field/cell_size=3"}));
+  small.deform(1e-4 * Eigen::Matrix2d::Identity());
+  auto &state = small.body.zone->state;
+  auto &force = *small.body.force();
+  force.compute(state, 1);
+  Components<3> stress;
+  std::vector<double> across;
+  force.stresses(state, stress);
+  force.stresses_out_of_plane(state, across);
+  ASSERT_EQ(across.size(), std::size_t(state.size()));
+  for (int i = 0; i < state.size(); ++i)
+    EXPECT_NEAR(across[i], (force.material(i) ? 0.3 : 0.22) * (stress[0][i] + stress[1][i]), 1e-18);
+}
+
 /// A packing file: rows of a square lattice in the plate's pure discrete twin, jittered, every
 /// `stride`-th particle of material 1.
 std::string write_packing(double half_height, int stride)

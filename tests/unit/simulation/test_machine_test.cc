@@ -110,6 +110,34 @@ TEST(TestMachine, ReadsTheMotionOfPartsOfSidesWithNames)
   }
 }
 
+// The end of a body may be a tip, beside its middle, in which few particles or one node lie; and a
+// load on a side with a name may have nothing to pull against.
+TEST(TestMachine, ReadsTheMotionOfEndsThatAreTips)
+{
+  const auto house = [](const std::string &foot) {
+    return R"(/specimen={"outline": [{"at": [-12, -60]}, {"at": [12, -60])" + foot +
+           R"(}, {"at": [12, 40]}, {"at": [4, 59.8]}, {"at": [-12, 40]}]})";
+  };
+  const std::string of_box = R"(/loads=[{"boundary": "bottom", "displacement": [null, -0.006]}])",
+                    of_name = R"(/loads=[{"boundary": "foot", "traction": [null, -1e-4]}])";
+  for (const auto &kind : body_kinds)
+    for (const std::string &loads : {of_box, of_name}) {
+      SCOPED_TRACE(kind.name + loads);
+      const std::string foot = loads == of_name ? R"(, "side": "foot")" : "";
+      std::vector<std::string> overrides = kind.overrides;
+      overrides.insert(overrides.end(), {house(foot), loads});
+      if (kind.overrides.empty())
+        overrides.push_back(R"(/discrete_zone/region={"lower": [null, -40], "upper": [null, 0]})");
+      SmallBody small(small_scene(overrides));
+      const Eigen::Matrix2d gradient = 1e-4 * Eigen::Vector2d(3, 1).asDiagonal();
+      small.deform(gradient);
+      auto bodies = small.body.bodies();
+      small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+      const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+      EXPECT_NEAR(r.displacement / (loads == of_box ? 59.8e-4 + 0.006 : 119.8e-4), 1, 1e-6);
+    }
+}
+
 // Two loads on one side: the one that is read tells its motion, whichever comes first.
 TEST(TestMachine, ReadsTheMotionOfItsOwnLoad)
 {
