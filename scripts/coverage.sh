@@ -1,6 +1,7 @@
 #!/bin/sh
-# Builds the unit tests of core, particles, packings and dem, those of the coupling and of ranks with
-# counters of lines, runs them (ranks: one and two) and prints the share of lines that ran, per folder:
+# Builds the unit tests of core, particles, packings and dem, those of the coupling, of ranks and of
+# whole bodies with counters of lines, runs them (ranks: one and two) and prints the share of lines
+# that ran, per folder:
 #   scripts/coverage.sh [tests...]     for example: scripts/coverage.sh test_core test_packings
 # A list of all files goes to build/coverage/coverage.csv.
 set -eu
@@ -8,7 +9,7 @@ cd "$(dirname "$0")/.."
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
 [ $# -gt 0 ] || set -- test_core test_particles test_packings test_dem test_unit_coupling \
-  test_unit_coupling_crystal test_ranks
+  test_unit_coupling_crystal test_ranks test_simulation
 cmake --preset coverage
 cmake --build build/coverage --parallel "${JOBS:-1}" --target "$@"
 find build/coverage -name '*.gcda' -delete

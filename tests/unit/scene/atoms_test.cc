@@ -80,8 +80,8 @@ TEST(AtomScenes, LoadsFollowSidesThatAreMoved)
 {
   const Scene scene =
       *read(crystal_scene(),
-            {R"(/specimen/periodic=["y"])", R"(/discrete_zone={"extent": "all"})",
-             "/far_field=none",
+            {R"(/specimen/periodic=["y"])",
+             R"(/discrete_zone={"extent": "all", "packing": "hexagonal"})", "/far_field=none",
              R"(/loads=[{"boundary": "right", "traction": ["1 MPa", null], "from": "-30 nm",
                          "to": "30 nm"}])"})
            .scene;
