@@ -20,6 +20,9 @@ ROOT = Path(__file__).resolve().parent.parent
 def counts_by_gcov(build):
     """(file, line, count) of all object files."""
     for gcda in sorted(build.rglob("*.gcda")):
+        if gcda.with_suffix(".gcno").stat().st_mtime > gcda.stat().st_mtime:
+            print("%s is older than its object file: left out" % gcda, file=sys.stderr)
+            continue
         text = subprocess.run(["gcov", "--json-format", "--stdout", str(gcda)], cwd=gcda.parent,
                               capture_output=True, text=True, check=True).stdout
         for document in text.splitlines():
