@@ -126,7 +126,8 @@ std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, in
   const double most = has_all ? 8 * side_depth : side_depth;
   for (double depth = side_depth; depth <= most; depth *= 2) {
     const AffineFit<dim> fit = fit_near(body, axis, place, component, depth);
-    if (fit.is_poor())
+    const bool is_last = 2 * depth > most, is_all = !body.far && fit.n_particles() > 0;
+    if (fit.is_poor() && !(is_last && is_all)) // a body of a few particles has no others
       continue;
     Vector<dim> at = fit.middle();
     if (has_all && depth == side_depth && reaches_middle(fit, axis))
@@ -137,24 +138,33 @@ std::optional<double> extrapolated_displacement(const CoupledBody<dim> &body, in
   return std::nullopt;
 }
 
-/// Of the nodes of the mesh that reach farthest towards an end of the box, m.
-template <int dim>
-double farthest_displacement(const CoupledBody<dim> &body, int boundary, int component)
+/// Nodes of the mesh that reach farthest towards an end of the box.
+struct FarthestNodes
 {
-  const auto &mesh = body.far->mesh();
+  double distance = std::numeric_limits<double>::infinity(); // from there, m
+  double displacement = 0;                                   // mean, m
+};
+
+template <int dim>
+FarthestNodes farthest_nodes(const CoupledBody<dim> &body, int boundary, int component)
+{
+  FarthestNodes r;
+  if (!body.far)
+    return r;
   const int axis = boundary / 2;
-  const double sign = boundary % 2 ? 1 : -1,
+  const double end = boundary % 2 ? body.upper[axis] : body.lower[axis],
                round_off = 1e-9 * (body.upper[axis] - body.lower[axis]);
-  double farthest = -std::numeric_limits<double>::infinity(), sum = 0;
-  for (const auto &x : mesh.nodes)
-    farthest = std::max(farthest, sign * x[axis]);
+  const auto &nodes = body.far->mesh().nodes;
+  for (const auto &x : nodes)
+    r.distance = std::min(r.distance, std::abs(x[axis] - end));
   int count = 0;
-  for (int i = 0; i < mesh.n_nodes(); ++i)
-    if (sign * mesh.nodes[i][axis] > farthest - round_off) {
-      sum += body.far->displacement[component][i];
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (std::abs(nodes[i][axis] - end) < r.distance + round_off) {
+      r.displacement += body.far->displacement[component][i];
       ++count;
     }
-  return sum / count;
+  r.displacement /= count;
+  return r;
 }
 
 /// Of the middle of what a traction on a side with a name acts on, from particles on it and their
@@ -396,15 +406,22 @@ template <int dim>
 double mean_displacement(const CoupledBody<dim> &body, int boundary, int component)
 {
   const MeshReading mesh = mesh_displacement(body, boundary, core::Part<dim>(), component);
+  FarthestNodes nodes;
+  if (mesh.area == 0) { // a tip or an edge, or particles have all of the side
+    nodes = farthest_nodes(body, boundary, component);
+    if (!body.zone || nodes.distance < side_depth * body.spacing)
+      return nodes.displacement;
+  }
   if (!body.zone)
-    return mesh.area > 0 ? mesh.displacement : farthest_displacement(body, boundary, component);
+    return mesh.displacement;
   const int axis = boundary / 2;
-  const auto joint =
-      joint_displacement(mesh, body.side_areas[boundary] / body.thickness, [&](bool has_all) {
-        return extrapolated_displacement(
-            body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis], component, has_all);
-      });
-  return joint || !body.far ? joint.value_or(0) : farthest_displacement(body, boundary, component);
+  return joint_displacement(mesh, body.side_areas[boundary] / body.thickness,
+                            [&](bool has_all) {
+                              return extrapolated_displacement(
+                                  body, axis, boundary % 2 ? body.upper[axis] : body.lower[axis],
+                                  component, has_all);
+                            })
+      .value_or(nodes.displacement);
 }
 
 template class TestMachine<2>;
