@@ -121,9 +121,9 @@ void check_duration(const Scene &scene, Findings &f)
       (particles ? !f.given("/discrete_zone/spacing") : !scene.far_field))
     return;
   const double step = scene.time.step.value_or(typical_step(scene));
-  const double steps = scene.time.duration / step;
   if (!(step > 0)) // the material is not known
     return;
+  const double steps = scene.time.duration / step;
   // Equilibria skip most steps, but the clock counts them all: it must be able to tell two apart.
   if (scene.time.has_phases() ? steps <= 1e14 : steps <= 1e12)
     return;

@@ -353,12 +353,20 @@ double TestMachine<dim>::load_displacement(const CoupledBody<dim> &body, int loa
       .value_or(0);
 }
 
-/// Of the load on the other half, or where there is none of that end of the body.
+/// Of the load on the other half. Where there is none the body is held elsewhere, at rest, or free:
+/// then of its end there.
 template <int dim>
 double TestMachine<dim>::opposite_displacement(const CoupledBody<dim> &body, double time) const
 {
-  return opposite_ < 0 ? mean_displacement(body, 2 * axis_ + (sign_ < 0), component_)
-                       : load_displacement(body, opposite_, time);
+  if (opposite_ >= 0)
+    return load_displacement(body, opposite_, time);
+  for (std::size_t l = 0; l < body.loads.size(); ++l) {
+    const auto &load = body.loads[l];
+    if (int(l) != load_ && load.boundary >= 0 && load.value[component_] &&
+        load.kind != core::BoundaryLoad<dim>::Kind::traction)
+      return load.displacement(component_, time);
+  }
+  return mean_displacement(body, 2 * axis_ + (sign_ < 0), component_);
 }
 
 template <int dim>
