@@ -2,6 +2,8 @@
 #include "src/simulation/test_machine.h"
 #include "tests/support/small_plate.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 using namespace ligament;
@@ -136,6 +138,27 @@ TEST(TestMachine, ReadsTheMotionOfEndsThatAreTips)
       const Reading r = TestMachine<2>(small.body).read(small.body, 0);
       EXPECT_NEAR(r.displacement / (loads == of_box ? 59.8e-4 + 0.006 : 119.8e-4), 1, 1e-6);
     }
+}
+
+// A clamp is at rest, in whichever half the load lies: the other end of the body bends along.
+TEST(TestMachine, ReadsAgainstAClampWhereverItLies)
+{
+  const std::string bar = R"(/specimen={"outline": [
+    {"at": [-12, -60]}, {"at": [12, -60]}, {"at": [12, 60], "side": "end"}, {"at": [-12, 60]}]})";
+  for (const auto &[from, to] : {std::pair(-50, -40), std::pair(-5, 5), std::pair(40, 50)}) {
+    const std::string loads = fmt::format(
+        R"(/loads=[{{"boundary": "left", "displacement": [0, 0]}}, {{"boundary": "end",
+            "within": {{"lower": [null, {}], "upper": [null, {}]}}, "traction": [null, 1e-4]}}])",
+        from, to);
+    SmallBody small(small_scene({"/discrete_zone=none", "/far_field/cell_size=2", bar, loads}));
+    Eigen::Matrix2d sheared;
+    sheared << 0, 0, 1e-4, 1e-4;
+    small.deform(sheared);
+    auto bodies = small.body.bodies();
+    small.body.coupler->compute_forces(bodies, {0, 0, small.body.dt});
+    const Reading r = TestMachine<2>(small.body).read(small.body, 0);
+    EXPECT_NEAR(std::abs(r.displacement), std::abs(12 + from + 5) * 1e-4, 1e-8) << from;
+  }
 }
 
 // Two loads on one side: the one that is read tells its motion, whichever comes first.
