@@ -4,6 +4,7 @@
 #include "src/analysis/curve.h"
 #include "src/output/broken_bonds.h"
 #include "src/output/format.h"
+#include "src/simulation/gauges/j_integral.h"
 #include "src/simulation/guards.h"
 
 #include <fmt/format.h>
@@ -72,26 +73,6 @@ double seconds_of(Look &&look)
     least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
   }
   return least;
-}
-
-/// When the first face broke between the rectangles of a j_integral, s; infinite: none did.
-template <int dim>
-double broken_between(const GaugeParameters &g,
-                      const std::vector<particles::BrokenBond<dim>> &bonds)
-{
-  double first = std::numeric_limits<double>::infinity();
-  for (const auto &bond : bonds) {
-    bool in_outer = true, in_inner = true;
-    for (int c = 0; c < dim; ++c)
-      if (g.inner_lower[c] < g.inner_upper[c]) { // not along the front
-        in_outer = in_outer && bond.position[c] > g.lower[c] && bond.position[c] < g.upper[c];
-        in_inner =
-            in_inner && bond.position[c] > g.inner_lower[c] && bond.position[c] < g.inner_upper[c];
-      }
-    if (in_outer && !in_inner)
-      first = std::min(first, bond.time);
-  }
-  return first;
 }
 } // namespace
 

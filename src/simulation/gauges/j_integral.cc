@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include <cmath>
+#include <limits>
 
 namespace ligament::program
 {
@@ -223,6 +224,29 @@ std::string JIntegral<dim>::description() const
                      n_of_body_, samples_.size() - n_particles_);
 }
 
+template <int dim>
+double broken_between(const GaugeParameters &g,
+                      const std::vector<particles::BrokenBond<dim>> &bonds)
+{
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto &bond : bonds) {
+    bool in_outer = true, in_inner = true;
+    for (int c = 0; c < dim; ++c)
+      if (g.inner_lower[c] < g.inner_upper[c]) { // not along the front
+        in_outer = in_outer && bond.position[c] > g.lower[c] && bond.position[c] < g.upper[c];
+        in_inner =
+            in_inner && bond.position[c] > g.inner_lower[c] && bond.position[c] < g.inner_upper[c];
+      }
+    if (in_outer && !in_inner)
+      first = std::min(first, bond.time);
+  }
+  return first;
+}
+
 template class JIntegral<2>;
 template class JIntegral<3>;
+template double broken_between(const GaugeParameters &,
+                               const std::vector<particles::BrokenBond<2>> &);
+template double broken_between(const GaugeParameters &,
+                               const std::vector<particles::BrokenBond<3>> &);
 } // namespace ligament::program

@@ -59,4 +59,9 @@ private:
   std::size_t n_broken_ = 0, n_particles_ = 0; // at hand
   std::int64_t n_of_body_ = 0;                 // particles
 };
+
+/// When the first face broke between the rectangles of such a gauge, s; infinite: none did.
+template <int dim>
+double broken_between(const GaugeParameters &g,
+                      const std::vector<particles::BrokenBond<dim>> &bonds);
 } // namespace ligament::program
