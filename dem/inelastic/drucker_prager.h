@@ -61,12 +61,14 @@ public:
     V cone = hn::Div(excess, hn::Add(stiffness, hn::Set(d_, law_.hardening)));
     if (HWY_UNLIKELY(law_.hardening < 0)) // the cohesion does not fall below 0
       cone = hn::Min(cone, hn::Div(borne, stiffness));
-    // Past the apex the shear stress would turn round: there it vanishes, and the mean stress is
-    // the largest that the material bears.
-    const auto apex = hn::Gt(hn::Mul(shear_modulus, cone), tau);
-    const V shear_strain = hn::IfThenElse(apex, hn::Div(tau, shear_modulus), cone);
-    V volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
-    if (law_.friction > 0) {
+    V shear_strain = cone, volume = hn::Mul(hn::Set(d_, law_.dilatancy), cone);
+    if (!is_plane_stress() && law_.friction > 0) {
+      // Past the apex the shear stress would turn round: there it vanishes, and the mean stress is
+      // the largest that the material bears. Plane stress has no apex, the deviator out of the
+      // plane is minus the mean stress; its cut through the cone is convex, so that a step along
+      // the tangent ends on it or outside.
+      const auto apex = hn::Gt(hn::Mul(shear_modulus, cone), tau);
+      shear_strain = hn::IfThenElse(apex, hn::Div(tau, shear_modulus), cone);
       const V largest = hn::Div(yield_at(hn::Add(history, shear_strain)), friction);
       volume = hn::IfThenElse(apex, hn::Mul(hn::Sub(middle, largest), hn::Set(d_, 1 / law_.bulk)),
                               volume);
@@ -81,11 +83,13 @@ public:
   }
 
 private:
+  HWY_INLINE bool is_plane_stress() const { return dim == 2 && law_.is_plane_stress; }
+
   /// How much of f an increment of the plastic shear strain takes, Pa: M:C:N, theory.md
   /// eqs. (D25), (D25b).
   HWY_INLINE V stiffness_at(const Tensor &s, V tau) const
   {
-    if (dim == 3 || !law_.is_plane_stress)
+    if (!is_plane_stress())
       return hn::Set(d_, law_.shear + law_.bulk * law_.dilatancy * law_.friction);
     const double b = law_.friction / 3, dilatancy = law_.dilatancy / 3;
     const double lambda = law_.bulk - 2. / 3 * law_.shear;

@@ -246,6 +246,7 @@ private:
 
   Matrix in_plane(int i) const { return strain[i].template topLeftCorner<dim, dim>(); }
   bool is_plane_strain() const { return dim == 2 && plane_ == PlaneMode::strain; }
+  bool in_plane_stress() const { return dim == 2 && plane_ == PlaneMode::stress; }
 
   double pressure(const State &s, int i) const
   {
@@ -299,7 +300,7 @@ private:
     double shear = excess / (stiffness + law.hardening);
     if (law.cohesion + law.hardening * (history[i] + shear) < 0)
       shear = (excess + yield) / stiffness; // what is left is friction
-    if (g * shear <= tau) {
+    if (in_plane_stress() || g * shear <= tau) {
       strain[i] += shear * (s / (2 * tau) + law.dilatancy / 3 * one);
       history[i] += shear;
       return;
@@ -316,7 +317,7 @@ private:
   double unloading(const dem::DruckerPragerFlow &law, const Eigen::Matrix3d &sheared,
                    double g) const
   {
-    if (dim == 3 || is_plane_strain())
+    if (!in_plane_stress())
       return g + k_ * law.dilatancy * law.friction;
     const Eigen::Matrix2d flow =
         (sheared + law.dilatancy / 3 * Eigen::Matrix3d::Identity()).topLeftCorner<2, 2>();
