@@ -229,8 +229,9 @@ template <int dim>
 void derive(Scene &scene)
 {
   find_other_species(scene);
+  const bool is_found = scene.atoms->lattice_parameter == 0; // or given
   if (scene.is_warm()) {
-    if (scene.atoms->lattice_parameter == 0)
+    if (is_found)
       scene.atoms->lattice_parameter =
           core::at_key(section + "/temperature", "choose a lower one, or another potential",
                        [&] { return thermal_lattice_of<dim>(scene).parameter; });
@@ -253,12 +254,15 @@ void derive(Scene &scene)
   const bool is_stable = resistance.minCoeff() > 1e-3 * resistance.maxCoeff();
   if (!is_stable && scene.is_warm())
     throw core::KeyedError(
-        section + "/temperature",
-        fmt::format("the crystal is not stable as wide as it is at {} K", scene.atoms->temperature),
+        section + (is_found ? "/temperature" : "/lattice_parameter"),
+        is_found ? fmt::format("the crystal is not stable as wide as it is at {} K",
+                               scene.atoms->temperature)
+                 : "the crystal is not stable with this lattice parameter",
         fmt::format("at a lattice parameter of {:.4g} m the least of its elastic constants is "
                     "{:.3g} Pa, the largest {:.3g} Pa",
                     crystal.lattice_parameter(), resistance.minCoeff(), resistance.maxCoeff()),
-        "choose a lower one, or another potential");
+        is_found ? "choose a lower one, or another potential"
+                 : "leave it out, and it is found for this temperature");
   if (!is_stable)
     throw core::KeyedError(
         "/discrete_zone/packing", "this lattice of the potential in /atoms is not stable",

@@ -134,15 +134,18 @@ void fit_forces(const Scene &scene, CoupledBody<dim> &body)
   }
 }
 
-/// As those of the mesh: in a crystal they depend on the side.
+/// As those of the mesh: in a crystal they depend on the side. Of absorbing sides alone: a crystal
+/// under stress need not have any across the others.
 template <int dim>
 packings::SideSpeeds<dim> side_speeds(const particles::ElasticConstants<dim> &constants,
-                                      double density)
+                                      double density,
+                                      const std::vector<core::BoundaryLoad<dim>> &loads)
 {
   const fem::Body<dim> solid{constants.stiffness, density, 1, constants.stress};
   packings::SideSpeeds<dim> speeds;
-  for (int axis = 0; axis < dim; ++axis)
-    speeds.across[axis] = fem::normal_wave_speeds(solid, axis);
+  for (const auto &load : loads)
+    if (load.absorbing)
+      speeds.across[load.boundary / 2] = fem::normal_wave_speeds(solid, load.boundary / 2);
   return speeds;
 }
 
@@ -264,7 +267,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   state.part = held.part;
   auto dashpots =
       packings::absorbing_dashpots(of_particles, state, body.loads, scene.material.density,
-                                   side_speeds(constants, scene.material.density), body.ranks);
+                                   side_speeds(constants, scene.material.density, body.loads), body.ranks);
   of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);
