@@ -78,9 +78,10 @@ std::optional<double> fit_stiffness(const std::vector<double> &displacement,
 }
 
 std::optional<double> relative_residual(const std::vector<double> &residual,
-                                        const std::vector<double> &external_work)
+                                        const std::vector<double> &external_work,
+                                        const std::vector<double> &kinetic)
 {
-  const double work = largest_magnitude(external_work);
-  return work > 0 ? std::optional(largest_magnitude(residual) / work) : std::nullopt;
+  const double moved = std::max(largest_magnitude(external_work), largest_magnitude(kinetic));
+  return moved > 0 ? std::optional(largest_magnitude(residual) / moved) : std::nullopt;
 }
 } // namespace ligament::program

@@ -110,7 +110,8 @@ std::string energies(const Table &history, const RunRecord &record)
   std::string text = "<h2>Energy ledger</h2>\n" + draw_plot(plot) +
                      html_table({"at the end", "energy", "of the external work"}, rows);
   if (record.energy_residual)
-    text += fmt::format("<p>Largest residual of the whole run: {:.2g} of the external work.</p>\n",
+    text += fmt::format("<p>Largest residual of the whole run: {:.2g} of the external work or the "
+                        "kinetic energy, whichever was larger.</p>\n",
                         *record.energy_residual);
   return text;
 }

@@ -13,7 +13,7 @@ namespace ligament::program
 {
 namespace
 {
-/// Above this share of the external work the ledger is not closed well enough to trust a run.
+/// Above this share of the largest energy the ledger is not closed well enough to trust a run.
 constexpr double largest_good_residual = 1e-2;
 /// Up to here the ledger counts as closed: the share that any figure of the run may owe to it.
 constexpr double closed_residual = 1e-4;
@@ -52,7 +52,8 @@ std::string residual_part(double residual)
 {
   std::string text = fmt::format("energy residual {:.1g}", residual);
   if (residual > closed_residual && residual <= largest_good_residual)
-    text += fmt::format(" of the work, above the {:.0e} of a closed balance", closed_residual);
+    text += fmt::format(" of the largest energy, above the {:.0e} of a closed balance",
+                        closed_residual);
   return text;
 }
 } // namespace

@@ -179,6 +179,7 @@ EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
   curve_.add(step.time, r, n_broken(body));
   residual_.push_back(ledger.residual());
   work_.push_back(ledger.external_work);
+  kinetic_.push_back(ledger.kinetic());
   most_work_ = std::max(most_work_, ledger.external_work);
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
@@ -467,7 +468,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.crack_length = crack_length(body);
   if (!work_.empty())
     record.external_work = *std::max_element(work_.begin(), work_.end());
-  record.energy_residual = relative_residual(residual_, work_);
+  record.energy_residual = relative_residual(residual_, work_, kinetic_);
   add_warnings(body, record);
   attempt([&] { writer_.wait(); });
   if (body.ranks.any(!failure_.empty()) && failure_.empty())

@@ -142,8 +142,8 @@ private:
   std::string failure_;
 
   LoadCurve curve_;
-  std::vector<double> residual_, work_; // J, of the rows of the history
-  double most_work_ = 0;                // J, of these
+  std::vector<double> residual_, work_, kinetic_; // J, of the rows of the history
+  double most_work_ = 0;                          // J, of these
   SnapshotKeeper<dim> snapshots_;
   bool quasi_static_ = true;             // at the last row
   double fields_copied_at_ = 0;          // N, load of the copies below

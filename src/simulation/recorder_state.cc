@@ -51,6 +51,7 @@ void Recorder<dim>::save(core::State &state) const
   core::Table rows = numbered_rows(work_.size()), outputs = numbered_rows(fields_.times().size());
   rows.add("residual", residual_);
   rows.add("work", work_);
+  rows.add("kinetic", kinetic_);
   state.emplace("history", std::move(rows));
   outputs.add("time", fields_.times());
   state.emplace("field_outputs", std::move(outputs));
@@ -98,6 +99,7 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   curve_.load(state);
   residual_ = core::table(state, "history").reals("residual");
   work_ = core::table(state, "history").reals("work");
+  kinetic_ = core::table(state, "history").reals("kinetic");
   for (const double work : work_)
     most_work_ = std::max(most_work_, work);
   load_copies(state, kept, body);

@@ -100,7 +100,9 @@ TEST(Curve, NothingToFitIsEmpty)
 
 TEST(Curve, ResidualIsRelativeToTheLargestWork)
 {
-  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 5, 4}), 2e-3 / 5);
-  EXPECT_FALSE(relative_residual({1}, {0}));
+  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 5, 4}, {0, 1, 1}), 2e-3 / 5);
+  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 0, 1e-4}, {2, 1, 0}),
+                   1e-3); // in motion
+  EXPECT_FALSE(relative_residual({1}, {0}, {0}));
 }
 } // namespace
