@@ -209,6 +209,15 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
                       "and ends inside the inner rectangle",
                       sign > 0 ? "below" : "above", axis_name(along)),
           "move the rectangles around one tip, or turn \"direction\" round");
+    const int third = 3 - along - across;
+    if (const double rounding = 1e-9 * (specimen.upper[third] - specimen.lower[third]);
+        dim == 3 && (cut.box.lower[third] > specimen.lower[third] + rounding ||
+                     cut.box.upper[third] < specimen.upper[third] - rounding))
+      return f.error(
+          key,
+          fmt::format("{} goes over a part of the specimen's {} only", cut.key, axis_name(third)),
+          fmt::format("{} takes the mean over all of it, of a front that goes through", key),
+          "let the cut go through, or remove the gauge");
     for (std::size_t l = 0; l < scene.loads.size() && !cut.side.empty(); ++l)
       if (scene.loads[l].side == cut.side)
         return f.error(key,
