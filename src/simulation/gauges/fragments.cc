@@ -4,6 +4,7 @@
 #include "core/files.h"
 #include "fem/cell_map.h"
 #include "src/output/format.h"
+#include "src/simulation/gauges/mesh_share.h"
 #include "src/simulation/gauges/pieces.h"
 
 #include <Eigen/Dense>
@@ -68,16 +69,25 @@ void FragmentGauge<dim>::follow(const CoupledBody<dim> &body)
   if (body.zone) {
     const auto &state = body.zone->state;
     particles::for_each(state.part.owned, [&](int i) {
-      if (!overlap || overlap->member_of_particle[i] < 0)
-        particle_mass[i] = state.volume[i] * density_.at(body.force()->material(i));
+      const double share = overlap ? overlap->weight(get(state.reference, i)) : 1;
+      particle_mass[i] = share * state.volume[i] * density_.at(body.force()->material(i));
     });
   }
   if (!node_mass.empty()) {
     const auto &mesh = body.far->mesh();
+    const MeshShare<dim> of_mesh(body);
+    const double density = density_[0] * body.thickness;
     for (int cell = 0; cell < mesh.n_cells(); ++cell) {
-      const auto shares = fem::volume_shares(mesh, cell);
-      for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-        node_mass[mesh.cells[cell][a]] += density_[0] * body.thickness * shares[a];
+      const auto add = [&](const auto &shares, double volume) {
+        for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
+          node_mass[mesh.cells[cell][a]] += density * volume * shares[a];
+      };
+      if (of_mesh.is_shared(cell))
+        of_mesh.for_each_point(cell, [&](const Vector<dim> &x, double volume) {
+          add(fem::shape_values(mesh, cell, x), volume);
+        });
+      else
+        add(fem::volume_shares(mesh, cell), 1);
     }
   }
   BodyPieces pieces = find_pieces(body, particle_mass, node_mass);
@@ -112,12 +122,13 @@ Fragment FragmentGauge<dim>::motion(const CoupledBody<dim> &body, int piece) con
                                get(body.zone->state.displacement, c.item));
   };
   VectorSum centre, momentum, angular;
+  const auto *overlap = body.coupler->overlap();
   for (auto k = begin; k < end; ++k) {
     const Carrier &c = carriers_[k];
     centre.add(c.mass * place(c));
     momentum.add(c.mass * velocity_of(body, c));
     f.has_mesh = f.has_mesh || c.is_node;
-    f.particles += !c.is_node;
+    f.particles += !c.is_node && (!overlap || overlap->member_of_particle[c.item] < 0);
   }
   const core::Ranks &ranks = body.ranks;
   f.particles = ranks.sum(f.particles);

@@ -1,5 +1,6 @@
 #include "src/simulation/gauges/j_integral.h"
 
+#include "src/simulation/gauges/mesh_share.h"
 #include "src/simulation/gauges/small_strain.h"
 
 #include "core/check.h"
@@ -95,35 +96,16 @@ JIntegral<dim>::JIntegral(const GaugeParameters &gauge, const GaugePlaces<dim> &
                 "nothing lies between its rectangles; move them apart");
 }
 
-// The share of the mesh falls within a cell or two: cells of the overlap are looked at in parts.
 template <int dim>
 void JIntegral<dim>::add_cells(const CoupledBody<dim> &body)
 {
-  constexpr int parts_per_axis = dim == 2 ? 4 : 2;
   const auto &mesh = body.far->mesh();
-  const auto *overlap = body.coupler->overlap();
-  std::vector<char> is_shared(mesh.n_cells(), 0);
-  if (overlap)
-    for (const auto &cell : overlap->cells)
-      is_shared[cell.cell] = cell.layer == 0;
+  const MeshShare<dim> share(body);
   for_each_cell_part<dim>(mesh, lower_, upper_, [&](int cell, const auto &, const auto &) {
-    const auto add = [&](const Vector<dim> &x, double volume) {
-      const double share = overlap ? 1 - overlap->weight(x) : 1;
-      if (share > 0 && !slope(x).isZero(0))
-        add_sample(x, share * volume * body.thickness, interpolate(mesh, cell, x), -1);
-    };
-    if (!mesh.is_box(cell)) { // never of the overlap
-      for_each_gauss_point(mesh, cell, 1, add);
-      return;
-    }
-    const int n = is_shared[cell] ? parts_per_axis : 1;
-    const Vector<dim> size = mesh.cell_size[cell] / n;
-    for (int part = 0; part < std::lround(std::pow(n, dim)); ++part) {
-      Vector<dim> from = mesh.cell_lower[cell];
-      for (int c = 0, rest = part; c < dim; ++c, rest /= n)
-        from[c] += rest % n * size[c];
-      for_each_gauss_point<dim>(from, from + size, add);
-    }
+    share.for_each_point(cell, [&](const Vector<dim> &x, double volume) {
+      if (!slope(x).isZero(0))
+        add_sample(x, volume * body.thickness, interpolate(mesh, cell, x), -1);
+    });
   });
 }
 
