@@ -17,7 +17,7 @@ void declare_crack(Section &s, Crack &c)
 void declare_hole(Section &s, Hole &h)
 {
   s.add("centre", h.centre, "centre of the disc").in("m").usually(0, 1e4, "mm um").required();
-  s.add("radius", h.radius, "radius of the disc; at least two spacings").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.add("radius", h.radius, "radius of the disc; at least two spacings").in("m").usually(1e-10, 1e4, "mm um nm").above(0).required();
 }
 
 void declare_notch(Section &s, Notch &n)
@@ -44,7 +44,7 @@ void declare_slot(Section &s, Slot &n)
 {
   s.add("from", n.from, "middle of its mouth on the surface; it goes on outward by its width").in("m").usually(0, 1e4, "mm um").required();
   s.add("to", n.to, "its tip").in("m").usually(0, 1e4, "mm um").required();
-  s.add("width", n.width, "between its flanks").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.add("width", n.width, "between its flanks").in("m").usually(1e-10, 1e4, "mm um nm").above(0).required();
   s.add("tip", n.tip, "flat; round: half a circle; v: a wedge, whose flanks are straight from its tip to the full width", words(SlotTip()));
   s.add("tip_angle", n.tip_angle, "between the flanks of a tip v").in("rad").usually(0.05, 3.1, "deg mrad").above(0).below(3.14);
   s.add("side", n.side, "name of its flanks and tip, for loads");
@@ -52,7 +52,7 @@ void declare_slot(Section &s, Slot &n)
 
 void declare_specimen_ball(Section &s, Ball &b)
 {
-  s.add("radius", b.radius, "of the ball").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.add("radius", b.radius, "of the ball").in("m").usually(1e-10, 1e4, "mm um nm").above(0).required();
 }
 
 void declare_periodic_axis(Section &s, PeriodicAxis &p)
@@ -157,7 +157,7 @@ void declare_material(Section &s, MaterialParameters &m, bool may_be_atoms)
 void declare_ball(Section &s, Hole &h)
 {
   s.add("centre", h.centre, "its centre").in("m").usually(0, 1e4, "mm um").required();
-  s.add("radius", h.radius, "its radius").in("m").usually(1e-8, 1e4, "mm um nm").above(0).required();
+  s.add("radius", h.radius, "its radius").in("m").usually(1e-10, 1e4, "mm um nm").above(0).required();
 }
 
 void declare_substitution(Section &s, Substitution &a)
@@ -211,7 +211,7 @@ void declare_around(Section &s, ZoneAround &a)
   s.add("holes", a.holes, "all holes");
   s.add("cutouts", a.cutouts, "all cutouts");
   s.add("corners", a.corners, "re-entrant corners of the outline");
-  s.add("margin", a.margin, "width of the zone between these and its overlap").in("m").usually(1e-8, 1e3, "mm um nm").above(0).required();
+  s.add("margin", a.margin, "width of the zone between these and its overlap").in("m").usually(1e-10, 1e3, "mm um nm").above(0).required();
 }
 
 void declare_zone(Section &s, DiscreteZone &z)
@@ -273,7 +273,7 @@ void declare_region_of(Section &s, Region &r)
   s.add("lower", r.lower, "corner of a box with the smallest coordinates; null: reaches through").in("m").usually(0, 1e4, "mm um").null_means(-infinity);
   s.add("upper", r.upper, "corner of a box with the largest coordinates; null: reaches through").in("m").usually(0, 1e4, "mm um").null_means(infinity);
   s.add("centre", r.centre, "of a disc (2D) or ball, in place of a box").in("m").usually(0, 1e4, "mm um");
-  s.add("radius", r.radius, "of a disc (2D) or ball; 0: a box").in("m").usually(1e-8, 1e4, "mm um nm").at_least(0);
+  s.add("radius", r.radius, "of a disc (2D) or ball; 0: a box").in("m").usually(1e-10, 1e4, "mm um nm").at_least(0);
 }
 
 void declare_pulse(Section &s, PulseParameters &p)
@@ -335,7 +335,7 @@ void declare_tool(Section &s, ToolParameters &t)
   s.add("place", t.place, "centre of the tool where the run begins; of a wedge the point that its corners refer to").in("m").usually(0, 1e4, "mm um").required();
   s.add("orientation", t.orientation, "turns the tool: an angle (2D) or a rotation vector (3D); a roller's axis and a wedge's edge lie along z at 0").in("rad").usually(0, 6.3, "deg mrad").at_least(-1000).at_most(1000).as_rotation();
   s.add("size", t.size, "plate: edge lengths").in("m").usually(1e-8, 1e4, "mm um").at_least(0);
-  s.add("radius", t.radius, "roller, ball").in("m").usually(1e-8, 1e4, "mm um nm").at_least(0);
+  s.add("radius", t.radius, "roller, ball").in("m").usually(1e-10, 1e4, "mm um nm").at_least(0);
   s.add("length", t.length, "roller, wedge: along their axis").in("m").usually(1e-8, 1e4, "mm um").above(0).word("endless", infinity).only_in(3);
   s.add("points", t.points, "wedge: three or more corners against its place, in turn; 3D: with 0 as third coordinate").in("m").usually(0, 1e4, "mm um");
   s.add("velocity", t.velocity, "prescribed velocity; null: 0. Without mass that of the tool, with machine_stiffness that of the spring's far end").in("m/s").usually(1e-12, 1e4, "mm/s um/s km/h");
