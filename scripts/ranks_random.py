@@ -5,8 +5,8 @@ on one, on several, on several that are cut anew under way, and goes on from one
     scripts/ranks_random.py --seed 1 --number 20
     scripts/ranks_random.py --seed 1 --only 17        # one of them again
 
-What is drawn at once: packing and its orientation, bodies alone and inside elements, cracks, holes and
-notches, criteria, scatter, softening, cracks of limited velocity, flow and creep, loads, motions at the
+What is drawn at once: packing and its orientation, bodies alone and inside elements (between two sides or
+all around), outlines, cutouts, slots, cracks, holes and notches, criteria, scatter, softening, cracks of limited velocity, flow and creep, loads, motions at the
 beginning, damping, gauges, regimes, steps of the mesh. Scenes that `ligament check -n` refuses are told
 and left out. Exit code 1 where anything differs. PATH or --program says which ligament.
 """
@@ -42,6 +42,10 @@ class Draw:
         self.dim = 2 if self.chance(0.75) else 3
         self.coupled = self.chance(0.5)
         self.static = self.chance(0.12)
+        # Of their own, so that the other draws of a seed stay what they were.
+        self.shapes = random.Random(f"{seed} {number} shapes")
+        self.around = self.coupled and self.shapes.random() < (0.3 if self.dim == 2 else 0.15)
+        self.outlined = not self.coupled and self.shapes.random() < 0.25
 
     def chance(self, p):
         return self.random.random() < p
@@ -86,7 +90,9 @@ class Draw:
         else:
             self.size = [self.between(6, 11), self.between(6, 11),
                          self.between(70, 76) if self.coupled else self.between(8, 18)]
-        specimen = {"size": self.size}
+        if self.around:  # as far as its mesh needs beside the zone
+            self.size = self.size[-1:] * self.dim
+        specimen = self.outline() if self.outlined else {"size": self.size}
         if self.chance(0.6):
             specimen["cracks"] = [self.crack() for _ in range(self.one_of(1, 1, 2))]
         if self.dim == 2 and self.chance(0.25):
@@ -94,9 +100,32 @@ class Draw:
         if self.dim == 2 and self.chance(0.25):
             x = -self.size[0] / 2
             specimen["notches"] = [{"lower": [x - 1, -1.1], "upper": [x + self.between(3, 8), 1.2]}]
+        if self.dim == 2 and self.shapes.random() < 0.15:
+            specimen["slots"] = [{"from": [-6, self.of_shape(-8, 8)], "to": [self.of_shape(-1, 3), self.of_shape(-8, 8)],
+                                  "width": self.of_shape(1.2, 2)}]
+        if self.dim == 2 and self.shapes.random() < 0.15:
+            x, y = self.of_shape(2, 8), self.of_shape(-8, 4)
+            specimen["cutouts"] = [{"outline": [{"at": [x, y]}, {"at": [x + 4, y]},
+                                                {"at": [x + 2, y + 4], "centre": [x + 2, y + 1.5]}]}]
         return specimen
 
+    def of_shape(self, low, high):
+        return round(self.shapes.uniform(low, high), 3)
+
+    def outline(self):
+        """A prism with slanted sides, of the size that a box would have."""
+        x, y = self.size[0] / 2, self.size[1] / 2
+        corners = [[-x * self.of_shape(0.7, 1), -y], [x, -y], [x * self.of_shape(0.7, 1), y], [-x, y]]
+        outline = [{"at": corner + [0] * (self.dim - 2)} for corner in corners]
+        outline[0]["side"], outline[2]["side"] = "lower", "upper"
+        return {"outline": outline, **({"thickness": self.size[2]} if self.dim == 3 else {})}
+
     def crack(self):
+        if self.around:  # all of it within the zone
+            x, to = self.of_shape(-6, 2), self.of_shape(3, 6)
+            if self.dim == 2:
+                return {"points": [[x, self.of_shape(-2, 2)], [to, self.of_shape(-2, 2)]]}
+            return {"points": [[a, 0.3, b] for a, b in ((x, -2), (to, -2), (to, 2), (x, 2))]}
         if self.dim == 2:
             start = [self.between(-10, 10), self.between(-3, 3)]
             return {"points": [start, [start[0] + self.between(3, 16), self.between(-3, 3)]]}
@@ -149,6 +178,8 @@ class Draw:
             lower, upper = [None] * self.dim, [None] * self.dim
             reach = (24, 27) if self.dim == 2 else (18, 19)
             lower[axis], upper[axis] = -self.between(*reach), self.between(*reach)
+            if self.around:
+                lower, upper = [lower[axis]] * self.dim, [upper[axis]] * self.dim
             zone["region"] = {"lower": lower, "upper": upper}
         return zone
 
@@ -163,7 +194,7 @@ class Draw:
             scene["coupling"]["gap_filter"] = self.one_of(0, 0.2)
 
     def loads(self):
-        names = [["left", "right"], ["bottom", "top"], ["back", "front"]]
+        names = [["left", "right"], ["lower", "upper"] if self.outlined else ["bottom", "top"], ["back", "front"]]
         axis = self.dim - 1
         component = self.one_of(axis, axis, axis, 0)
         velocity = self.one_of(1, 1, 1, -1) * self.between(1e-3, 6e-3)

@@ -126,8 +126,7 @@ void check_temperature(const Scene &scene, Findings &f)
                         : "remove it; /atoms/zone_friction is a friction with its noise");
   const bool is_moved = scene.body_force.is_any() ||
                         std::any_of(scene.loads.begin(), scene.loads.end(), [](const auto &load) {
-                          return load.kind == LoadKind::velocity &&
-                                 std::any_of(load.value.begin(), load.value.end(),
+                          return std::any_of(load.velocity.begin(), load.velocity.end(),
                                              [](const auto &v) { return v.value_or(0) != 0; });
                         });
   if (a.zone_friction > 0 && is_moved)
