@@ -262,7 +262,7 @@ def compare(args, base, scene, draw):
         now = call(args, base / name, ["run", file, "-o", str(base / name)] + more)
         found[name] = differences(one, base / name) if now == code else [f"exit codes {code} and {now}"]
     half = base / "goes_on"
-    share = draw.between(31, scene["time"]["duration"] - 5)  # behind all ramps, lest it warn of them
+    share = draw.between(36, scene["time"]["duration"] - 5)  # behind ramps and intervals, lest it warn of them
     now = call(args, half, ["run", file, "-o", str(half), "-n", str(draw.one_of(1, 2, 3)), "--set",
                             f"/time/duration={share}"])
     # It ends where the loads break it, or a guard finds it: nothing to go on with.
