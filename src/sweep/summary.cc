@@ -29,13 +29,13 @@ struct Point
   double time, error;
 };
 
-/// What can be drawn: a logarithmic axis has no place for an error of 0.
+/// Every case with a cost and an error, also one without any difference from the reference.
 std::vector<Point> points(const Study &study, const std::vector<CaseResult> &results, Errors errors)
 {
   std::vector<Point> list;
   for (const CaseResult &r : results)
     if (r.time(study.cost) && r.*errors && r.end.status == CaseEnd::Status::done)
-      if (const auto error = measured(*(r.*errors), study.measure); error && *error > 0)
+      if (const auto error = measured(*(r.*errors), study.measure); error && std::isfinite(*error))
         list.push_back({&r, *r.time(study.cost), *error});
   return list;
 }
@@ -51,6 +51,14 @@ std::vector<Point> front(const std::vector<Point> &all)
   for (const std::size_t i : pareto_front(times, errors))
     chosen.push_back(all[i]);
   return chosen;
+}
+
+/// What can be drawn: a logarithmic axis has no place for an error of 0.
+std::vector<Point> drawable(std::vector<Point> all)
+{
+  all.erase(std::remove_if(all.begin(), all.end(), [](const Point &p) { return !(p.error > 0); }),
+            all.end());
+  return all;
 }
 
 void add_point(Series &series, const Point &p, const std::string &note)
@@ -126,7 +134,7 @@ std::string refusals(const std::vector<CaseResult> &results)
 
 Plot error_plot(const Study &study, const std::vector<CaseResult> &results, Errors errors)
 {
-  const auto all = points(study, results, errors);
+  const auto whole = points(study, results, errors), all = drawable(whole);
   Plot plot;
   plot.height = 460;
   plot.x = {time_name(study), "s", true};
@@ -153,7 +161,7 @@ Plot error_plot(const Study &study, const std::vector<CaseResult> &results, Erro
     plot.series.push_back(rivals);
   Series line;
   line.label = "Pareto front";
-  for (const Point &p : front(all))
+  for (const Point &p : drawable(front(whole))) // that of the table
     add_point(line, p, "");
   if (!line.x.empty())
     plot.series.push_back(line);
@@ -196,9 +204,13 @@ void write_summary(const StudyFolder &folder, const Study &study, const CaseList
     const auto all = points(study, results, axis.errors);
     if (all.empty())
       continue;
-    const std::string drawing = draw_plot(error_plot(study, results, axis.errors));
-    core::write_file(folder.path() + "/" + axis.file, drawing);
-    body += std::string("<h2>") + axis.title + "</h2>\n" + drawing + front_table(study, all);
+    body += std::string("<h2>") + axis.title + "</h2>\n";
+    if (const Plot plot = error_plot(study, results, axis.errors); !plot.series.empty()) {
+      const std::string drawing = draw_plot(plot);
+      core::write_file(folder.path() + "/" + axis.file, drawing);
+      body += drawing;
+    }
+    body += front_table(study, all);
   }
   body += "<h2>All cases</h2>\n" + all_cases(results) + refusals(results);
   for (const std::string &note : notes)
