@@ -33,13 +33,29 @@ std::string without_prefix(const std::string &line)
   return at == std::string::npos ? line : line.substr(at + 7);
 }
 
+/// The first error of the object that a program with --json leaves as its last line; empty without
+/// one.
+std::string first_error(const std::string &output)
+{
+  const auto json = nlohmann::json::parse(last_line(output), nullptr, false);
+  const auto errors = json.is_object() ? json.find("errors") : json.end();
+  if (errors == json.end() || !errors->is_array() || errors->empty())
+    return "";
+  const auto &first = errors->front();
+  const std::string message = first.value("message", ""), reason = first.value("reason", "");
+  return message + (reason.empty() ? "" : ": " + reason);
+}
+
 /// Why a child did not do its work.
-std::string failure(const ChildEnd &end, const std::string &errors)
+std::string failure(const ChildEnd &end, const std::string &output, const std::string &errors)
 {
   if (end.code == 128 + 9)
     return "killed: perhaps there is not enough memory";
   if (end.code > 128)
     return fmt::format("ended by signal {}", end.code - 128);
+  // Where a scene is refused, the last line on standard error only counts.
+  if (const std::string error = first_error(output); !error.empty())
+    return error;
   const std::string line = last_line(errors);
   return line.empty() ? fmt::format("exit code {}", end.code) : without_prefix(line);
 }
@@ -124,6 +140,12 @@ void Sweep::process(const std::string &command, const std::vector<const Case *> 
   }
 }
 
+std::string Sweep::failure_of(const std::string &command, const Case &c, const ChildEnd &end) const
+{
+  return failure(end, core::read_file(folder_.case_file(c.id, command + ".out")),
+                 core::read_file(folder_.case_file(c.id, command + ".err")));
+}
+
 void Sweep::check()
 {
   if (open_.empty())
@@ -148,7 +170,7 @@ void Sweep::finish_check(const Case &c, const ChildEnd &end)
   }
   const bool refused = end.code == 2 || end.code == 3;
   ends_[c.id] = {refused ? CaseEnd::Status::refused : CaseEnd::Status::failed,
-                 failure(end, core::read_file(folder_.case_file(c.id, "check.err"))),
+                 failure_of("check", c, end),
                  {},
                  false};
   say("{}: {}: {}", c.name, to_string(ends_[c.id].status), ends_[c.id].reason);
@@ -177,7 +199,7 @@ void Sweep::finish_run(const Case &c, const ChildEnd &end)
     result.reason = record.reason;
     write_cost(folder, {end.core_seconds, end.peak_memory, jobs_});
   } else
-    result.reason = failure(end, core::read_file(folder_.case_file(c.id, "run.err")));
+    result.reason = failure_of("run", c, end);
   ++n_computed_;
   spent_ += end.seconds;
   spent_predicted_ += predicted_.at(c.id);

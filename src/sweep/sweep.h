@@ -46,6 +46,8 @@ private:
   void process(const std::string &command, const std::vector<const Case *> &cases, OnEnd on_end);
   void finish_check(const Case &c, const ChildEnd &end);
   void finish_run(const Case &c, const ChildEnd &end);
+  /// Why `command` did not do its work for this case.
+  std::string failure_of(const std::string &command, const Case &c, const ChildEnd &end) const;
   void report(const Case &c, const CaseEnd &end, double seconds);
   double seconds_to_go() const;
   template <typename... Arguments>
