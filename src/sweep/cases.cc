@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -23,10 +24,16 @@ void append(std::vector<Override> &overrides, const std::vector<JsonMember> &mem
     overrides.push_back({m.key, m.value, m.place});
 }
 
-/// "overlap_cells" of "/coupling/overlap_cells".
+/// "overlap_cells" of "/coupling/overlap_cells"; a number says nothing without what it counts:
+/// "velocity/1" of "/loads/0/velocity/1".
 std::string last_part(const std::string &pointer)
 {
-  return pointer.substr(pointer.rfind('/') + 1);
+  std::size_t slash = pointer.rfind('/');
+  while (
+      slash != std::string::npos && slash > 0 &&
+      (std::isdigit(static_cast<unsigned char>(pointer[slash + 1])) || pointer[slash + 1] == '-'))
+    slash = pointer.rfind('/', slash - 1);
+  return pointer.substr(slash + 1);
 }
 
 std::string value_text(const JsonValue &value)
@@ -93,8 +100,10 @@ std::vector<std::string> varied_keys(const Study &study)
       if (std::find(keys.begin(), keys.end(), m.key) == keys.end())
         keys.push_back(m.key);
   };
-  for (const StudyGrid &grid : study.grids)
+  for (const StudyGrid &grid : study.grids) {
     add(grid.vary);
+    add(grid.set);
+  }
   for (const StudyRow &row : study.rows)
     add(row.set);
   return keys;

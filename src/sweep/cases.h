@@ -25,7 +25,7 @@ struct Case
 struct CaseList
 {
   std::vector<Case> cases;
-  std::vector<std::string> keys; // of the scene that the grids vary or the rows set, in their order
+  std::vector<std::string> keys; // of the scene that grids vary or set, or rows set, in their order
   std::vector<core::Diagnostic> errors;
   std::vector<core::Diagnostic> warnings; // of scenes that are computed, each one once
 };

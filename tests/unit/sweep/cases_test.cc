@@ -62,7 +62,18 @@ TEST(Cases, GridsMultiplyAndRowsFollow)
   EXPECT_EQ(list.cases[0].group, "overlap_cells, cell_size");
   EXPECT_EQ(list.cases[5].group, "");
   EXPECT_EQ(list.keys, (std::vector<std::string>{"/coupling/overlap_cells", "/far_field/cell_size",
-                                                 "/coupling/fine_damper", "/far_field"}));
+                                                 "/coupling/fine_damper", "/coupling/gap_filter",
+                                                 "/far_field"}));
+}
+
+// Two components of vectors: their numbers alone would be the same name twice.
+TEST(Cases, ComponentsOfVectorsAreNamedWithTheVector)
+{
+  const CaseList list = cases_of(study(
+      R"("grids": [{"vary": {"/loads/0/velocity/1": [0.1, 0.2], "/specimen/size/1": [0.2]}}])"));
+  EXPECT_EQ(names(list),
+            (std::vector<std::string>{"velocity/1=0.1, size/1=0.2", "velocity/1=0.2, size/1=0.2"}));
+  EXPECT_EQ(list.cases.at(0).group, "velocity/1, size/1");
 }
 
 TEST(Cases, IdsNameTheSceneAndNothingElse)
