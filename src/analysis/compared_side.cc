@@ -1,14 +1,18 @@
 #include "src/analysis/compared_side.h"
 
 #include "core/check.h"
+#include "core/files.h"
 #include "core/parameters/spelling.h"
 #include "src/analysis/curve.h"
 #include "src/output/history.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace ligament::program
 {
@@ -38,6 +42,53 @@ std::string place_of(const std::string &path)
     place = place.parent_path();
   return error ? path : place.string();
 }
+
+/// Line of the file in which a row of numbers stands, counted as read_csv() does.
+int line_of_row(const std::string &path, std::size_t row)
+{
+  std::istringstream lines(core::read_file(path));
+  std::string line;
+  std::size_t n_rows = 0; // names and units first
+  for (int number = 1; std::getline(lines, line); ++number)
+    if (line[0] != '#' && line.find_first_not_of(" \t\r\"") != std::string::npos)
+      if (n_rows++ == row + 2)
+        return number;
+  return 0;
+}
+
+/// Which of the two was meant nobody can know.
+void refuse_repeated_columns(const ComparedSide &side, const std::string &path)
+{
+  for (const char *name : known_columns) {
+    const auto &columns = side.curve.columns();
+    const auto n = std::count_if(columns.begin(), columns.end(),
+                                 [name](const Column &c) { return c.name == name; });
+    core::require(n < 2,
+                  fmt::format("{}: {} columns are named \"{}\": only one of them can be compared; "
+                              "rename or remove the others",
+                              path, n, name));
+  }
+}
+
+/// Values between two rows are sought by their times, which has to find them in order.
+void refuse_times_that_fall(const ComparedSide &side, const std::string &path)
+{
+  const auto time = side.values("time", "s");
+  if (!time)
+    return;
+  double before = -HUGE_VAL;
+  for (std::size_t row = 0; row < time->size(); ++row) {
+    const double now = (*time)[row];
+    if (!std::isfinite(now)) // a gap
+      continue;
+    core::require(now >= before,
+                  fmt::format("{}:{}: \"time\" falls from {:g} s to {:g} s: a curve over time has "
+                              "one value at each; sort the rows by time, or cut off what was "
+                              "measured anew",
+                              path, line_of_row(path, row), before, now));
+    before = now;
+  }
+}
 } // namespace
 
 ComparedSide read_run(const std::string &path)
@@ -65,6 +116,8 @@ ComparedSide read_reference(const std::string &path)
                      (side.values("displacement", "m") || side.values("external_work", "J"))),
                 path + ": it has no numbers to compare; give load (N) or stress (Pa), or time (s) "
                        "beside displacement (m) or external_work (J)");
+  refuse_repeated_columns(side, path);
+  refuse_times_that_fall(side, path);
   return side;
 }
 
