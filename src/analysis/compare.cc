@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "core/parameters/spelling.h"
+#include "src/analysis/body_difference.h"
 #include "src/analysis/compared_side.h"
 #include "src/analysis/crack_path.h"
 #include "src/analysis/field_error.h"
@@ -118,13 +119,15 @@ public:
   CompareResult result()
   {
     status();
+    bodies();
     find_limit();
     curves();
-    if (reference_.record)
+    if (is_of_one_dimension())
       crack();
     histories();
-    if (reference_.record) {
+    if (is_of_one_dimension())
       fields();
+    if (reference_.record) {
       cost();
     } else
       note_what_a_curve_lacks();
@@ -139,6 +142,20 @@ private:
     if (const auto unknown = unknown_columns(reference_); !unknown.empty())
       r_.notes.push_back("columns of the reference that compare does not know: " +
                          core::listed(unknown, "and"));
+  }
+
+  void bodies()
+  {
+    if (reference_.record)
+      for (const std::string &note :
+           body_differences(*run_.record, run_.name, *reference_.record, reference_.name))
+        r_.notes.push_back(note);
+  }
+
+  /// Places in the body mean the same in both.
+  bool is_of_one_dimension() const
+  {
+    return reference_.record && run_.record->dimension == reference_.record->dimension;
   }
 
   void line(const std::string &name, const std::string &run, const std::string &reference,

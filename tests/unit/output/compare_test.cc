@@ -394,4 +394,50 @@ TEST(Compare, WithoutListOfBrokenFacesTheirNumberIsNotZero)
   EXPECT_EQ(line->reference, "7");
   EXPECT_NE(table(r).find("a has no broken_bonds.csv"), std::string::npos) << table(r);
 }
+
+// The same load and crack in another body: figures that mean nothing, said per key.
+TEST(Compare, BodiesThatDifferAreNamed)
+{
+  const auto with = [](const std::string &path, auto change) {
+    const RunFolder folder = SyntheticRun().write(path);
+    RunRecord record = read_run_record(folder.record());
+    change(record);
+    write_run_record(folder.record(), record);
+  };
+  const auto notes = [] { return compare("a", "b").notes; };
+  SyntheticRun().write("a");
+  with("b", [](RunRecord &r) { r.size[1] *= 1 + 1e-12; });
+  EXPECT_TRUE(notes().empty()) << notes()[0];
+  with("b", [](RunRecord &r) { r.size[1] *= 1 + 1e-7; });
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_NE(notes()[0].find("specimen size: 0.1 m x 0.2 m in a, 0.1 m x 0.20000002 m in b"),
+            std::string::npos)
+      << notes()[0];
+  with("b", [](RunRecord &r) {
+    r.plane = "stress";
+    r.thickness = 0.5;
+  });
+  ASSERT_EQ(notes().size(), 2u);
+  EXPECT_NE(notes()[0].find("plane: strain in a, stress in b"), std::string::npos) << notes()[0];
+  EXPECT_NE(notes()[1].find("thickness: 1 m in a, 0.5 m in b"), std::string::npos) << notes()[1];
+}
+
+TEST(Compare, NoPlacesAcrossDimensions)
+{
+  SyntheticRun().write("flat");
+  const RunFolder folder = SyntheticRun().write("deep");
+  RunRecord record = read_run_record(folder.record());
+  record.dimension = 3;
+  record.plane = "";
+  record.size.push_back(0.1);
+  write_run_record(folder.record(), record);
+  const CompareResult r = compare("flat", "deep");
+  ASSERT_EQ(r.notes.size(), 1u) << table(r);
+  EXPECT_NE(r.notes[0].find("dimension: 2 in flat, 3 in deep"), std::string::npos) << r.notes[0];
+  EXPECT_FALSE(r.crack_distance_mean);
+  EXPECT_FALSE(r.breaking_time_error);
+  EXPECT_FALSE(r.displacement_error);
+  EXPECT_TRUE(r.peak_load_error);
+  EXPECT_TRUE(r.time_ratio);
+}
 } // namespace
