@@ -7,6 +7,7 @@
 #include "src/analysis/crack_path.h"
 #include "src/analysis/field_error.h"
 #include "src/analysis/phases.h"
+#include "src/analysis/verdict.h"
 #include "src/drawing/html.h"
 #include "src/drawing/plot.h"
 #include "src/output/broken_bonds.h"
@@ -190,7 +191,7 @@ private:
     if (!error)
       r_.notes.push_back("peak: both curves need a column load (N) or stress (Pa) that is not 0");
     else if (!peaks)
-      r_.notes.push_back("peak: there is none where nothing broke");
+      note_missing_peaks();
 
     const bool stress = has(run_, by_stress) && has(reference_, by_stress);
     measure_ = stress ? by_stress : by_load;
@@ -203,6 +204,20 @@ private:
                          "curves, with three points on a line (to 2 %) between 10 % and 50 % of "
                          "the largest load");
     work(peaks);
+  }
+
+  void note_missing_peaks()
+  {
+    bool is_open = false;
+    for (const ComparedSide *side : {&run_, &reference_})
+      if (side->record && !has_figures(*side->record)) {
+        is_open = true;
+        r_.notes.push_back(fmt::format("peak: unknown of {}, whose figures come with its end; the "
+                                       "largest load is that up to its last row",
+                                       side->name));
+      }
+    if (!is_open)
+      r_.notes.push_back("peak: there is none where nothing broke");
   }
 
   void work(bool peaks)
@@ -238,10 +253,8 @@ private:
       if (side.record->is_complete())
         return "complete";
       r_.complete = false;
-      const std::string how = incompleteness(*side.record);
-      r_.notes.push_back(fmt::format("{} {}{}{}", side.name, how,
-                                     side.record->reason.empty() ? "" : ": ", side.record->reason));
-      return how;
+      r_.notes.push_back(side.name + " " + incompleteness_with_reason(*side.record));
+      return incompleteness(*side.record);
     };
     const std::string run = of(run_), reference = of(reference_);
     if (!r_.complete)
@@ -406,14 +419,20 @@ private:
     const auto factor = [](const std::optional<double> &f) {
       return f ? fmt::format("{:.2f} x", *f) : "-";
     };
-    line("particles", grouped(a.particles), grouped(b.particles), factor(r_.particle_ratio));
+    const auto particles = [](const RunRecord &r) {
+      return r.kind.empty() ? "-" : grouped(r.particles); // before the body is built
+    };
+    line("particles", particles(a), particles(b), factor(r_.particle_ratio));
     if (!a.phases.empty() || !b.phases.empty()) {
       const auto skipped = [](const RunRecord &r) { return grouped(totals(r).skipped); };
       line("steps", grouped(steps_done(a)), grouped(steps_done(b)),
            factor(ratio(double(steps_done(b)), double(steps_done(a)))));
       line("  skipped by static phases", skipped(a), skipped(b), "");
     }
-    line("wall time", duration(a.wall_seconds), duration(b.wall_seconds), factor(r_.time_ratio));
+    const auto wall_time = [](const RunRecord &r) {
+      return has_figures(r) ? duration(r.wall_seconds) : "-";
+    };
+    line("wall time", wall_time(a), wall_time(b), factor(r_.time_ratio));
   }
 
   void draw()

@@ -4,6 +4,7 @@
 #include "core/files.h"
 #include "core/parameters/spelling.h"
 #include "src/analysis/curve.h"
+#include "src/analysis/verdict.h"
 #include "src/output/history.h"
 
 #include <fmt/core.h>
@@ -96,7 +97,7 @@ ComparedSide read_run(const std::string &path)
   ComparedSide side{name_of(path), RunFolder{path}, {}, {}, place_of(path)};
   core::require(side.folder->holds_a_run(),
                 path + ": not the output folder of a run (no run.json in it)");
-  side.record = read_run_record(side.folder->record());
+  side.record = read_figures(side.folder->record());
   side.curve = read_history(*side.folder, *side.record);
   return side;
 }

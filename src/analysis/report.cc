@@ -108,7 +108,9 @@ std::string energies(const Table &history, const RunRecord &record)
   if (rows.empty())
     return "";
   std::string text = "<h2>Energy ledger</h2>\n" + draw_plot(plot) +
-                     html_table({"at the end", "energy", "of the external work"}, rows);
+                     html_table({has_figures(record) ? "at the end" : "in the last row", "energy",
+                                 "of the external work"},
+                                rows);
   if (record.energy_residual)
     text += fmt::format("<p>Largest residual of the whole run: {:.2g} of the external work or the "
                         "kinetic energy, whichever was larger.</p>\n",
@@ -170,6 +172,11 @@ std::string model(const RunRecord &r)
     if (value)
       add(name, quantity(*value, unit));
   };
+  // What is known as soon as the body is built, and what only at the end.
+  const bool is_built = !r.kind.empty(), has_ended = has_figures(r);
+  const auto when = [&](bool known, const std::string &name, const std::string &value) {
+    add(name, known ? value : "-");
+  };
   static const std::pair<const char *, const char *> kinds[] = {
       {"coupled", "discrete and finite elements, coupled"},
       {"pure_dem", "discrete elements alone"},
@@ -177,41 +184,43 @@ std::string model(const RunRecord &r)
   for (const auto &[kind, text] : kinds)
     if (r.kind == kind)
       add("model", text);
-  add("dimension", r.dimension == 2 ? "2D, plane " + r.plane : "3D");
+  add("dimension", r.dimension == 3 ? "3D" : r.plane.empty() ? "2D" : "2D, plane " + r.plane);
   std::string size;
   for (const double length : r.size)
     size += (size.empty() ? "" : " x ") + quantity(length, "m");
-  add("specimen", size);
+  when(is_built, "specimen", size);
   if (r.particles > 0)
     add("particle spacing d", quantity(r.spacing, "m"));
-  add("particles", grouped(r.particles));
-  add("of them in the overlap", grouped(r.overlap_particles));
-  add("cells", grouped(r.cells));
+  when(is_built, "particles", grouped(r.particles));
+  when(is_built, "of them in the overlap", grouped(r.overlap_particles));
+  when(is_built, "cells", grouped(r.cells));
   if (r.equivalent_particles > 0)
     add("particles of the pure discrete model", grouped(r.equivalent_particles));
-  add("time step", quantity(r.dt, "s"));
+  when(is_built, "time step", quantity(r.dt, "s"));
   maybe("stable step, particles", r.dt_critical, "s");
   maybe("stable step, far field", r.dt_far, "s");
   if (r.step_ratio > 1)
     add("far field steps once per", fmt::format("{} steps", r.step_ratio));
   if (!r.regime.empty())
     add("regime of the overlap", r.regime);
-  add("steps", grouped(steps_done(r)));
+  when(has_ended, "steps", grouped(steps_done(r)));
   if (!r.phases.empty())
     add("steps that static phases skipped", grouped(totals(r).skipped));
-  add("simulated time", quantity(r.simulated_time, "s"));
+  when(has_ended, "simulated time", quantity(r.simulated_time, "s"));
   add("ranks", grouped(r.ranks));
-  add("wall time, set-up and loop", duration(r.setup_seconds) + " + " + duration(r.wall_seconds));
+  when(has_ended, "wall time, set-up and loop",
+       duration(r.setup_seconds) + " + " + duration(r.wall_seconds));
   const std::string most = r.peak_load ? "peak" : "largest";
   maybe(most + " load", r.largest_load, "N");
   maybe(most + " stress", r.largest_stress, "Pa");
   maybe("time of the " + most + " load", r.largest_time, "s");
-  add("stiffness", r.stiffness ? quantity(*r.stiffness, "Pa") : "none: the load rises on no line");
+  when(has_ended, "stiffness",
+       r.stiffness ? quantity(*r.stiffness, "Pa") : "none: the load rises on no line");
   maybe("load path gone since", r.broken_time, "s");
   maybe("trusted until", r.trusted_until, "s");
-  add("broken faces", grouped(r.broken_bonds));
+  when(has_ended, "broken faces", grouped(r.broken_bonds));
   if (r.overlap_particles > 0)
-    add("of them in the overlap", grouped(r.broken_in_overlap));
+    when(has_ended, "of them in the overlap", grouped(r.broken_in_overlap));
   maybe("external work", r.external_work, "J");
   maybe(r.dimension == 2 ? "crack length" : "crack area", r.crack_length,
         r.dimension == 2 ? "m" : "m^2");
@@ -289,7 +298,7 @@ std::string write_report(const std::string &run_folder, const std::vector<std::s
   const RunFolder folder{run_folder};
   core::require(folder.holds_a_run(),
                 run_folder + ": not the output folder of a run (no run.json in it)");
-  RunRecord record = read_run_record(folder.record());
+  RunRecord record = read_figures(folder.record());
   const RunFolder place{target.empty() ? run_folder : target};
   make_folder(place.path);
   if (!fields.empty())

@@ -58,6 +58,36 @@ std::string residual_part(double residual)
 }
 } // namespace
 
+bool has_figures(const RunRecord &r)
+{
+  return r.status != "running" && !(r.status == "failed" && r.wall_seconds == 0);
+}
+
+RunRecord read_figures(const std::string &path)
+{
+  RunRecord r = read_run_record(path);
+  if (has_figures(r))
+    return r;
+  r.largest_load = r.largest_stress = r.largest_time = {};
+  r.peak_load = r.peak_stress = r.peak_time = {};
+  r.stiffness = r.broken_time = r.trusted_until = {};
+  r.crack_length = r.external_work = r.energy_residual = r.discrete_seconds = {};
+  r.steps = 0;
+  r.simulated_time = r.wall_seconds = 0;
+  r.broken_bonds = r.broken_in_overlap = 0;
+  r.regime.clear();
+  r.phases.clear();
+  r.timing.clear();
+  r.warnings.clear();
+  r.verdict.clear();
+  return r;
+}
+
+std::string incompleteness_with_reason(const RunRecord &r)
+{
+  return incompleteness(r) + (r.reason.empty() ? "" : ": " + r.reason);
+}
+
 std::string warning_text(const RunRecord &r, const RunWarning &warning)
 {
   if (!warning.energy)
@@ -90,13 +120,15 @@ std::optional<double> predicted_saving(const RunRecord &r)
 
 std::string verdict(const RunRecord &r)
 {
-  std::vector<std::string> parts = {model_part(r)};
+  std::vector<std::string> parts;
+  if (!r.kind.empty()) // the body is built
+    parts.push_back(model_part(r));
   if (!r.phases.empty())
     parts.push_back(phases_sentence(r));
   if (r.energy_residual)
     parts.push_back(residual_part(*r.energy_residual));
-  if (r.status != "running" && !r.is_complete())
-    parts.push_back(fmt::format("it {}: {}", incompleteness(r), r.reason));
+  if (!r.is_complete())
+    parts.push_back("it " + incompleteness_with_reason(r));
   if (r.energy_residual && !(*r.energy_residual <= largest_good_residual))
     parts.push_back("the energies do not add up: do not trust this run");
   for (const RunWarning &warning : r.warnings)
@@ -109,6 +141,8 @@ std::string verdict(const RunRecord &r)
 
 std::string headline(const RunRecord &r)
 {
+  if (!has_figures(r))
+    return fmt::format("The run {}.", incompleteness_with_reason(r));
   std::string text;
   if (!r.is_complete())
     text = fmt::format("The run {}: ", incompleteness(r));

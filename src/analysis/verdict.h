@@ -8,6 +8,17 @@
 
 namespace ligament::program
 {
+/// Whether the record has the figures that a run knows only at its end: steps, loads, what broke.
+/// One that is under way, or was killed, has none, nor has one that failed outside of its loop.
+bool has_figures(const RunRecord &record);
+
+/// read_run_record(); of a run that goes on from a checkpoint the figures of its earlier end are
+/// left out.
+RunRecord read_figures(const std::string &path);
+
+/// "is not finished", or with its reason "was interrupted: by a signal".
+std::string incompleteness_with_reason(const RunRecord &record);
+
 /// Wall time of the pure discrete model of the same specimen over the wall time of this run, with
 /// the time per particle and step that this run measured. Empty when a figure is missing, and for runs
 /// with phases.
@@ -24,6 +35,6 @@ bool is_stable(const RunRecord &record);
 /// every warning; "nothing unstable" stands there only when is_stable().
 std::string verdict(const RunRecord &record);
 
-/// One sentence for the top of the report: what broke, at which load.
+/// One sentence for the top of the report: what broke, at which load; where nobody knows yet, why.
 std::string headline(const RunRecord &record);
 } // namespace ligament::program

@@ -440,4 +440,24 @@ TEST(Compare, NoPlacesAcrossDimensions)
   EXPECT_TRUE(r.peak_load_error);
   EXPECT_TRUE(r.time_ratio);
 }
+
+TEST(Compare, OfARunWithoutEndThePeakIsUnknown)
+{
+  SyntheticRun run;
+  run.status = "running";
+  const RunFolder folder = run.write("open");
+  SyntheticRun().write("whole");
+  RunRecord record = read_run_record(folder.record());
+  record.reason = "";
+  record.largest_load = 17; // of an end before, from whose checkpoint it goes on
+  write_run_record(folder.record(), record);
+  const CompareResult r = compare("open", "whole");
+  const std::string text = table(r);
+  EXPECT_FALSE(r.peak_load_error);
+  EXPECT_NEAR(r.largest_load_error.value(), 0, rounding) << "by its history";
+  EXPECT_FALSE(r.time_ratio);
+  EXPECT_NE(text.find("note: peak: unknown of open"), std::string::npos) << text;
+  EXPECT_NE(text.find("note: open is not finished\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nothing broke"), std::string::npos) << text;
+}
 } // namespace

@@ -130,4 +130,61 @@ TEST(Report, NeedsNoMoreThanTheRecord)
   EXPECT_NO_THROW(tests::parse_xml(core::read_file(write_report("bare"))));
   EXPECT_THROW(write_report("no_run_here"), core::InputError);
 }
+
+/// The value beside a name in the table of figures.
+std::string figure(const std::string &page, const std::string &name)
+{
+  const std::string head = "<tr><td>" + name + "</td><td>";
+  const std::size_t begin = page.find(head);
+  if (begin == std::string::npos)
+    return "missing";
+  const std::size_t value = begin + head.size();
+  return page.substr(value, page.find("</td>", value) - value);
+}
+
+// A run that was killed has a body and a history; what it knows only at its end is no figure.
+TEST(Report, OfARunWithoutEndSaysWhatIsUnknown)
+{
+  const RunFolder folder = SyntheticRun().write("killed");
+  RunRecord record = read_run_record(folder.record());
+  record.status = "running";
+  record.reason = "";
+  record.wall_seconds = 0;
+  for (const bool goes_on : {false, true}) {
+    if (goes_on) { // from a checkpoint: the record still has the figures of its earlier end
+      record.steps = 1234;
+      record.simulated_time = 1;
+      record.broken_bonds = 7;
+      record.stiffness = 1e9;
+      record.verdict = "the earlier verdict";
+    } else
+      record.largest_load = record.largest_stress = record.largest_time = record.peak_load = {};
+    write_run_record(folder.record(), record);
+    const std::string page = core::read_file(write_report("killed"));
+    EXPECT_NO_THROW(tests::parse_xml(page));
+    for (const char *name :
+         {"steps", "simulated time", "stiffness", "broken faces", "wall time, set-up and loop"})
+      EXPECT_EQ(figure(page, name), "-") << name;
+    EXPECT_EQ(figure(page, "particles"), "1 000");
+    EXPECT_NE(page.find("<p class=\"headline\">The run is not finished.</p>"), std::string::npos);
+    EXPECT_NE(page.find("cells; it is not finished</p>"), std::string::npos);
+    for (const char *part :
+         {"nothing broke", "not finished: ", "earlier verdict", "peak load", "at the end<"})
+      EXPECT_EQ(page.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(Report, OfARunInItsSetUpHasNoBody)
+{
+  const RunFolder folder{"set_up"};
+  folder.create();
+  RunRecord record;
+  record.reason = "it is being set up";
+  write_run_record(folder.record(), record);
+  const std::string page = core::read_file(write_report("set_up"));
+  for (const char *name : {"specimen", "particles", "cells", "time step", "steps"})
+    EXPECT_EQ(figure(page, name), "-") << name;
+  EXPECT_EQ(figure(page, "dimension"), "2D");
+  EXPECT_NE(page.find("The run is not finished: it is being set up."), std::string::npos);
+}
 } // namespace
