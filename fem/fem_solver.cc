@@ -62,6 +62,7 @@ void FemSolver<dim>::find_held_components()
             if (!loads_[l].value[c] || held_[c][node] || is_hanging[node])
               continue;
             held_[c][node] = 1;
+            place_of_held_[{node, c}] = int(held_components_.size());
             held_components_.push_back({node, c, l, 0, false});
           }
 }
@@ -506,8 +507,10 @@ void FemSolver<dim>::book_work()
   for (auto *components : {&held_components_, &traction_components_})
     for (LoadedComponent &c : *components) {
       const double u = displacement[c.component][c.node];
-      if (has_previous_forces_ && (c.counts_when_released || !released_node_[c.node]))
-        external_work_ += (c.old_force + c.force) / 2 * (u - c.old_displacement);
+      const bool counts =
+          has_previous_forces_ && (c.counts_when_released || !released_node_[c.node]);
+      c.way = counts ? u - c.old_displacement : 0;
+      external_work_ += (c.old_force + c.force) / 2 * c.way;
       c.old_force = c.force;
       c.old_displacement = u;
     }
@@ -515,6 +518,22 @@ void FemSolver<dim>::book_work()
     jumps_.forget();
   external_work_ += jumps_.book_work();
   has_previous_forces_ = true;
+}
+
+// The sum of forces on a held component stays what moves it as prescribed.
+template <int dim>
+void FemSolver<dim>::push(int node, const Vector<dim> &f)
+{
+  for (int c = 0; c < dim; ++c) {
+    if (!held_[c][node]) {
+      force[c][node] += f[c];
+      continue;
+    }
+    LoadedComponent &h = held_components_[place_of_held_.at({node, c})];
+    h.force -= f[c];
+    h.old_force = h.force;
+    external_work_ -= f[c] / 2 * h.way;
+  }
 }
 
 template <int dim>

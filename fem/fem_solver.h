@@ -10,6 +10,8 @@
 #include "fem/pressed_faces.h"
 #include "fem/side_jumps.h"
 
+#include <array>
+#include <map>
 #include <memory>
 
 namespace ligament::fem
@@ -68,6 +70,10 @@ public:
   /// kick (theory.md eq. (F9)), none before the first. Hanging nodes are distributed first;
   /// external work is booked.
   void compute_forces(double time);
+
+  /// Behind compute_forces(): adds a force (N) on a node that no load of its own explains, as of a
+  /// body that touches it. Of a held component its support bears it, and does its work.
+  void push(int node, const Vector<dim> &f);
 
   /// The same of a state at rest that the body may not stay in: nothing is booked. On held
   /// components nothing acts; reaction() is what supports answer the cells with.
@@ -174,6 +180,7 @@ private:
     bool counts_when_released = false;          // its work is booked whoever moves the node
     double force = 0;                           // N, on the body, at the last compute_forces
     double old_force = 0, old_displacement = 0; // at the one before
+    double way = 0;                             // m, that the last work was booked for
   };
 
   void find_held_components();
@@ -215,6 +222,7 @@ private:
   std::vector<double> mass_, inverse_mass_;
   std::vector<std::pair<int, double>> weights_; // kg, of nodes where it is not the mass
   std::vector<LoadedComponent> held_components_, traction_components_;
+  std::map<std::array<int, 2>, int> place_of_held_; // of node and component in held_components_
   /// A part of what a pressed face gives to a node: hanging ones hand it to their masters.
   struct PressedShare
   {

@@ -333,15 +333,6 @@ Vector<dim> ContactSurface<dim>::velocity(int k, const coupling::Bodies<dim> &bo
 }
 
 template <int dim>
-void ContactSurface<dim>::push_node(int node, const Vector<dim> &force,
-                                    fem::FemSolver<dim> &far) const
-{
-  for (int c = 0; c < dim; ++c)
-    if (!far.is_held(node, c))
-      far.force[c][node] += force[c];
-}
-
-template <int dim>
 void ContactSurface<dim>::push(int k, const Vector<dim> &force, coupling::Bodies<dim> &bodies) const
 {
   const SurfacePoint<dim> &point = points_[k];
@@ -350,10 +341,10 @@ void ContactSurface<dim>::push(int k, const Vector<dim> &force, coupling::Bodies
       const int node = point.nodes[a], h = hanging_[node];
       const Vector<dim> f = point.shares[a] * force;
       if (h < 0)
-        push_node(node, f, *bodies.far);
+        bodies.far->push(node, f);
       else
         for (const auto &[master, weight] : bodies.far->mesh().hanging[h].masters)
-          push_node(master, weight * f, *bodies.far);
+          bodies.far->push(master, weight * f);
     }
     return;
   }

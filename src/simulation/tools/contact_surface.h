@@ -95,7 +95,6 @@ private:
   }
   static Vector<dim> turned(const Vector<dim> &arm, int particle,
                             const particles::Particles<dim> &particles);
-  void push_node(int node, const Vector<dim> &force, fem::FemSolver<dim> &far) const;
 
   std::vector<SurfacePoint<dim>> points_;
   std::vector<int> n_of_particle_; // points that each particle has

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 using namespace ligament;
 using namespace ligament::program;
 using namespace ligament::tests;
@@ -142,6 +144,50 @@ TEST(ToolEnergy, AReleasedToolTakesItsEnergyWithIt)
     // With impulses the invariant has more terms in the force, of second order in the step.
     EXPECT_LT(after.residual / pressed.work, b.body.coupler->step_ratio() > 1 ? 5e-3 : 2e-4);
   }
+}
+
+// A tool over the corner of a held side pushes held nodes, too: their support bears that. All
+// forces on the nodes but those of cells are the support's and the tool's; a support that moves, or
+// one that rests while the tool moves, does the work of all of it.
+template <int dim>
+void expect_support_of_held_nodes(const BodyKind &kind, bool support_moves)
+{
+  SCOPED_TRACE(
+      fmt::format("{} in {}D, {} moves", kind.name, dim, support_moves ? "support" : "tool"));
+  const double half = dim == 2 ? 12 : 4, end = dim == 2 ? 60 : 30;
+  const char *way = dim == 2 ? "[{}, 0]" : "[{}, 0, null]";
+  ToolBody<dim> b(
+      kind.overrides +
+      std::vector<std::string>{
+          fmt::format(R"(/loads=[{{"boundary": "bottom", "displacement": {}, "ramp": 200}}])",
+                      fmt::format(way, support_moves ? 0.2 : 0)),
+          fmt::format(R"(/tools=[{{"name": "plate", "shape": "plate", "size": [4, 12{}],
+        "place": [{}, {}{}], "displacement": [{}, null{}], "ramp": 200}}])",
+                      dim == 2 ? "" : ", 20", half + 2, -end, dim == 2 ? "" : ", 0",
+                      support_moves ? 0 : -0.2, dim == 2 ? "" : ", null"),
+          "/time/duration=400"});
+  const Course course = run(b, 300);
+  EXPECT_GT(course.area, 0);
+  EXPECT_LT(course.residual / course.work, 1e-4);
+  if (kind.name != std::string("pure_fem"))
+    return;
+  const auto &far = *b.body.far;
+  Vector<dim> nodes = Vector<dim>::Zero();
+  for (int c = 0; c < dim; ++c)
+    nodes[c] = std::accumulate(far.force[c].begin(), far.force[c].end(), 0.);
+  const Vector<dim> tool = b.body.tools->read(0).force, support = far.reaction(0);
+  EXPECT_GT(tool.norm(), 0);
+  EXPECT_NEAR((support + tool - nodes).norm(), 0, 1e-9 * tool.norm());
+}
+
+TEST(ToolEnergy, SupportsBearWhatAToolPushesOfThem)
+{
+  for (const auto &kind : kinds)
+    for (const bool support_moves : {false, true})
+      if (kind.name != std::string("pure_dem")) // its sides hold particles by their faces
+        expect_support_of_held_nodes<2>(kind, support_moves);
+  for (const bool support_moves : {false, true})
+    expect_support_of_held_nodes<3>(kinds[3], support_moves);
 }
 
 // A tool at a spring comes to rest where the spring pulls as the body pushes.
