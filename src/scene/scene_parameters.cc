@@ -386,7 +386,7 @@ void declare_picture(Section &s, PictureParameters &p)
 void declare_output(Section &s, OutputParameters &o)
 {
   s.add("field_interval", o.field_interval, "simulated time between two outputs of all fields").in("s").usually(1e-15, 1e5, "us ms ns").above(0).word("never", infinity);
-  s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000").in("s").usually(1e-15, 1e5, "us ms ns").at_least(0);
+  s.add("history_interval", o.history_interval, "simulated time between two lines of history.csv; 0: duration/2000, and every 50 steps of the far field in which faces broke").in("s").usually(1e-15, 1e5, "us ms ns").at_least(0);
   s.add("progress_interval", o.progress_interval, "wall time between two progress lines").in("s").above(0);
   s.add("checkpoint_interval", o.checkpoint_interval, "wall time between two checkpoints, from which `ligament resume` goes on; never: only where a signal or --wall-time ends the run").in("s").above(0).word("never", infinity);
   s.list("pictures", o.pictures, "fields that the pictures of the run show, near the peak load and at the end; empty: the stress along the load", declare_picture);

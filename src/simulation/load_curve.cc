@@ -7,23 +7,48 @@
 
 namespace ligament::program
 {
-void LoadCurve::add(double time, const Reading &reading, std::int64_t n_broken)
+bool LoadCurve::takes(const Reading &reading, std::int64_t n_broken)
 {
   if (has_ended())
-    return;
+    return false;
   const double largest = largest_load();
   const double along = std::copysign(reading.load, reading.load * largest);
-  if (n_broken > 0 && along < fallen_share * std::abs(largest)) {
-    has_fallen_ = true;
-    return;
-  }
-  n_broken_ = n_broken;
+  has_fallen_ = n_broken > 0 && along < fallen_share * std::abs(largest);
+  if (!has_fallen_)
+    n_broken_ = n_broken;
+  return !has_fallen_;
+}
+
+void LoadCurve::put(double time, const Reading &reading)
+{
+  const double largest = largest_load();
   time_.push_back(time);
   load_.push_back(reading.load);
   stress_.push_back(reading.stress);
   strain_.push_back(reading.strain);
   if (std::abs(reading.load) > std::abs(largest))
     largest_ = load_.size() - 1;
+}
+
+void LoadCurve::add(double time, const Reading &reading, std::int64_t n_broken)
+{
+  if (!takes(reading, n_broken))
+    return;
+  put(time, reading);
+  ends_in_look_ = false;
+}
+
+void LoadCurve::look(double time, const Reading &reading, std::int64_t n_broken)
+{
+  if (!takes(reading, n_broken) || !(std::abs(reading.load) > std::abs(largest_load())))
+    return;
+  if (ends_in_look_)
+    for (auto *column : {&time_, &load_, &stress_, &strain_})
+      column->pop_back();
+  largest_ = 0; // it may have been the last one
+  put(time, reading);
+  largest_ = load_.size() - 1;
+  ends_in_look_ = true;
 }
 
 void LoadCurve::put_into(RunRecord &record) const
@@ -53,6 +78,7 @@ void LoadCurve::save(core::State &state) const
   core::save_value(state, "recorder", "curve_broken", n_broken_);
   core::save_value(state, "recorder", "curve_fallen", std::int64_t(has_fallen_));
   core::save_value(state, "recorder", "curve_ended", std::int64_t(has_ended_));
+  core::save_value(state, "recorder", "curve_ends_in_look", std::int64_t(ends_in_look_));
 }
 
 void LoadCurve::load(const core::State &state)
@@ -66,5 +92,6 @@ void LoadCurve::load(const core::State &state)
   n_broken_ = core::load_integer(state, "recorder", "curve_broken");
   has_fallen_ = core::load_integer(state, "recorder", "curve_fallen") != 0;
   has_ended_ = core::load_integer(state, "recorder", "curve_ended") != 0;
+  ends_in_look_ = core::load_integer(state, "recorder", "curve_ends_in_look") != 0;
 }
 } // namespace ligament::program

@@ -15,6 +15,8 @@ class LoadCurve
 {
 public:
   void add(double time, const Reading &reading, std::int64_t n_broken);
+  /// A reading between two that are added: the last one counts that is larger than all before.
+  void look(double time, const Reading &reading, std::int64_t n_broken);
   /// Later readings don't count.
   void end() { has_ended_ = true; }
 
@@ -30,9 +32,13 @@ public:
   void load(const core::State &state);
 
 private:
+  /// Whether it still counts.
+  bool takes(const Reading &reading, std::int64_t n_broken);
+  void put(double time, const Reading &reading);
+
   std::vector<double> time_, load_, stress_, strain_;
   std::size_t largest_ = 0; // row
   std::int64_t n_broken_ = 0;
-  bool has_fallen_ = false, has_ended_ = false;
+  bool has_fallen_ = false, has_ended_ = false, ends_in_look_ = false;
 };
 } // namespace ligament::program

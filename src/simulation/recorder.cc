@@ -21,8 +21,12 @@ namespace
 // Fields are copied when the load has grown by this factor.
 constexpr double copied_growth = 1.02;
 
-// The load path is looked at this often, in steps of the far field.
+// The load path is looked at this often, in steps of the far field, and whether faces broke that no
+// row tells of yet: a run may last far longer than its body, and its peak is read from rows.
 constexpr long break_interval = 50;
+
+// Where rows are further apart than that the load is read this often, lest its peak be missed.
+constexpr long load_interval = 10;
 
 // Where equilibria take the place of steps, the steps behind a break have a row this often unless
 // the scene says otherwise, in steps of the far field: such a scene lasts much longer than a break.
@@ -136,7 +140,10 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (broken_time_ && scene_.time.stop_when == StopWhen::specimen_broken)
     return Stop{false, fmt::format("specimen broken at {:.4g} s", *broken_time_)};
 
-  const bool history = in_static_phase_ || step.time >= next_history_ - 1e-9 * history_interval_;
+  if (rows_are_sparse(step.dt * ratio) && step.step % (ratio * load_interval) == 0 &&
+      !in_static_phase_ && !curve_.has_ended())
+    curve_.look(step.time, machine_.read(body, step.time), n_broken(body));
+  const bool history = in_static_phase_ || is_row_due(step.time) || breaks_between_rows(body, step);
   const bool fields = step.time >= next_fields_;
   const bool progress = step.step / ratio % 20 == 0 && body.ranks.any(progress_.is_due());
   if (!history && !fields && !progress)
@@ -168,11 +175,34 @@ std::optional<Stop> Recorder<dim>::look_at_flow(const CoupledBody<dim> &body,
 }
 
 template <int dim>
+bool Recorder<dim>::is_row_due(double time) const
+{
+  return time >= next_history_ - 1e-9 * history_interval_;
+}
+
+template <int dim>
+bool Recorder<dim>::rows_are_sparse(double far_step) const
+{
+  return history_interval_ > break_interval * far_step;
+}
+
+template <int dim>
+bool Recorder<dim>::breaks_between_rows(const CoupledBody<dim> &body,
+                                        const coupling::StepTime &step) const
+{
+  const int ratio = body.coupler->step_ratio();
+  return scene_.output.history_interval == 0 && step.step % (ratio * break_interval) == 0 &&
+         rows_are_sparse(ratio * step.dt) && n_broken(body) > broken_in_rows_;
+}
+
+template <int dim>
 EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
                                            const coupling::StepTime &step, double damping,
                                            bool is_last)
 {
-  next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
+  if (in_static_phase_ || is_row_due(step.time))
+    next_history_ = next_output(scene_, next_history_, history_interval_, step.time);
+  broken_in_rows_ = n_broken(body);
   const Reading r = machine_.read(body, step.time);
   const EnergyLedger ledger = read_ledger(body, step, damping);
   const HistoryRow row = {r, ledger, n_broken(body), crack_length(body), in_static_phase_};

@@ -101,6 +101,10 @@ private:
   /// A row; returns its energies. The last one is not written twice.
   EnergyLedger record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping, bool is_last = false);
+  bool is_row_due(double time) const;
+  bool rows_are_sparse(double far_step) const; // s
+  /// Whether a row of its own is to tell of faces that broke, unless the scene says when rows are.
+  bool breaks_between_rows(const CoupledBody<dim> &body, const coupling::StepTime &step) const;
   bool keeps_copies(const CoupledBody<dim> &body) const;
   void keep_copies(const CoupledBody<dim> &body, double time, double load);
   void record_fields(const CoupledBody<dim> &body, const coupling::StepTime &step);
@@ -135,6 +139,7 @@ private:
   bool draws_pictures_, writes_, writes_pieces_ = false, in_static_phase_ = false, can_look_ = true;
   double history_interval_;
   double next_history_ = 0, next_fields_ = 0; // s
+  std::int64_t broken_in_rows_ = 0;           // faces at the last row
   OverlapGuard<dim> guard_;
   LoadPath<dim> path_;
   std::optional<double> broken_time_;   // s, of the last bond when the load path was gone

@@ -39,6 +39,7 @@ void Recorder<dim>::save(core::State &state) const
 {
   core::save_value(state, "recorder", "next_history", next_history_);
   core::save_value(state, "recorder", "next_fields", next_fields_);
+  core::save_value(state, "recorder", "broken_in_rows", broken_in_rows_);
   core::save_value(state, "recorder", "quasi_static", std::int64_t(quasi_static_));
   core::save_value(state, "recorder", "in_static_phase", std::int64_t(in_static_phase_));
   core::save_value(state, "recorder", "fields_copied_at", fields_copied_at_);
@@ -89,6 +90,7 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
       due_output(core::load_real(state, "recorder", "next_history"), history_interval_, now);
   next_fields_ = due_output(core::load_real(state, "recorder", "next_fields"),
                             scene_.output.field_interval, now);
+  broken_in_rows_ = core::load_integer(state, "recorder", "broken_in_rows");
   quasi_static_ = core::load_integer(state, "recorder", "quasi_static") != 0;
   in_static_phase_ = core::load_integer(state, "recorder", "in_static_phase") != 0;
   fields_copied_at_ = core::load_real(state, "recorder", "fields_copied_at");

@@ -62,6 +62,38 @@ TEST(LoadCurve, WavesWithoutFractureHaveNoPeak)
   EXPECT_FALSE(record_of({{0, 0}, {0, 0}}).largest_load);
 }
 
+// What lies between rows counts where it is a peak; of many such readings one is kept for each row,
+// and what a checkpoint has of them goes on.
+TEST(LoadCurve, PeaksBetweenRowsCount)
+{
+  for (const double sign : {1., -1.}) {
+    LoadCurve curve;
+    const auto reading = [&](double load) { return Reading{sign * load, 10 * sign * load, 0, 0}; };
+    curve.add(0, reading(0), 0);
+    curve.look(1, reading(1), 0);
+    curve.look(2, reading(3), 0);
+    curve.look(3, reading(2), 4);
+    ligament::core::State state;
+    curve.save(state);
+    EXPECT_EQ(state.at("load_curve").n_rows(), 2u);
+    LoadCurve again;
+    again.load(state);
+    for (LoadCurve *c : {&curve, &again}) {
+      c->look(4, reading(5), 4);
+      c->add(5, reading(4), 4);
+      c->look(6, reading(-9), 9); // it has fallen
+      c->look(7, reading(20), 9);
+      RunRecord r;
+      c->put_into(r);
+      EXPECT_EQ(r.peak_load.value(), sign * 5);
+      EXPECT_EQ(r.peak_time.value(), 4);
+      state.clear();
+      c->save(state);
+      EXPECT_EQ(state.at("load_curve").n_rows(), 3u);
+    }
+  }
+}
+
 TEST(LoadCurve, WhatComesAfterTheGuardDoesNotCount)
 {
   const RunRecord r = record_of({{0, 0}, {1, 0}, {2, 0}, {3, 4}}, 3);
