@@ -7,6 +7,7 @@
 #include "src/simulation/guards.h"
 #include "src/simulation/heat.h"
 #include "src/simulation/initial_motion.h"
+#include "src/simulation/named_files.h"
 #include "src/simulation/whole_body.h"
 
 #include <fmt/chrono.h>
@@ -17,13 +18,23 @@
 
 namespace ligament::program
 {
+namespace
+{
+Reference reference_of(const Scene &scene, const Checkpoint *from)
+{
+  Reference reference(from ? from->reference : core::State());
+  keep_named_files(scene, reference);
+  return reference;
+}
+} // namespace
+
 template <int dim>
 Simulation<dim>::Simulation(const Scene &scene, const RunFolder &folder, std::FILE *progress,
                             bool draws_pictures, Checkpoint *from,
                             const ForceMaker<dim> &make_force, const core::Ranks &ranks)
     : scene_(scene), folder_(folder),
       log_(ranks.is_first() ? folder.log() : "", ranks.is_first() ? progress : nullptr),
-      make_force_(make_force), reference_(from ? from->reference : core::State()),
+      make_force_(make_force), reference_(reference_of(scene_, from)),
       body_(make_body<dim>(scene_, log_, timers_, reference_, make_force, ranks)),
       regime_(scene_.coupling.regime, body_, scene_.is_warm()), damping_(scene_.damping),
       clock_(clock_of()), phases_(scene_, body_, log_),
