@@ -64,6 +64,8 @@ int check(const CommandLine &line, const ReadResult &input)
       fmt::print("packing: {}\n", packing);
     }
   }
+  const GaugeSet<dim> gauges(scene, body);
+  all_columns(scene, gauges, servo_targets(scene, body, gauges)); // a run would refuse them
   const StepCost cost = measure_step_cost(scene, body, timers, 0.5);
   // Predictions are of steps alone; a run with phases skips most of them, and how many nobody
   // knows.
@@ -118,7 +120,6 @@ int check(const CommandLine &line, const ReadResult &input)
   }
   if (const auto patch = body.figures.find("patch_residual"); patch != body.figures.end())
     fmt::print("  patch residual       {:>12.1e} of C11 h^(dim-1)\n", patch->second.value);
-  const GaugeSet<dim> gauges(scene, body);
   for (const GaugeEntry &gauge : gauges.entries())
     fmt::print("  gauge {} ({}): {}\n", gauge.name, gauge.kind, gauge.text);
   for (const auto &part : body.skipped)

@@ -29,10 +29,18 @@ double memory_of(const Scene &scene, const SizeEstimate &size)
          cell * size.cells + equilibrium * (size.particles + size.cells);
 }
 
-const std::vector<std::string> not_checked = {
-    "stable steps and the ratio of the steps", "time and saving",
-    "whether the packing closes and its file fits", "the patch fit of the overlap",
-    "whether the overlap keeps off held and loaded sides"};
+std::vector<std::string> not_checked(const CommandLine &line)
+{
+  std::vector<std::string> list = {"stable steps and the ratio of the steps", "time and saving",
+                                   "whether the packing closes and its file fits",
+                                   "the patch fit of the overlap",
+                                   "whether the overlap keeps off held and loaded sides"};
+  if (line.ranks > 1)
+    list.push_back(fmt::format("what each of {} ranks has", line.ranks));
+  if (line.draw)
+    list.push_back("the picture, which is not drawn");
+  return list;
+}
 
 /// How much of it the machine has left.
 std::string memory_text(double needed)
@@ -44,7 +52,7 @@ std::string memory_text(double needed)
                      needed > available ? ": NOT ENOUGH" : "");
 }
 
-Json json_of(const Scene &scene, const SizeEstimate &size)
+Json json_of(const CommandLine &line, const Scene &scene, const SizeEstimate &size)
 {
   const auto whole = [](double number) { return std::llround(number); };
   Json json = {{"status", "done"},
@@ -60,7 +68,7 @@ Json json_of(const Scene &scene, const SizeEstimate &size)
                            "setup_seconds", "predicted_saving"})
     json[name] = nullptr;
   json["built"] = false;
-  json["not_checked"] = not_checked;
+  json["not_checked"] = not_checked(line);
   json["errors"] = Json::array();
   return json;
 }
@@ -89,10 +97,10 @@ void print_volumes(const CommandLine &line, const ReadResult &input, const SizeE
   fmt::print("  overlap particles    {:>12.3g}\n", size.overlap_particles);
   fmt::print("  pure discrete model  {:>12.3g} particles\n", size.equivalent_particles);
   fmt::print("  memory               {:>12.0f} MiB{}\n", memory / 1048576, memory_text(memory));
-  for (const std::string &what : not_checked)
+  for (const std::string &what : not_checked(line))
     fmt::print("  not checked: {}\n", what);
   fmt::print("  `ligament check --full` builds it\n");
   if (line.json)
-    fmt::print("{}\n", json_text(json_of(scene, size)));
+    fmt::print("{}\n", json_text(json_of(line, scene, size)));
 }
 } // namespace ligament::program

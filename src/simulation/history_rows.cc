@@ -26,8 +26,8 @@ int n_temperatures(const Scene &scene)
 {
   return scene.zone.extent == DiscreteZone::Extent::box ? 3 : 1;
 }
+} // namespace
 
-/// Those of every run, then those of the gauges, which must be others.
 template <int dim>
 std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
                                 const std::vector<ServoTarget<dim>> &servos)
@@ -57,7 +57,6 @@ std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
   }
   return columns;
 }
-} // namespace
 
 template <int dim>
 HistoryRows<dim>::HistoryRows(const Scene &scene, const RunFolder &folder,
@@ -118,6 +117,10 @@ void HistoryRows<dim>::add(const CoupledBody<dim> &body, const coupling::StepTim
     writer_->end_row();
 }
 
+template std::vector<Column> all_columns(const Scene &, const GaugeSet<2> &,
+                                         const std::vector<ServoTarget<2>> &);
+template std::vector<Column> all_columns(const Scene &, const GaugeSet<3> &,
+                                         const std::vector<ServoTarget<3>> &);
 template class HistoryRows<2>;
 template class HistoryRows<3>;
 } // namespace ligament::program

@@ -21,6 +21,12 @@ struct HistoryRow
   bool is_static = false;
 };
 
+/// Of history.csv: those of every run, then those of the gauges. Throws core::KeyedError where a
+/// gauge has one that is there already.
+template <int dim>
+std::vector<Column> all_columns(const Scene &scene, const GaugeSet<dim> &gauges,
+                                const std::vector<ServoTarget<dim>> &servos);
+
 template <int dim>
 class HistoryRows
 {
