@@ -21,7 +21,7 @@ std::string output_folder(const CommandLine &line)
   if (!core::is_named_file(line.scene))
     return "ligament-out";
   // scene.json in a folder of its own is named after the folder.
-  const std::filesystem::path scene = std::filesystem::absolute(line.scene);
+  const auto scene = std::filesystem::absolute(line.scene).lexically_normal();
   const std::string name =
       scene.stem() == "scene" ? scene.parent_path().filename().string() : scene.stem().string();
   return name + "-out";

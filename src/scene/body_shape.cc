@@ -164,6 +164,20 @@ void name_sides_of_box(const Specimen &specimen, std::vector<Polygon> &polygons,
     }
 }
 
+/// Likewise of a facet of a body from a file; those that STL knows have coordinates of six digits.
+int side_of_box(const Specimen &specimen, const core::Solid<3>::Facet &facet)
+{
+  for (int side = 0; side < 6; ++side) {
+    const int c = side / 2;
+    const double place = side % 2 ? specimen.upper(c) : specimen.lower(c);
+    if (std::all_of(facet.edges.begin(), facet.edges.end(), [&](const auto &edge) {
+          return std::abs(specimen.body->vertices[edge[0]][c] - place) < 1e-6 * specimen.size[c];
+        }))
+      return side;
+  }
+  return inner_surface<3>;
+}
+
 template <typename Visit>
 void for_each_name(const Specimen &specimen, Visit &&visit)
 {
@@ -301,7 +315,7 @@ std::shared_ptr<const core::Solid<dim>> solid_of(const Specimen &specimen, doubl
       const std::vector<std::string> names = side_names_of(specimen, 3);
       auto facets = specimen.body->facets;
       for (auto &facet : facets)
-        facet.boundary = facet.boundary < 0 ? inner_surface<3>
+        facet.boundary = facet.boundary < 0 ? side_of_box(specimen, facet)
                                             : number_of(names, specimen.body->names[facet.boundary],
                                                         inner_surface<3>);
       return std::make_shared<core::Solid<3>>(specimen.body->vertices, std::move(facets));

@@ -263,8 +263,10 @@ void check_part(const Scene &scene, const LoadParameters &load, const std::strin
   if (faces.empty())
     return f.error(key + "/boundary",
                    fmt::format("nothing of the specimen lies on its side \"{}\"", load.side),
-                   "its outline touches that side of the box around it at a point or not at all",
-                   "name a side of the outline, and load that");
+                   "it touches that side of the box around it at a point, an edge or not at all",
+                   scene.specimen.body
+                       ? "load another side, or name a part of the surface in the file (gmsh)"
+                       : "name a side of the outline, and load that");
   const Box side = bounding_box(faces);
   for (int c = 0; c < scene.dimension; ++c)
     where += fmt::format(

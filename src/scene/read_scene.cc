@@ -139,7 +139,7 @@ void leave_out_unused(const ToolParameters &tool, nlohmann::ordered_json &json)
 /// Relative paths in a scene start in its folder; in one that came through a pipe where we are.
 void locate_files(const std::string &name, Scene &scene)
 {
-  if (name == scene_name("-"))
+  if (name == scene_name("-") || !core::is_named_file(name))
     return;
   std::vector<std::string *> paths = {&scene.zone.packing_file, &scene.specimen.file};
   if (scene.atoms)
@@ -224,7 +224,7 @@ ReadResult parse(const std::string &text, const std::string &name, const Overrid
       findings.error(error.key, error.message, error.reason, error.remedy);
     }
     enclose_boxes(enclosed.zone);
-    if (findings.sound({"/dimension"}))
+    if (findings.sound({"/dimension", "/specimen/file"})) // which names the sides
       resolve_sides(enclosed, &findings);
     check_scene(enclosed, findings);
   }

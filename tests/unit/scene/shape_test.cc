@@ -202,6 +202,18 @@ TEST(Shape, SurfacesOfTrianglesAreRead)
   const ReadResult good = parse_scene(scene, "scene.json", {});
   ASSERT_TRUE(good.scene) << good.errors[0].message << good.errors[0].reason;
   EXPECT_NEAR(solid_of<3>(good.scene->specimen, 0.1)->volume(), 8. / 6, 1e-6);
+  // What lies on the box around it is that side's: three of the four triangles.
+  const SurfaceFaces<3> surface(good.scene->specimen);
+  for (int side = 0; side < 6; ++side)
+    EXPECT_EQ(surface.of(side).size(), side % 2 ? 0u : 1u) << side;
+  const auto loaded = [&](const char *side) {
+    return parse_scene(
+        scene, "scene.json",
+        {R"(/loads=[{"boundary": ")" + std::string(side) + R"(", "displacement": [0, 0, 0]}])"});
+  };
+  EXPECT_TRUE(loaded("bottom").scene);
+  ASSERT_EQ(loaded("top").errors.size(), 1u);
+  EXPECT_NE(loaded("top").errors[0].remedy.find("name a part of the surface"), std::string::npos);
   // A run is resumed from the resolved scene in its own folder.
   const ReadResult again = parse_scene(good.resolved.dump(), "elsewhere/scene.json", {});
   EXPECT_TRUE(again.scene) << again.errors[0].message;
