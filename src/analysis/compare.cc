@@ -435,17 +435,27 @@ private:
     line("wall time", wall_time(a), wall_time(b), factor(r_.time_ratio));
   }
 
+  /// Curves without a common way of the load may still have a common time.
+  Measure drawn_measure() const
+  {
+    for (const Measure &m : {measure_, load_by_time, stress_by_time})
+      if (has(run_, m) && has(reference_, m))
+        return m;
+    return measure_;
+  }
+
   void draw()
   {
     Plot plot;
     plot.title = run_.name + " against " + reference_.name;
-    plot.x = {measure_.x, measure_.x_unit, false};
-    plot.y = {measure_.y, measure_.y_unit, false};
+    const Measure drawn = drawn_measure();
+    plot.x = {drawn.x, drawn.x_unit, false};
+    plot.y = {drawn.y, drawn.y_unit, false};
     for (const ComparedSide *side : {&run_, &reference_})
-      if (has(*side, measure_))
-        plot.series.push_back({side->name, *side->values(measure_.x, measure_.x_unit),
-                               *side->values(measure_.y, measure_.y_unit), side == &reference_,
-                               false, true});
+      if (has(*side, drawn))
+        plot.series.push_back({side->name, *side->values(drawn.x, drawn.x_unit),
+                               *side->values(drawn.y, drawn.y_unit), side == &reference_, false,
+                               true});
     if (plot.series.size() < 2)
       r_.notes.push_back("plot: the curves have no pair of columns in common");
     r_.file_name = "compare_" + reference_.name;

@@ -51,6 +51,9 @@ struct Measure
 };
 constexpr Measure by_stress = {"strain", "1", "stress", "Pa"};
 constexpr Measure by_load = {"displacement", "m", "load", "N"};
+/// Only drawn.
+constexpr Measure load_by_time = {"time", "s", "load", "N"};
+constexpr Measure stress_by_time = {"time", "s", "stress", "Pa"};
 
 bool has(const ComparedSide &side, const Measure &measure);
 

@@ -45,4 +45,17 @@ TEST(ReferenceCurve, ColumnsHaveNamesOfTheirOwn)
   EXPECT_EQ(refusal("displacement,load,,\nmm,kN,,\n0,0,,\n0.001,1,,\n"), "")
       << "columns that nobody reads";
 }
+
+// What a test machine without a gauge of displacement writes.
+TEST(ReferenceCurve, OfLoadOverTimeIsDrawn)
+{
+  SyntheticRun().write("run");
+  core::write_file("timed.csv", "time,load\nus,kN\n0,0\n50,40\n100,90\n");
+  const CompareResult r = compare("run", "timed.csv");
+  EXPECT_EQ(table(r).find("plot: the curves"), std::string::npos) << table(r);
+  for (const char *part : {">run<", ">timed<", "time"})
+    EXPECT_NE(r.plot.find(part), std::string::npos) << part;
+  core::write_file("timed.csv", "time,stress\nus,MPa\n0,0\n50,0.4\n100,0.9\n");
+  EXPECT_EQ(table(compare("run", "timed.csv")).find("plot: the curves"), std::string::npos);
+}
 } // namespace
