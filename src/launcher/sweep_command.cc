@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace ligament::program
@@ -19,7 +20,7 @@ std::string default_folder(const std::string &study)
 {
   if (!core::is_named_file(study))
     return "ligament-sweep";
-  const std::filesystem::path file = std::filesystem::absolute(study);
+  const auto file = std::filesystem::absolute(study).lexically_normal();
   const std::string name =
       file.stem() == "study" ? file.parent_path().filename().string() : file.stem().string();
   return name + "-sweep";
@@ -49,6 +50,14 @@ int count(const std::vector<CaseResult> &results, CaseEnd::Status status)
   return n;
 }
 
+/// A row that others are measured against was not computed: their errors are missing.
+bool lacks_a_reference(const std::vector<CaseResult> &results)
+{
+  return std::any_of(results.begin(), results.end(), [](const CaseResult &r) {
+    return (r.is_reference || r.is_total_reference) && !r.end.run;
+  });
+}
+
 int compute(const CommandLine &line, const Study &study, const CaseList &list,
             const std::string &path)
 {
@@ -62,6 +71,7 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
     core::tell(stderr, note + "\n");
   const int failed = count(results, CaseEnd::Status::failed),
             stopped = count(results, CaseEnd::Status::stopped);
+  const bool incomplete = stopped > 0 || lacks_a_reference(results);
   fmt::print("{} cases: {} done, {} stopped by a guard, {} refused, {} failed\n", results.size(),
              count(results, CaseEnd::Status::done), count(results, CaseEnd::Status::stopped),
              count(results, CaseEnd::Status::refused), failed);
@@ -70,10 +80,10 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
     int reused = 0;
     for (const auto &[id, end] : ends)
       reused += end.reused;
-    fmt::print("{}\n", json_text({{"status", failed > 0    ? "failed"
-                                             : stopped > 0 ? "stopped"
-                                                           : "done"},
-                                  {"complete", failed == 0 && stopped == 0},
+    fmt::print("{}\n", json_text({{"status", failed > 0   ? "failed"
+                                             : incomplete ? "stopped"
+                                                          : "done"},
+                                  {"complete", failed == 0 && !incomplete},
                                   {"cases", results.size()},
                                   {"done", count(results, CaseEnd::Status::done)},
                                   {"stopped", count(results, CaseEnd::Status::stopped)},
@@ -84,9 +94,9 @@ int compute(const CommandLine &line, const Study &study, const CaseList &list,
                                   {"summary", folder.summary()},
                                   {"output", folder.path()}}));
   }
-  return int(failed > 0    ? ExitCode::bad_environment
-             : stopped > 0 ? ExitCode::stopped_by_guard
-                           : ExitCode::done);
+  return int(failed > 0   ? ExitCode::bad_environment
+             : incomplete ? ExitCode::stopped_by_guard
+                          : ExitCode::done);
 }
 } // namespace
 

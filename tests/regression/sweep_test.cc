@@ -144,4 +144,21 @@ TEST(Sweep, SurvivesAKillAndComputesNothingTwice)
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2 + 4);
   EXPECT_NE(table.find("overlap_cells=6,overlap_cells,refused"), std::string::npos) << table;
 }
+
+// What the step is, only the built body says: the study itself is right.
+TEST(Sweep, WithoutItsReferenceIsNotComplete)
+{
+  std::filesystem::remove_all("sweep");
+  core::write_file("scene.json", scene);
+  core::write_file("study.json", R"({"scene": "scene.json", "reference": "long step",
+    "grids": [{"vary": {"/coupling/overlap_cells": [2]}}],
+    "rows": [{"name": "long step", "set": {"/time/step": 100}}]})");
+  const auto json = finish_sweep(start_sweep(), 3);
+  EXPECT_EQ(json["status"], "stopped");
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["done"], 1);
+  EXPECT_EQ(json["refused"], 1);
+  const std::string table = core::read_file("sweep/sweep.csv");
+  EXPECT_NE(table.find("100 s is more than"), std::string::npos) << table;
+}
 } // namespace
