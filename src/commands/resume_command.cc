@@ -156,6 +156,19 @@ void cut_back(const RunFolder &folder, const CheckpointManifest &manifest, std::
     }
   }
 }
+/// Tables that a run writes at its end: those of an earlier end would be taken for what broke up to
+/// where the run is now.
+void remove_tables_of_the_end(const RunFolder &folder)
+{
+  for (const std::string &file : {folder.broken_bonds(), folder.fragments()}) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    core::require<core::EnvironmentError>(
+        !error, fmt::format("cannot remove {}, of the earlier end of the run: {}; remove it, then "
+                            "resume again",
+                            file, error.message()));
+  }
+}
 } // namespace
 
 int resume_command(const CommandLine &line, const core::Ranks &ranks)
@@ -201,6 +214,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
     run->go_on(first);
     write_resolved(input, folder);
     cut_back(folder, manifest, end_of_log);
+    remove_tables_of_the_end(folder);
   };
   const RunRecord record = simulate(input, warnings, *run, interruption, options);
   return end_of_run(line, line.run, folder, record, interruption);

@@ -111,6 +111,44 @@ INSTANTIATE_TEST_SUITE_P(Corpus, WrongSceneThroughTheProgram,
                          testing::ValuesIn(names_in("wrong_scenes")),
                          [](const auto &info) { return info.param; });
 
+// Killed again before its new end: what broke up to the earlier one is no result of this run.
+TEST(ResumedRun, HasNoTablesOfItsEarlierEnd)
+{
+  const fs::path home = fs::current_path();
+  fs::remove_all("resumed");
+  fs::create_directory("resumed");
+  fs::current_path("resumed");
+  std::ofstream("bar.json") << R"({
+    "dimension": 2,
+    "specimen": {"size": [16, 40]},
+    "material": {"youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1},
+    "discrete_zone": {"packing": "hexagonal", "spacing": 1},
+    "far_field": "none",
+    "loads": [{"boundary": "top", "velocity": [null, 1e-4], "ramp": 50}],
+    "gauges": [{"name": "pieces", "kind": "fragments"}],
+    "time": {"duration": 100},
+    "output": {"checkpoint_interval": 1e-9, "history_interval": 1}
+  })";
+  const std::string ligament = "exec " LIGAMENT_PROGRAM " ";
+  ASSERT_EQ(run_shell(ligament + "run bar.json -o out").code, 0);
+  for (const char *table : {"broken_bonds.csv", "fragments.csv"})
+    EXPECT_TRUE(fs::exists(std::string("out/") + table)) << table;
+  const auto rows = fs::file_size("out/history.csv");
+  {
+    Process process(ligament + "resume out --set /time/duration=1e6", "resume");
+    EXPECT_TRUE(eventually([&] { return fs::file_size("out/history.csv") > 2 * rows; }));
+    process.send(SIGKILL);
+    EXPECT_EQ(process.wait().code, 128 + SIGKILL);
+  }
+  EXPECT_EQ(file_json("out/run.json")["status"], "running");
+  for (const char *table : {"broken_bonds.csv", "fragments.csv"})
+    EXPECT_FALSE(fs::exists(std::string("out/") + table)) << table;
+  const Outcome compared = run_shell(ligament + "compare out out");
+  EXPECT_NE(compared.output.find("out has no broken_bonds.csv"), std::string::npos)
+      << compared.output << compared.errors;
+  fs::current_path(home);
+}
+
 TEST(WrongInputs, ThereAreMany)
 {
   EXPECT_GE(names_in("wrong_commands").size() + names_in("wrong_scenes").size(), 350u);
