@@ -5,6 +5,7 @@
 #include "core/tell.h"
 #include "src/analysis/compare.h"
 #include "src/analysis/report.h"
+#include "src/analysis/verdict.h"
 #include "src/launcher/new_command.h"
 #include "src/launcher/program.h"
 #include "src/launcher/ranks_start.h"
@@ -108,7 +109,7 @@ ExitCode print_report(const CommandLine &line)
   const RunRecord record = read_run_record(RunFolder{line.run}.record());
   fmt::print("{}\n", file);
   if (!record.is_complete())
-    fmt::print("the run {}: {}\n", incompleteness(record), record.reason);
+    fmt::print("the run {}\n", incompleteness_with_reason(record));
   if (line.json)
     fmt::print("{}\n", json_text({{"report", file},
                                   {"status", record.status},
