@@ -161,6 +161,7 @@ void ContactSearch<dim>::update(Particles &p, const BondNetwork<dim> &bonds,
     pass_on_joints(p, contacts);
   else
     flanks_.pass_on_joints(p, contacts);
+  flanks_.find_joined(p, contacts);
 
   Cells<dim, Partner> cells(reach);
   for (const int i : surface_)

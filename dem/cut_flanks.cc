@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace ligament::dem
 {
@@ -58,11 +59,43 @@ CutFlanks<dim>::CutFlanks(const packings::Packing<dim> &packing)
 template <int dim>
 bool CutFlanks<dim>::face_each_other(int i, int j) const
 {
+  const auto is_joined = [&](int k) { return k < int(is_joined_.size()) && is_joined_[k]; };
+  if (!is_joined(i) && !is_joined(j))
+    return false;
   return std::any_of(cuts_.begin(), cuts_.end(), [&](const Flanks &flanks) {
     const auto of_i = flanks.positive.find(i), of_j = flanks.positive.find(j);
     return of_i != flanks.positive.end() && of_j != flanks.positive.end() &&
            of_i->second != of_j->second;
   });
+}
+
+// Of one's own particles all joints are at hand. Others are told what has changed.
+template <int dim>
+void CutFlanks<dim>::find_joined(const Particles &p, const Contacts<dim> &contacts)
+{
+  if (cuts_.empty())
+    return;
+  std::set<std::int64_t> own;
+  for (const Contact<dim> &c : contacts.all())
+    for (const int k : {c.face.i, c.face.j})
+      if (c.is_joint() && p.part.owns(k))
+        own.insert(p.global_id[k]);
+  std::vector<std::int64_t> begun, ended;
+  std::set_difference(own.begin(), own.end(), own_joined_.begin(), own_joined_.end(),
+                      std::back_inserter(begun));
+  std::set_difference(own_joined_.begin(), own_joined_.end(), own.begin(), own.end(),
+                      std::back_inserter(ended));
+  own_joined_ = std::move(own);
+  if (guests_) {
+    begun = guests_->ranks().gather_all(begun);
+    ended = guests_->ranks().gather_all(ended);
+  }
+  for (const std::int64_t name : ended)
+    joined_.erase(name);
+  joined_.insert(begun.begin(), begun.end());
+  is_joined_.assign(p.size(), 0);
+  for (int k = 0; k < p.size() && !joined_.empty(); ++k)
+    is_joined_[k] = joined_.count(p.global_id[k]) > 0;
 }
 
 template <int dim>

@@ -24,9 +24,13 @@ public:
   /// Particle i has come, of this name.
   void append(int i, std::int64_t name);
 
-  /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it, and neither
-  /// has left it: they never interlock.
+  /// Whether both lie within 1.5 particles of the same cut, on opposite sides of it, neither has
+  /// left it, and one of them still has a joint: they never interlock.
   bool face_each_other(int i, int j) const;
+
+  /// Looks who still has joints: flanks that have slid off each other meet like all else when they
+  /// come back. All ranks call it, when joints have gone on or ended.
+  void find_joined(const Particles &particles, const Contacts<dim> &contacts);
 
   /// The particles of joints whose flanks have turned against each other by more than 25 degrees
   /// leave the cut for good: there is no plane any more that both would lie on. All ranks call it.
@@ -88,6 +92,8 @@ private:
   double spacing_, largest_; // m, of particles
   std::vector<Flanks> cuts_;
   std::set<std::int64_t> left_;                // names of particles, on all ranks
+  std::set<std::int64_t> joined_, own_joined_; // with a joint: on all ranks; one's own
+  std::vector<char> is_joined_;                // particles at hand
   const ContactGuests<dim> *guests_ = nullptr; // null: all are one's own
   std::multimap<std::int64_t, Told> told_;     // by names, of all ranks
 };

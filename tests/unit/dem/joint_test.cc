@@ -320,6 +320,42 @@ TYPED_TEST(Joint, WorkOfALongSlideIsFrictionAndEnergy)
 // A loose piece above a cut that turns over: joints are half planes, which would push it from where
 // nothing is. Once it has turned away it meets the flank as any two surfaces do, and still does
 // when it comes back as it was.
+// Slid off its flank, lowered and pushed back, the upper piece meets the side of the lower one with
+// the rows that were its flank, too: joints that have ended keep nobody apart from anything.
+TYPED_TEST(Joint, PiecesThatSlidApartMeetAgain)
+{
+  constexpr int dim = TypeParam::dim;
+  for (const bool random : {false, true}) {
+    CutBody<TypeParam> b(random, 0);
+    const auto &x = b.packing.centre[0];
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    const double width = (*high - *low) / b.packing.spacing + 1, step = 0.1;
+    Vector<dim> u = Vector<dim>::Zero();
+    const auto go = [&](int axis, double to) {
+      const int steps = int(std::ceil(std::abs(to - u[axis]) / step));
+      const double from = u[axis];
+      for (int s = 1; s <= steps; ++s) {
+        u[axis] = from + (to - from) * s / steps;
+        for (int k = 0; k < 2; ++k) // a search is due in the step after
+          b.place(u);
+      }
+    };
+    const auto push = [&] {
+      double sum = 0;
+      for (int i = 0; i < b.p.size(); ++i)
+        if (b.is_above(i))
+          sum += get(b.p.force, i).norm();
+      return sum / (b.material.youngs_modulus * std::pow(b.packing.spacing, dim - 1));
+    };
+    go(1, 0.1);
+    go(0, width + 2);
+    go(1, -0.9); // by its flank row alone
+    EXPECT_EQ(push(), 0);
+    go(0, width - 1.2);
+    EXPECT_GT(push(), 0.01);
+  }
+}
+
 TYPED_TEST(Joint, PieceThatTurnsMeetsTheFlankByItsSurfaceFromThenOn)
 {
   for (const bool random : {false, true}) {
