@@ -51,6 +51,9 @@ public:
         is_new_ ? read_nodes_4() : read_nodes_2();
       else if (section == "$Elements")
         is_new_ ? read_elements_4() : read_elements_2();
+      else
+        continue;
+      end(section);
     }
     if (mesh_.nodes.empty() || (mesh_.faces.empty() && mesh_.volumes.empty()))
       fail("has no mesh", "there are no nodes, or no faces and volumes among the elements",
@@ -88,6 +91,18 @@ private:
     if (!(in_ >> value))
       fail("ends too early", "a number is missing", "save it anew");
     return value;
+  }
+  /// What follows the entries that a section announced: a file that was cut within its last number, or a
+  /// wrong count, would else be read as another mesh.
+  void end(const std::string &section)
+  {
+    const std::string expected = "$End" + section.substr(1);
+    std::string word;
+    if (!(in_ >> word))
+      fail("ends too early", fmt::format("{} is missing", expected), "save it anew");
+    if (word != expected)
+      fail(fmt::format("has \"{}\" where {} should be", word, expected),
+           "the section has another number of entries than it announces", "save it anew");
   }
   int number() { return next<int>(); }
   double real() { return next<double>(); }
