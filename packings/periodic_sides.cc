@@ -148,12 +148,13 @@ void fit_period(const LatticeParameters<dim> &p, PeriodicBox<dim> &box)
                               "specimen: give it another orientation",
                               "xyz"[a]));
     const double n = std::round(box.period[a] / repeat);
+    const double below = std::floor(box.period[a] / repeat), above = below + 1;
     core::require(
         std::abs(box.period[a] - n * repeat) < 1e-4 * d,
         fmt::format("the lattice repeats itself along {} after {:.10g} m, which does not fit into "
-                    "the width of {:.10g} m: give {:.10g} m or {:.10g} m",
-                    "xyz"[a], repeat, box.period[a], std::floor(box.period[a] / repeat) * repeat,
-                    std::ceil(box.period[a] / repeat) * repeat));
+                    "the width of {:.10g} m: give {}{:.10g} m",
+                    "xyz"[a], repeat, box.period[a],
+                    below > 0 ? fmt::format("{:.10g} m or ", below * repeat) : "", above * repeat));
     // About the same centre: the lattice is anchored there.
     box.lower[a] += (box.period[a] - n * repeat) / 2;
     box.period[a] = n * repeat;

@@ -77,6 +77,11 @@ private:
     needs("points", wedge, !t_.points.empty());
     if ((plate || t_.shape == ToolKind::ball) && std::isfinite(t_.length))
       needs("length", false, true);
+    const bool is_round = t_.shape == ToolKind::ball || (!plate && !wedge && scene_.dimension == 2);
+    if (is_round && !is_zero(t_.orientation))
+      f_.error(key_ + "/orientation",
+               fmt::format("\"orientation\" in {}, which is a {}", key_, word),
+               "it is the same in all orientations", "remove it");
     if (wedge && !t_.points.empty())
       corners();
   }
