@@ -134,9 +134,9 @@ void declare(CLI::App &app, CommandLine &line)
   CLI::App &explain = *app.add_subcommand("explain", "default, unit, bounds and meaning of a key");
   explain.add_option("key", line.key, "such as /coupling/overlap_cells; without it: all keys")
       ->type_name("KEY");
-  explain.add_flag("--markdown", line.markdown, "all keys, as the page of the manual");
-  explain.add_flag("--schema", line.schema, "all keys, as JSON schema for editors");
-
+  explain.add_flag("--markdown", line.markdown, "all keys, as the page of the manual")
+      ->excludes("key");
+  explain.add_flag("--schema", line.schema, "all keys, as JSON schema for editors")->excludes("key");
   explain.add_flag("--study", line.explain_study, "the keys of study files")->excludes("key");
 
   CLI::App &report = *app.add_subcommand("report", "writes the HTML report of a run again");

@@ -51,7 +51,9 @@ int compute(const CommandLine &line, int argc, char **argv)
 
 void print_explanation(const CommandLine &line)
 {
-  if (line.explain_study)
+  if (line.explain_study && line.json)
+    fmt::print("{}\n", json_text(nlohmann::ordered_json::parse(study_schema())));
+  else if (line.explain_study)
     fmt::print("{}", line.schema ? study_schema() : study_markdown());
   else if (line.schema)
     fmt::print("{}\n", json_text(json_schema(), line.json ? -1 : 2));

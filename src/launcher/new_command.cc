@@ -46,6 +46,9 @@ SceneKind chosen(const std::string &name)
 
 int new_command(const CommandLine &line)
 {
+  core::require(!line.kind.empty() || line.output.empty(),
+                "--output names the file of a scene, and no kind of scene is named; "
+                "\"ligament new\" lists the kinds");
   if (line.kind.empty())
     return list_kinds(line);
   const SceneKind kind = chosen(line.kind);

@@ -2,6 +2,7 @@
 #include "core/version.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -71,6 +72,9 @@ TEST(Launcher, HelpVersionAndExplain)
   const Outcome explain = start("explain overlap_cells");
   EXPECT_EQ(explain.code, 0);
   EXPECT_TRUE(has(explain.text, "default  3"));
+  const std::string study = start("explain --study --json").text;
+  const auto last_line = study.rfind('\n', study.size() - 2) + 1; // npos + 1 is the beginning
+  EXPECT_TRUE(nlohmann::json::parse(study.substr(last_line)).contains("properties")) << study;
 }
 
 TEST(Launcher, MistakesOnTheCommandLineAreWrongInput)
@@ -80,6 +84,8 @@ TEST(Launcher, MistakesOnTheCommandLineAreWrongInput)
   EXPECT_EQ(start("run").code, 2);
   EXPECT_EQ(start("run a.json --sett /a=1").code, 2);
   EXPECT_EQ(start("explain raduis").code, 2);
+  EXPECT_EQ(start("explain overlap_cells --markdown").code, 2);
+  EXPECT_EQ(start("new -o scene.json").code, 2);
   EXPECT_TRUE(has(errors(), "did you mean \"radius\"?"));
   EXPECT_TRUE(has(start("run --json").text, "{\"status\":\"wrong input\",\"errors\":[{"));
 }
