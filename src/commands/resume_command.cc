@@ -83,8 +83,8 @@ void refuse_another_scene(const nlohmann::ordered_json &was, const nlohmann::ord
   std::string list;
   for (const KeyDifference &d : differences_that_matter(was, is))
     list += fmt::format("\n  {}: {}, was {}", d.key, d.is, d.was);
-  core::require(list.empty(), "the scene is not the one of the run; only a longer /time/duration "
-                              "and /output may differ, but so do" +
+  core::require(list.empty(), "the scene is not the one of the run; only a longer /time/duration, "
+                              "/output and where named files lie may differ, but so do" +
                                   list);
 }
 

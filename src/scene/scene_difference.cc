@@ -1,6 +1,7 @@
 #include "src/scene/scene_difference.h"
 
 #include <algorithm>
+#include <array>
 
 namespace ligament::program
 {
@@ -9,6 +10,11 @@ namespace
 using Json = nlohmann::ordered_json;
 
 const std::string duration = "/time/duration", output = "/output/";
+
+/// Paths, which change where a project moves: what the files hold is compared by whoever opens
+/// them.
+const std::array<std::string, 3> files = {"/specimen/file", "/atoms/file",
+                                          "/discrete_zone/packing_file"};
 
 /// Lists of objects (loads, inclusions) are compared key by key, too; other lists as values.
 bool is_section(const Json &value)
@@ -56,7 +62,9 @@ std::vector<KeyDifference> differences_that_matter(const Json &was, const Json &
   std::vector<KeyDifference> found = differences(was, is);
   const auto may_differ = [&](const KeyDifference &d) {
     const Json::json_pointer key(duration);
-    return d.key.rfind(output, 0) == 0 || (d.key == duration && is.at(key) > was.at(key));
+    return d.key.rfind(output, 0) == 0 ||
+           std::find(files.begin(), files.end(), d.key) != files.end() ||
+           (d.key == duration && is.at(key) > was.at(key));
   };
   found.erase(std::remove_if(found.begin(), found.end(), may_differ), found.end());
   return found;

@@ -18,7 +18,8 @@ struct KeyDifference
 std::vector<KeyDifference> differences(const nlohmann::ordered_json &was,
                                        const nlohmann::ordered_json &is);
 
-/// Those of them with which a run cannot go on: all but a longer /time/duration, and /output.
+/// Those of them with which a run cannot go on: all but a longer /time/duration, /output, and the
+/// paths of named files, whose contents keep_named_files() compares.
 std::vector<KeyDifference> differences_that_matter(const nlohmann::ordered_json &was,
                                                    const nlohmann::ordered_json &is);
 } // namespace ligament::program

@@ -50,9 +50,11 @@ TEST(SceneDifference, NamesEveryKeyOnce)
   EXPECT_EQ(found[5].is, "nothing");
 }
 
-TEST(SceneDifference, OnlyALongerDurationAndOutputsDoNotMatter)
+TEST(SceneDifference, OnlyALongerDurationOutputsAndPathsDoNotMatter)
 {
   Json other = scene;
+  other["specimen"]["file"] = "elsewhere/body.msh";
+  other["discrete_zone"]["packing_file"] = "elsewhere/packing.csv";
   other["time"]["duration"] = 5.0;
   other["output"] = Json::object();
   other["output"]["pictures"] = Json::array();
