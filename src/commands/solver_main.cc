@@ -33,8 +33,6 @@ int dispatch(const CommandLine &line, RankProcess *process)
     return resume_command(line, ranks);
   if (line.command != "run")
     require_one_rank(line.command);
-  if (line.command == "verify")
-    return verify_command(line);
   const ReadResult input = read_again(line);
   require_one_mind(bool(input.scene), ranks);
   if (!input.scene)

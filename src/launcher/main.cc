@@ -129,8 +129,10 @@ int dispatch(const CommandLine &line, int argc, char **argv)
     return compute(line, argc, argv);
   if (line.command == "resume" && line.ranks > 1 && launched_ranks() == 1)
     return run_on_ranks(line.ranks, argc, argv);
-  if (line.command == "verify" || line.command == "resume")
+  if (line.command == "resume")
     start_solver(argc, argv);
+  if (line.command == "verify")
+    start_verification(argc, argv);
   if (line.command == "explain")
     print_explanation(line);
   else if (line.command == "compare")

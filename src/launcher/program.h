@@ -1,4 +1,4 @@
-// What both programs share: exit codes, and how mistakes and exceptions are told.
+// What the programs share: exit codes, and how mistakes and exceptions are told.
 #pragma once
 
 #include "core/diagnostic.h"

@@ -17,26 +17,44 @@
 
 namespace ligament::program
 {
-std::string solver_path()
+namespace
+{
+/// Of a program beside this one.
+std::string path_of(const std::string &name)
 {
   std::error_code failed;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", failed);
   core::require<core::EnvironmentError>(!failed,
                                         "cannot find the own program: " + failed.message());
-  return (self.parent_path() / "ligament-solver").string();
+  return (self.parent_path() / name).string();
+}
+
+[[noreturn]] void start(const std::string &name, int argc, char *const *argv)
+{
+  std::string path = path_of(name);
+  std::vector<char *> arguments(argv, argv + argc);
+  arguments[0] = path.data();
+  arguments.push_back(nullptr);
+  execv(path.c_str(), arguments.data());
+  throw core::EnvironmentError(fmt::format(
+      "cannot start {}: {}; build it (scripts/build.sh {}), or install it into the same folder", path,
+      std::strerror(errno), name));
+}
+} // namespace
+
+std::string solver_path()
+{
+  return path_of("ligament-solver");
 }
 
 void start_solver(int argc, char *const *argv)
 {
-  const std::string solver = solver_path();
-  std::string name = solver;
-  std::vector<char *> arguments(argv, argv + argc);
-  arguments[0] = name.data();
-  arguments.push_back(nullptr);
-  execv(solver.c_str(), arguments.data());
-  throw core::EnvironmentError(
-      fmt::format("cannot start {}: {}; build or install both programs into the same folder",
-                  solver, std::strerror(errno)));
+  start("ligament-solver", argc, argv);
+}
+
+void start_verification(int argc, char *const *argv)
+{
+  start("ligament-verify", argc, argv);
 }
 
 void refill_standard_input(const std::string &text)

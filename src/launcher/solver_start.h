@@ -1,4 +1,4 @@
-// Hands over to the solver, a second program beside this one: it takes long to load.
+// Hands over to the programs beside this one that compute: they take long to load, and to build.
 #pragma once
 
 #include <string>
@@ -11,6 +11,9 @@ std::string solver_path();
 /// Replaces this process by the solver with the same arguments; returns only by an exception.
 /// Throws core::EnvironmentError when the solver cannot be started.
 [[noreturn]] void start_solver(int argc, char *const *argv);
+
+/// The same by the program of the verification cases.
+[[noreturn]] void start_verification(int argc, char *const *argv);
 
 /// Lets standard input of this process, and of the solver that replaces it, hold this text: what
 /// came through a pipe can be read only once. Throws core::EnvironmentError.

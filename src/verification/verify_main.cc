@@ -1,4 +1,8 @@
-#include "src/commands/commands.h"
+// The program that computes verification cases: started by `ligament verify` with the same arguments.
+// Those who only run scenes need not build it.
+#include "core/flush_denormals.h"
+#include "src/launcher/program.h"
+#include "src/launcher/solver_start.h"
 #include "src/verification/cases/random_scenes.h"
 #include "src/verification/cases/stability.h"
 
@@ -8,10 +12,10 @@
 #include <chrono>
 #include <limits>
 
-namespace ligament::program
-{
 namespace
 {
+using namespace ligament::program;
+
 /// A case that can't be computed fails with one figure that is not a number.
 std::vector<Result> run_case(const Case &c)
 {
@@ -59,10 +63,11 @@ nlohmann::ordered_json to_json(const Result &result)
                       {"worst_seeds", s->worst_seeds}};
   return json;
 }
-} // namespace
 
-int verify_command(const CommandLine &line)
+/// Computes the cases and prints their figures beside "must" and "aim"; 0 when all pass, else 3.
+int verify(const CommandLine &line)
 {
+  require_one_rank("verify");
   const auto cases = select(line);
   nlohmann::ordered_json json = {{"cases", nlohmann::json::array()}};
   int n = 0, n_failed = 0;
@@ -90,4 +95,11 @@ int verify_command(const CommandLine &line)
   }
   return n_failed == 0 ? 0 : 3;
 }
-} // namespace ligament::program
+} // namespace
+
+// Before any thread is started.
+int main(int argc, char **argv)
+{
+  ligament::core::flush_denormals();
+  return run_program(argc, argv, [](const CommandLine &line, int, char **) { return verify(line); });
+}
