@@ -67,15 +67,15 @@ void Simulation<dim>::keep_checkpoints(const nlohmann::ordered_json &resolved)
 }
 
 // Guards look, checkpoints become due and several ranks ask each other in the same steps whatever
-// the number of ranks; one process may be asked to end in any. No checkpoint is written of what no
-// guard lets pass.
+// the number of ranks; one process may be asked to end in any, and all between two static phases.
+// No checkpoint is written of what no guard lets pass.
 template <int dim>
 void Simulation<dim>::look_at_the_clock(const EndRequest &request)
 {
   const bool is_at_end = clock_.is_at_end();
   const bool is_guarded =
       is_at_end || clock_.now.step / body_.coupler->step_ratio() % guard_interval == 0;
-  if (!body_.ranks.is_one() && !is_guarded)
+  if (!body_.ranks.is_one() && !is_guarded && !phases_.goes_on())
     return;
   // Ranks hear of signals and look at clocks at different times.
   const std::vector<std::int64_t> seen =
@@ -230,7 +230,7 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
       return stop_;
     const bool is_calm = far_acts && asked_by_.empty() && phases_.are_due(body_, clock_);
     if (is_calm && !ranks_.is_one()) {
-      if (!skip_steps_at_first())
+      if (!skip_steps_at_first(request))
         return stop_;
     } else {
       if (far_acts && !look_around(is_calm))

@@ -85,8 +85,9 @@ private:
   void take_step();
   /// Of a body in parts that is calm: the first rank takes the whole of it, skips steps, takes the
   /// next one and deals it out again, while the others wait; where that ends the run it keeps it,
-  /// and the others have nothing more to do. False where the run ends.
-  bool skip_steps_at_first();
+  /// and the others have nothing more to do. False where the run ends. Between two phases all hear
+  /// a request for the end and write checkpoints.
+  bool skip_steps_at_first(const EndRequest &request);
   /// Of a body in parts: what skip_steps_at_first() begins with.
   void keep_for_phases();
   /// The time loop; the reason when it ends early.

@@ -181,7 +181,7 @@ void Simulation<dim>::keep_for_phases()
 // with multigrid. The state goes both ways between drift and forces, where it is that of the whole
 // to the last bit.
 template <int dim>
-bool Simulation<dim>::skip_steps_at_first()
+bool Simulation<dim>::skip_steps_at_first(const EndRequest &request)
 {
   core::Log nothing_new;
   std::map<std::string, core::State> told;
@@ -195,13 +195,20 @@ bool Simulation<dim>::skip_steps_at_first()
     recorder_.load_copies(run, copies, body_);
     phases_ = StaticPhases<dim>(scene_, body_, log_, is_helped ? ranks_ : core::Ranks());
     phases_.load(run);
-    compute_forces();
-    while (!(ends_elsewhere_ = !look_around(true)) && phases_.goes_on())
+    if (!phases_.goes_on())
+      compute_forces();
+    // Where somebody asks for the end or a checkpoint all go on behind a step that was passed, as
+    // one process does.
+    bool is_asked = false;
+    while (!is_asked && !(ends_elsewhere_ = !look_around(true)) && phases_.goes_on()) {
       phases_.pass_step(body_, clock_, damping_.energy());
+      is_asked = request.signal() != 0 || request.is_late() || (keeper_ && keeper_->is_due());
+    }
     if (is_helped)
       algebra::dismiss_servers(ranks_);
     if (!ends_elsewhere_) {
-      take_step();
+      if (!is_asked)
+        take_step();
       recorder_.wait();
       told[body_file] = take_state(body_);
       told[run_file] = run_state();
@@ -245,7 +252,7 @@ template void Simulation<2>::take_over(CoupledBody<2>, const core::State &, cons
 template void Simulation<2>::build_anew(const std::vector<std::int64_t> &);
 template void Simulation<2>::write_checkpoint(const Checkpoints &);
 template void Simulation<2>::keep_for_phases();
-template bool Simulation<2>::skip_steps_at_first();
+template bool Simulation<2>::skip_steps_at_first(const EndRequest &);
 template void Simulation<3>::go_on_from(Checkpoint &);
 template void Simulation<3>::give(const core::State &, const core::State &);
 template core::State Simulation<3>::run_state() const;
@@ -256,5 +263,5 @@ template void Simulation<3>::take_over(CoupledBody<3>, const core::State &, cons
 template void Simulation<3>::build_anew(const std::vector<std::int64_t> &);
 template void Simulation<3>::write_checkpoint(const Checkpoints &);
 template void Simulation<3>::keep_for_phases();
-template bool Simulation<3>::skip_steps_at_first();
+template bool Simulation<3>::skip_steps_at_first(const EndRequest &);
 } // namespace ligament::program

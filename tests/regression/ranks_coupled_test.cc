@@ -321,6 +321,46 @@ TEST_F(RanksCoupled, EquilibriaByAllRanks)
   EXPECT_EQ(file_json("stopped/run.json")["status"], "stopped");
 }
 
+/// Steps of the states that a run keeps, which lie between two equilibria here.
+std::vector<long> kept_steps(const std::string &run)
+{
+  std::vector<long> steps;
+  for (const auto &entry : fs::directory_iterator(run + "/checkpoints"))
+    if (fs::exists(entry.path() / "manifest.json"))
+      steps.push_back(file_json((entry.path() / "manifest.json").string())["step"]);
+  std::sort(steps.begin(), steps.end());
+  return steps;
+}
+
+// Faces that tear from equilibrium to equilibrium: the first rank seeks them, and what it has between
+// two of them is a state of the run as any other.
+TEST_F(RanksCoupled, KeepsStatesBetweenEquilibriaAndGoesOnFromThem)
+{
+  Json scene = scene_of(2, "square", {12, 6});
+  scene["specimen"]["cracks"] = {{{"points", {{-7, 0}, {-2, 0}}}}};
+  scene["material"]["poissons_ratio"] = 0;
+  scene["material"]["fracture"]["strength"] = 1e-3;
+  scene["material"]["fracture"]["energy"] = 1e-4;
+  scene["time"] = {{"duration", 2000}, {"loading", "static"}};
+  scene["damping"] = {{"mass", 0.02}};
+  scene["loads"] = {{{"boundary", "top"}, {"velocity", {0, 1e-4}}},
+                    {{"boundary", "bottom"}, {"velocity", {0, -1e-4}}}};
+  scene["output"]["history_interval"] = 20;
+  expect_the_same_on({2}, scene, 1);
+  EXPECT_EQ(kept_steps("on_2"), kept_steps("on_1"));
+  for (const int n : {1, 2, 3}) {
+    const std::string run = fmt::format("from_between_on_{}", n);
+    fs::copy("on_1", run, fs::copy_options::recursive);
+    fs::remove_all(newest_checkpoint(run));
+    Json record = Json::parse(file_text(run + "/run.json"));
+    record["status"] = "running";
+    written(record, run + "/run.json");
+    const Outcome more = run_ligament(fmt::format("resume {} -n {}", run, n));
+    EXPECT_EQ(more.code, 0) << more.errors;
+    expect_same_body(run, "on_1");
+  }
+}
+
 /// Faces soften over some spacings.
 Json softening(Json scene)
 {
