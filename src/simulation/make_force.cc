@@ -5,6 +5,7 @@
 #include "dem/toughness_calibration.h"
 #include "src/scene/atoms.h"
 #include "src/scene/fracture_energy.h"
+#include "src/simulation/crack_axes.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -96,7 +97,24 @@ dem::FractureLaw::Criterion criterion_of(const MaterialParameters &material)
   return Criterion::none;
 }
 
+/// Nothing for cracks along x that open along y.
+template <int dim>
+std::string text_of(const dem::CrackAxes<dim> &crack)
+{
+  const auto components = [](const Vector<dim> &v) {
+    std::vector<std::string> texts;
+    for (int c = 0; c < dim; ++c)
+      texts.push_back(fmt::format("{:.6g}", v[c]));
+    return fmt::format("({})", fmt::join(texts, ", "));
+  };
+  return crack.growth == Vector<dim>::Unit(0) && crack.normal == Vector<dim>::Unit(1)
+             ? ""
+             : fmt::format(" along {} across {}", components(crack.growth),
+                           components(crack.normal));
+}
+
 /// All that the factor c depends on, in one line.
+template <int dim>
 std::string toughness_key(const Scene &scene, program::Criterion criterion,
                           const dem::DemMaterial &material)
 {
@@ -104,7 +122,8 @@ std::string toughness_key(const Scene &scene, program::Criterion criterion,
   const std::string packing =
       zone.packing == PackingKind::random
           ? fmt::format("sweeps {} ratio {}", zone.relaxation_sweeps, zone.size_ratio)
-          : fmt::format("turned {}", fmt::join(zone.orientation, " "));
+          : fmt::format("turned {}{}", fmt::join(zone.orientation, " "),
+                        text_of<dim>(crack_axes<dim>(scene.specimen)));
   return fmt::format("c{} {} {}D {} {} nu {} {}", dem::toughness_method, word_of(criterion),
                      scene.dimension, scene.plane == PlaneMode::stress ? "stress" : "strain",
                      word_of(*zone.packing), material.poissons_ratio, packing);
@@ -119,7 +138,7 @@ double toughness_factor(const Scene &scene, const MaterialParameters &parameters
   material.plasticity = {};
   material.viscosity = {};
   material.friction = 0;
-  const std::string key = toughness_key(scene, parameters.fracture.criterion, material);
+  const std::string key = toughness_key<dim>(scene, parameters.fracture.criterion, material);
   return ToughnessCache().factor(key, [&] {
     if (scene.zone.packing == PackingKind::random) {
       auto packing = random_packing_of<dim>(scene);
@@ -127,7 +146,8 @@ double toughness_factor(const Scene &scene, const MaterialParameters &parameters
       return dem::calibrate_toughness<dim>(packing, material, criterion);
     }
     const auto lattice = lattice_of<dim>(scene);
-    return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion);
+    return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion,
+                                         crack_axes<dim>(scene.specimen));
   });
 }
 
@@ -145,7 +165,9 @@ double strength_of(const Scene &scene, const MaterialParameters &material, const
         known != figures.end() ? known->second.value : toughness_factor<dim>(scene, material);
     strength = c * *p.toughness / std::sqrt(scene.zone.spacing);
     figures["toughness_factor" + name] = {c, ""};
-    log.info("toughness factor c = {:.4f}: strength {:.4g} Pa at spacing {:.4g} m", c, strength,
+    const bool is_lattice = scene.zone.packing != PackingKind::random;
+    log.info("toughness factor c = {:.4f}{}: strength {:.4g} Pa at spacing {:.4g} m", c,
+             is_lattice ? text_of<dim>(crack_axes<dim>(scene.specimen)) : "", strength,
              scene.zone.spacing);
   }
   figures["strength" + name] = {strength, "Pa"};

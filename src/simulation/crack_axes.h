@@ -1,0 +1,15 @@
+// Which way the cracks of a scene point: what a lattice holds depends on it.
+#pragma once
+
+#include "dem/toughness_calibration.h"
+#include "src/scene/scene.h"
+
+namespace ligament::program
+{
+/// Of the first crack, slot or notch of the specimen that ends in it: the way along which it grows
+/// from there, and across which it opens. Along x and across y where nothing is cut. A lattice is
+/// its own image by inversion, so that of the two senses of each the one is told whose first
+/// component is positive.
+template <int dim>
+dem::CrackAxes<dim> crack_axes(const Specimen &specimen);
+} // namespace ligament::program
