@@ -29,9 +29,12 @@ std::optional<double> place_of(const Packing<dim> &packing, int boundary,
 template <int dim>
 core::Dashpots<dim>
 absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> &particles,
-                   const std::vector<core::BoundaryLoad<dim>> &loads, double density,
-                   const SideSpeeds<dim> &speeds, const core::Ranks &ranks)
+                   const std::vector<core::BoundaryLoad<dim>> &loads,
+                   const std::vector<SideMedium<dim>> &media, const core::Ranks &ranks)
 {
+  const auto medium = [&](int i) -> const SideMedium<dim> & {
+    return media[media.size() > 1 && !packing.material.empty() ? packing.material[i] : 0];
+  };
   const particles::Part &part = particles.part;
   typename core::Dashpots<dim>::Places dashpots;
   for (const auto &load : loads) {
@@ -44,6 +47,7 @@ absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> 
     for (const auto &face : packing.boundary_faces)
       if (face.boundary == load.boundary && particles::contains(part.stepped, face.i))
         for (int c = 0; c < dim; ++c) {
+          const auto &[density, speeds] = medium(face.i);
           const double speed = speeds.across[axis][c];
           dashpots[{face.i, c}].push_back(
               {core::Dashpot::Kind::face, face.area * density * speed, face.q / speed});
@@ -53,16 +57,18 @@ absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> 
       if (depth > 0)
         for (int c = 0; c < dim; ++c)
           dashpots[{i, c}].push_back(core::layer_dashpot(
-              particles.mass[i], depth, load.absorbing_layer, speeds.across[axis][axis]));
+              particles.mass[i], depth, load.absorbing_layer, medium(i).speeds.across[axis][axis]));
     });
   }
   return core::Dashpots<dim>(dashpots, [&](int i) { return part.owns(i); });
 }
 
 template core::Dashpots<2> absorbing_dashpots(const Packing<2> &, const particles::Particles<2> &,
-                                              const std::vector<core::BoundaryLoad<2>> &, double,
-                                              const SideSpeeds<2> &, const core::Ranks &);
+                                              const std::vector<core::BoundaryLoad<2>> &,
+                                              const std::vector<SideMedium<2>> &,
+                                              const core::Ranks &);
 template core::Dashpots<3> absorbing_dashpots(const Packing<3> &, const particles::Particles<3> &,
-                                              const std::vector<core::BoundaryLoad<3>> &, double,
-                                              const SideSpeeds<3> &, const core::Ranks &);
+                                              const std::vector<core::BoundaryLoad<3>> &,
+                                              const std::vector<SideMedium<3>> &,
+                                              const core::Ranks &);
 } // namespace ligament::packings

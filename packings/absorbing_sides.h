@@ -28,12 +28,21 @@ SideSpeeds<dim> isotropic_speeds(double wave_speed_p, double wave_speed_s)
   return speeds;
 }
 
+/// What a wave that leaves the body has run through.
+template <int dim>
+struct SideMedium
+{
+  double density; // kg/m^3
+  SideSpeeds<dim> speeds;
+};
+
 /// The outer faces of absorbing sides answer with density c v per area, component by component; in
-/// their layers all particles are damped (theory.md eqs. (A1), (A4), (A7)). Spins are not. Density
-/// in kg/m^3. Of a part those of the particles that it steps; all ranks call it.
+/// their layers all particles are damped (theory.md eqs. (A1), (A4), (A7)). Spins are not. A medium
+/// for each of the packing's materials, or one for all particles. Of a part those of the particles
+/// that it steps; all ranks call it.
 template <int dim>
 core::Dashpots<dim>
 absorbing_dashpots(const Packing<dim> &packing, const particles::Particles<dim> &particles,
-                   const std::vector<core::BoundaryLoad<dim>> &loads, double density,
-                   const SideSpeeds<dim> &speeds, const core::Ranks &ranks = {});
+                   const std::vector<core::BoundaryLoad<dim>> &loads,
+                   const std::vector<SideMedium<dim>> &media, const core::Ranks &ranks = {});
 } // namespace ligament::packings

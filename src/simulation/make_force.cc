@@ -274,7 +274,14 @@ particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene)
 {
   if (scene.atoms)
     return crystal_of<dim>(scene).elastic_constants();
-  return material_of(scene.material, scene).elastic_constants<dim>();
+  return elastic_constants_of<dim>(scene, scene.material);
+}
+
+template <int dim>
+particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene,
+                                                      const MaterialParameters &material)
+{
+  return material_of(material, scene).elastic_constants<dim>();
 }
 
 template <int dim>
@@ -305,6 +312,10 @@ template int ghost_rings<2>(const Scene &);
 template int ghost_rings<3>(const Scene &);
 template particles::ElasticConstants<2> elastic_constants_of(const Scene &);
 template particles::ElasticConstants<3> elastic_constants_of(const Scene &);
+template particles::ElasticConstants<2> elastic_constants_of(const Scene &,
+                                                             const MaterialParameters &);
+template particles::ElasticConstants<3> elastic_constants_of(const Scene &,
+                                                             const MaterialParameters &);
 template std::unique_ptr<particles::ParticleForce<2>>
 make_zone_force(const Scene &, packings::Packing<2>, const std::vector<core::BoundaryLoad<2>> &,
                 std::map<std::string, Figure> &, core::Log &);

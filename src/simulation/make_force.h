@@ -56,4 +56,8 @@ int ghost_rings(const Scene &scene);
 /// Of the solid that particles and far field share: the scene's /material, or its crystal.
 template <int dim>
 particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene);
+/// Of one of the scene's materials.
+template <int dim>
+particles::ElasticConstants<dim> elastic_constants_of(const Scene &scene,
+                                                      const MaterialParameters &material);
 } // namespace ligament::program

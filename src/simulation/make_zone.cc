@@ -137,16 +137,30 @@ void fit_forces(const Scene &scene, CoupledBody<dim> &body)
 /// As those of the mesh: in a crystal they depend on the side. Of absorbing sides alone: a crystal
 /// under stress need not have any across the others.
 template <int dim>
-packings::SideSpeeds<dim> side_speeds(const particles::ElasticConstants<dim> &constants,
+packings::SideMedium<dim> side_medium(const particles::ElasticConstants<dim> &constants,
                                       double density,
                                       const std::vector<core::BoundaryLoad<dim>> &loads)
 {
   const fem::Body<dim> solid{constants.stiffness, density, 1, constants.stress};
-  packings::SideSpeeds<dim> speeds;
+  packings::SideMedium<dim> medium = {density, {}};
   for (const auto &load : loads)
     if (load.absorbing)
-      speeds.across[load.boundary / 2] = fem::normal_wave_speeds(solid, load.boundary / 2);
-  return speeds;
+      medium.speeds.across[load.boundary / 2] = fem::normal_wave_speeds(solid, load.boundary / 2);
+  return medium;
+}
+
+/// Of the scene's material and of each inclusion, which may lie at a side; of atoms the crystal.
+template <int dim>
+std::vector<packings::SideMedium<dim>> side_media(const Scene &scene,
+                                                  const particles::ElasticConstants<dim> &constants,
+                                                  const std::vector<core::BoundaryLoad<dim>> &loads)
+{
+  std::vector<packings::SideMedium<dim>> media = {
+      side_medium(constants, scene.material.density, loads)};
+  for (const Inclusion &inclusion : scene.inclusions)
+    media.push_back(side_medium(elastic_constants_of<dim>(scene, inclusion.material),
+                                inclusion.material.density, loads));
+  return media;
 }
 
 /// Faces that initial cracks cut, of the body.
@@ -265,9 +279,8 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   particles::Particles<dim> state;
   packings::fill_particles(of_particles, scene.densities(), state);
   state.part = held.part;
-  auto dashpots =
-      packings::absorbing_dashpots(of_particles, state, body.loads, scene.material.density,
-                                   side_speeds(constants, scene.material.density, body.loads), body.ranks);
+  auto dashpots = packings::absorbing_dashpots(
+      of_particles, state, body.loads, side_media(scene, constants, body.loads), body.ranks);
   of_particles = {};
   body.zone = std::make_unique<particles::ParticleSolver<dim>>(std::move(state), std::move(force));
   body.zone->dashpots = std::move(dashpots);

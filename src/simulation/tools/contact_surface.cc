@@ -124,22 +124,27 @@ void ContactSurface<dim>::add_particles(const packings::Packing<dim> &packing,
                                         const ContactStiffness &stiffness, double stable_step)
 {
   thickness_ = dim == 2 ? packing.thickness : 1;
-  const double plain = stiffness.youngs_modulus / (layer_thickness * packing.spacing);
+  const auto plain = [&](int i) {
+    const int material = packing.material.empty() ? 0 : packing.material[i];
+    return stiffness.youngs_modulus[material] / (layer_thickness * packing.spacing);
+  };
   n_of_particle_.assign(packing.size(), 0);
   const double most = stiffness.share * std::pow(2 / stable_step, 2) / with_turns;
   std::vector<Tensor<dim>> outer(packing.size(), Tensor<dim>::Zero());
   for (const auto &face : packing.boundary_faces)
     outer[face.i] += face.area * face.normal * face.normal.transpose();
-  per_area_.assign(packing.size(), plain);
-  for (int i = 0; i < packing.size(); ++i)
+  per_area_.resize(packing.size());
+  for (int i = 0; i < packing.size(); ++i) {
+    per_area_[i] = plain(i);
     if (std::isfinite(particles.mass[i])) {
       // What of it may be pressed at once: its outer faces, or from any side when it breaks off.
       const double across =
           std::pow(packing.volume[i] / thickness_, double(dim - 1) / dim) * thickness_;
       const double area = largest_eigenvalue<dim>(outer[i]);
-      per_area_[i] = std::min(plain, most * particles.mass[i] / std::max(area, across));
+      per_area_[i] = std::min(plain(i), most * particles.mass[i] / std::max(area, across));
       largest_rate_ = std::max(largest_rate_, with_turns * per_area_[i] * area / particles.mass[i]);
     }
+  }
   for (const auto &face : packing.boundary_faces)
     for (const auto &piece : pieces_of<dim>(face, thickness_)) {
       SurfacePoint<dim> point;
@@ -220,7 +225,7 @@ void ContactSurface<dim>::add_cells(const fem::FemSolver<dim> &far,
       point.number = n_of_node[point.owner]++;
       point.normal = normal.dot(outward) < 0 ? Vector<dim>(-normal) : normal;
       point.area = weight;
-      point.stiffness = stiffness.youngs_modulus / (layer_thickness * width) * weight;
+      point.stiffness = stiffness.youngs_modulus.front() / (layer_thickness * width) * weight;
       points_.push_back(point);
       for (int a = 0; a < SurfacePoint<dim>::n_nodes; ++a)
         share[point.nodes[a]] += point.shares[a] * point.stiffness * normal * normal.transpose();

@@ -14,7 +14,7 @@ namespace ligament::program
 /// How stiff the layer between tool and body is, where nothing else limits it.
 struct ContactStiffness
 {
-  double youngs_modulus; // Pa
+  std::vector<double> youngs_modulus; // Pa, of each material of the packing; cells have the first
   /// A share of the square of the largest frequency that the layer of an outer face alone may give
   /// its particle or node: the stable step stays what it is, nearly (theory.md eq. (T3)).
   double share = 0.25;

@@ -138,7 +138,9 @@ double distance_on_way(const ToolDefinition<dim> &tool, const CoupledBody<dim> &
 ContactStiffness contact_stiffness_of(const Scene &scene)
 {
   ContactStiffness stiffness;
-  stiffness.youngs_modulus = scene.material.youngs_modulus;
+  stiffness.youngs_modulus = {scene.material.youngs_modulus};
+  for (const Inclusion &inclusion : scene.inclusions)
+    stiffness.youngs_modulus.push_back(inclusion.material.youngs_modulus);
   return stiffness;
 }
 

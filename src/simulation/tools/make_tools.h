@@ -6,6 +6,7 @@
 
 namespace ligament::program
 {
+/// Of the materials of the scene.
 ContactStiffness contact_stiffness_of(const Scene &scene);
 
 /// What tools feel of the far field, when the cells of an overlap are the coupler's.

@@ -105,8 +105,9 @@ std::unique_ptr<particles::ParticleSolver<dim>> make_twin(packings::Packing<dim>
   top.absorbing = true;
   const auto constants = material.template elastic_constants<dim>();
   auto dashpots = packings::absorbing_dashpots<dim>(
-      packing, state, {top}, material.density,
-      packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s));
+      packing, state, {top},
+      {{material.density,
+        packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s)}});
   auto zone = std::make_unique<particles::ParticleSolver<dim>>(
       std::move(state), std::make_unique<dem::ManyBodyForce<dim>>(
                             std::move(packing), material, std::vector<core::BoundaryLoad<dim>>()));

@@ -139,8 +139,9 @@ double reflected_by_packing(const AbsorbingParameters &p)
   packings::fill_particles(packing, material().density, state);
   const auto constants = material().template elastic_constants<dim>();
   auto dashpots = packings::absorbing_dashpots<dim>(
-      packing, state, absorbing_top<dim>(p), material().density,
-      packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s));
+      packing, state, absorbing_top<dim>(p),
+      {{material().density,
+        packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s)}});
   particles::ParticleSolver<dim> zone(
       std::move(state),
       std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), material(),

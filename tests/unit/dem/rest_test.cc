@@ -54,9 +54,9 @@ struct Motion
     Particles<dim> state;
     packings::fill_particles(packing, 1., state);
     const auto constants = material.elastic_constants<dim>();
-    auto dashpots = packings::absorbing_dashpots(
-        packing, state, loads, 1.,
-        packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s));
+    auto dashpots = packings::absorbing_dashpots<dim>(
+        packing, state, loads,
+        {{1., packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s)}});
     particles::ParticleSolver<dim> solver(
         std::move(state), std::make_unique<ManyBodyForce<dim>>(packing, material, loads, fracture));
     solver.dashpots = std::move(dashpots);

@@ -58,9 +58,10 @@ struct Solver
     solver = std::make_unique<particles::ParticleSolver<dim>>(std::move(p), std::move(f));
     solver->body_force = particles::BodyForce<dim>(scene.loads);
     const auto constants = force->elastic_constants();
-    solver->dashpots = packings::absorbing_dashpots(
-        packing, solver->state, scene.loads, scene.material.density,
-        packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s),
+    solver->dashpots = packings::absorbing_dashpots<dim>(
+        packing, solver->state, scene.loads,
+        {{scene.material.density,
+          packings::isotropic_speeds<dim>(constants.wave_speed_p, constants.wave_speed_s)}},
         held ? test::ranks() : core::Ranks());
     if (held)
       solver->join({test::ranks(), held->owner});

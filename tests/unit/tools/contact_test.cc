@@ -4,6 +4,8 @@
 #include "tests/oracle/tool_contact.h"
 #include "tests/support/tool_body.h"
 
+#include <fmt/format.h>
+
 using namespace ligament;
 using namespace ligament::program;
 using namespace ligament::tests;
@@ -128,6 +130,42 @@ TEST(ToolContact, ForcesAreSlopesOfTheEnergy)
             std::vector<std::string>{R"(/tools=[{"name": "a", "shape": "roller", "radius": 5,
               "place": [0, 35.05, 0], "orientation": [0, 0.3, 0], "length": 6}])"},
         {0, 0.4, 0});
+  }
+}
+
+// The layer of the tool and the impedance of absorbing sides are those of the material that lies
+// there: a body of one inclusion moves like the same body without any.
+TEST(ToolContact, LayersAndAbsorbingSidesAreOfTheMaterialThatIsThere)
+{
+  const auto body_of = [](const std::string &materials, bool has_layer) {
+    return std::vector<std::string>{
+        "/far_field=none", materials,
+        fmt::format(R"(/loads=[{{"boundary": "bottom", "absorbing": true{}}}])",
+                    has_layer ? R"(, "absorbing_layer": 6)" : ""),
+        R"(/tools=[{"name": "plate", "shape": "plate", "size": [30, 4], "place": [0, 62],
+            "velocity": [null, -0.01]}])"};
+  };
+  const std::string hard = R"("youngs_modulus": 1, "poissons_ratio": 0.22, "density": 1)";
+  for (const bool has_layer : {false, true}) {
+    ToolBody<2> plain(body_of("/material={" + hard + "}", has_layer));
+    auto overrides = body_of(
+        R"(/material={"youngs_modulus": 0.02, "poissons_ratio": 0.1, "density": 3})", has_layer);
+    overrides.push_back("/inclusions=[{" + hard +
+                        R"(, "boxes": [{"lower": [-99, -99], "upper": [99, 99]}]}])");
+    ToolBody<2> included(overrides);
+    ASSERT_EQ(included.body.zone->state.size(), plain.body.zone->state.size());
+    EXPECT_NEAR(included.now.dt / plain.now.dt, 1, 1e-12);
+    const double end = 150; // P waves have come down through 120 spacings
+    while (plain.now.time < end)
+      plain.step();
+    while (included.now.time < end)
+      included.step();
+    const double pressed = plain.tools().read(0).force[1];
+    EXPECT_GT(pressed, 0);
+    EXPECT_NEAR(included.tools().read(0).force[1] / pressed, 1, 1e-9);
+    const double absorbed = plain.body.zone->dashpots.energy();
+    EXPECT_GT(absorbed, 0);
+    EXPECT_NEAR(included.body.zone->dashpots.energy() / absorbed, 1, 1e-9);
   }
 }
 
