@@ -76,12 +76,4 @@ std::optional<double> fit_stiffness(const std::vector<double> &displacement,
   const double misfit = std::sqrt(std::max(yy - xy * xy / xx, 0.) / n);
   return misfit <= largest_misfit * largest ? std::optional(xy / xx) : std::nullopt;
 }
-
-std::optional<double> relative_residual(const std::vector<double> &residual,
-                                        const std::vector<double> &external_work,
-                                        const std::vector<double> &kinetic)
-{
-  const double moved = std::max(largest_magnitude(external_work), largest_magnitude(kinetic));
-  return moved > 0 ? std::optional(largest_magnitude(residual) / moved) : std::nullopt;
-}
 } // namespace ligament::program

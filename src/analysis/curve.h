@@ -36,11 +36,4 @@ inline std::optional<double> fit_stiffness(const std::vector<double> &displaceme
   const auto peak = peak_index(load);
   return peak ? fit_stiffness(displacement, load, *peak) : std::nullopt;
 }
-
-/// Largest magnitude of the residual over that of the external work or the kinetic energy,
-/// whichever is larger: bodies also begin in motion, or relax by themselves. Empty where both are
-/// 0.
-std::optional<double> relative_residual(const std::vector<double> &residual,
-                                        const std::vector<double> &external_work,
-                                        const std::vector<double> &kinetic);
 } // namespace ligament::program

@@ -123,7 +123,7 @@ struct RunRecord
   std::int64_t broken_in_overlap = 0;    // of them, pads excepted
   std::optional<double> crack_length;    // m (3D: m^2)
   std::optional<double> external_work;   // J, the largest of the run
-  std::optional<double> energy_residual; // of work or kinetic energy, see relative_residual
+  std::optional<double> energy_residual; // of work or kinetic energy, see LedgerExtremes
 
   /// Toughness factor c, strength, crack half length, ... by name.
   std::map<std::string, Figure> figures;

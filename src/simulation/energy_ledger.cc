@@ -1,5 +1,8 @@
 #include "src/simulation/energy_ledger.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace ligament::program
 {
 std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
@@ -31,6 +34,24 @@ std::vector<std::pair<std::string, double>> EnergyLedger::channels() const
 std::vector<std::pair<std::string, double>> EnergyLedger::flow_channels() const
 {
   return {{"plastic_heat", force.plastic - force.hardening}, {"plastic_stored", force.hardening}};
+}
+
+void LedgerExtremes::see(const EnergyLedger &ledger)
+{
+  const auto take = [](double value, double &largest) {
+    if (std::isfinite(value))
+      largest = std::max(largest, std::abs(value));
+  };
+  take(ledger.residual(), residual);
+  take(ledger.external_work, work);
+  take(ledger.kinetic(), kinetic);
+  most_work = std::max(most_work.value_or(ledger.external_work), ledger.external_work);
+}
+
+std::optional<double> LedgerExtremes::relative_residual() const
+{
+  const double moved = std::max(work, kinetic);
+  return moved > 0 ? std::optional(residual / moved) : std::nullopt;
 }
 
 template <int dim>

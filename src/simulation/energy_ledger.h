@@ -3,6 +3,7 @@
 
 #include "src/simulation/coupled_body.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,18 @@ struct EnergyLedger
   std::vector<std::pair<std::string, double>> channels() const;
   /// The same of what flow took; only of bodies with a material that flows.
   std::vector<std::pair<std::string, double>> flow_channels() const;
+};
+
+/// The largest that the looks at a run's ledger have seen, in J.
+struct LedgerExtremes
+{
+  double residual = 0, work = 0, kinetic = 0; // magnitudes
+  std::optional<double> most_work;            // with its sign; none: nothing was seen
+
+  void see(const EnergyLedger &ledger);
+  /// Of the residual over that of the work or the kinetic energy, whichever is larger: bodies also
+  /// begin in motion, or relax by themselves. None where both are 0.
+  std::optional<double> relative_residual() const;
 };
 
 /// Valid between the forces and the kick of a step in which the far field acts. `damping` in J is

@@ -21,8 +21,9 @@ namespace
 // Fields are copied when the load has grown by this factor.
 constexpr double copied_growth = 1.02;
 
-// The load path is looked at this often, in steps of the far field, and whether faces broke that no
-// row tells of yet: a run may last far longer than its body, and its peak is read from rows.
+// The load path is looked at this often, in steps of the far field, whether faces broke that no
+// row tells of yet, and where rows are further apart the balance of energy: a run may last far
+// longer than its body.
 constexpr long break_interval = 50;
 
 // Where rows are further apart than that the load is read this often, lest its peak be missed.
@@ -84,7 +85,9 @@ template <int dim>
 double output_seconds(const Scene &scene, const CoupledBody<dim> &body, long n_steps)
 {
   const double far_steps = double(n_steps) / body.coupler->step_ratio();
-  const double readings = std::min(far_steps, scene.time.duration / history_interval_of(scene));
+  const double readings =
+      std::min(far_steps, std::max(scene.time.duration / history_interval_of(scene),
+                                   far_steps / break_interval));
   coupling::StepTime step;
   step.dt = body.dt;
   const TestMachine<dim> machine(body);
@@ -143,21 +146,36 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (rows_are_sparse(step.dt * ratio) && step.step % (ratio * load_interval) == 0 &&
       !in_static_phase_ && !curve_.has_ended())
     curve_.look(step.time, machine_.read(body, step.time), n_broken(body));
+  const bool is_between_rows = rows_are_sparse(step.dt * ratio) && !in_static_phase_ &&
+                               step.step % (ratio * break_interval) == 0;
   const bool history = in_static_phase_ || is_row_due(step.time) || breaks_between_rows(body, step);
   const bool fields = step.time >= next_fields_;
   const bool progress = step.step / ratio % 20 == 0 && body.ranks.any(progress_.is_due());
-  if (!history && !fields && !progress)
+  if (!history && !fields && !progress && !is_between_rows)
     return {};
   const auto timing = timers_.scope(section_);
-  if (history) {
-    const EnergyLedger ledger = record_history(body, step, damping);
-    if (const auto finding = find_broken_balance(ledger, most_work_, body))
-      return stop_by_guard(*finding, step);
+  if (history || is_between_rows) {
+    const EnergyLedger ledger =
+        history ? record_history(body, step, damping) : read_ledger(body, step, damping);
+    if (const auto stop = look_at_balance(ledger, body, step))
+      return stop;
   }
   if (fields)
     record_fields(body, step);
   if (progress)
     progress_.print(progress_state(body, step, read_ledger(body, step, damping)));
+  return {};
+}
+
+template <int dim>
+std::optional<Stop> Recorder<dim>::look_at_balance(const EnergyLedger &ledger,
+                                                   const CoupledBody<dim> &body,
+                                                   const coupling::StepTime &step)
+{
+  extremes_.see(ledger);
+  if (const auto finding =
+          find_broken_balance(ledger, std::max(0., extremes_.most_work.value_or(0)), body))
+    return stop_by_guard(*finding, step);
   return {};
 }
 
@@ -207,10 +225,6 @@ EnergyLedger Recorder<dim>::record_history(const CoupledBody<dim> &body,
   const EnergyLedger ledger = read_ledger(body, step, damping);
   const HistoryRow row = {r, ledger, n_broken(body), crack_length(body), in_static_phase_};
   curve_.add(step.time, r, n_broken(body));
-  residual_.push_back(ledger.residual());
-  work_.push_back(ledger.external_work);
-  kinetic_.push_back(ledger.kinetic());
-  most_work_ = std::max(most_work_, ledger.external_work);
   quasi_static_ = ledger.kinetic() < 0.01 * ledger.potential();
   if (quasi_static_ && keeps_copies(body))
     keep_copies(body, step.time, r.load);
@@ -462,7 +476,7 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
       report(finding->text, step);
   attempt([&] {
     if (can_look_)
-      record_history(body, step, damping, true);
+      extremes_.see(record_history(body, step, damping, true));
     history_.flush();
   });
   progress_.finish(
@@ -496,9 +510,8 @@ void Recorder<dim>::finish(const CoupledBody<dim> &body, const coupling::StepTim
   record.broken_bonds = n_broken(body);
   record.broken_in_overlap = guard_.n_broken();
   record.crack_length = crack_length(body);
-  if (!work_.empty())
-    record.external_work = *std::max_element(work_.begin(), work_.end());
-  record.energy_residual = relative_residual(residual_, work_, kinetic_);
+  record.external_work = extremes_.most_work;
+  record.energy_residual = extremes_.relative_residual();
   add_warnings(body, record);
   attempt([&] { writer_.wait(); });
   if (body.ranks.any(!failure_.empty()) && failure_.empty())

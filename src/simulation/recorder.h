@@ -98,6 +98,8 @@ private:
   template <typename Write>
   void attempt(Write &&write);
   std::optional<Stop> look_at_flow(const CoupledBody<dim> &body, const coupling::StepTime &step);
+  std::optional<Stop> look_at_balance(const EnergyLedger &ledger, const CoupledBody<dim> &body,
+                                      const coupling::StepTime &step);
   /// A row; returns its energies. The last one is not written twice.
   EnergyLedger record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping, bool is_last = false);
@@ -147,8 +149,7 @@ private:
   std::string failure_;
 
   LoadCurve curve_;
-  std::vector<double> residual_, work_, kinetic_; // J, of the rows of the history
-  double most_work_ = 0;                          // J, of these
+  LedgerExtremes extremes_; // of the rows of the history and the looks between sparse ones
   SnapshotKeeper<dim> snapshots_;
   bool quasi_static_ = true;             // at the last row
   double fields_copied_at_ = 0;          // N, load of the copies below

@@ -49,11 +49,11 @@ void Recorder<dim>::save(core::State &state) const
   path_.save(state);
   curve_.save(state);
   snapshots_.save(state);
-  core::Table rows = numbered_rows(work_.size()), outputs = numbered_rows(fields_.times().size());
-  rows.add("residual", residual_);
-  rows.add("work", work_);
-  rows.add("kinetic", kinetic_);
-  state.emplace("history", std::move(rows));
+  core::save_value(state, "recorder", "largest_residual", extremes_.residual);
+  core::save_value(state, "recorder", "largest_work", extremes_.work);
+  core::save_value(state, "recorder", "largest_kinetic", extremes_.kinetic);
+  save_optional(state, "recorder", "most_work", extremes_.most_work);
+  core::Table outputs = numbered_rows(fields_.times().size());
   outputs.add("time", fields_.times());
   state.emplace("field_outputs", std::move(outputs));
   save_optional(state, "recorder", "peak",
@@ -99,11 +99,10 @@ void Recorder<dim>::load(const core::State &state, const std::map<std::string, c
   guard_.load(state);
   path_.load(state);
   curve_.load(state);
-  residual_ = core::table(state, "history").reals("residual");
-  work_ = core::table(state, "history").reals("work");
-  kinetic_ = core::table(state, "history").reals("kinetic");
-  for (const double work : work_)
-    most_work_ = std::max(most_work_, work);
+  extremes_.residual = core::load_real(state, "recorder", "largest_residual");
+  extremes_.work = core::load_real(state, "recorder", "largest_work");
+  extremes_.kinetic = core::load_real(state, "recorder", "largest_kinetic");
+  extremes_.most_work = load_optional(state, "recorder", "most_work");
   load_copies(state, kept, body);
   const std::vector<double> written = core::table(state, "field_outputs").reals("time");
   if (!writes_)

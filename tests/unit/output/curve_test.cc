@@ -97,12 +97,4 @@ TEST(Curve, NothingToFitIsEmpty)
   EXPECT_FALSE(fit_stiffness({1, 1, 1, 1, 1}, {0.2, 0.3, 0.4, 0.5, 1})); // no spread
   EXPECT_EQ(*peak_index({NAN, 1, 3, 2}), 2u);
 }
-
-TEST(Curve, ResidualIsRelativeToTheLargestWork)
-{
-  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 5, 4}, {0, 1, 1}), 2e-3 / 5);
-  EXPECT_DOUBLE_EQ(*relative_residual({0, -2e-3, 1e-3}, {0, 0, 1e-4}, {2, 1, 0}),
-                   1e-3); // in motion
-  EXPECT_FALSE(relative_residual({1}, {0}, {0}));
-}
 } // namespace

@@ -5,6 +5,7 @@
 #include "src/simulation/energy_ledger.h"
 #include "tests/support/small_plate.h"
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -292,5 +293,26 @@ TEST(GhostForceCorrection, LeavesStrengthsAndWeightsAlone)
   ASSERT_LT(falls.back(), free.back());
   for (std::size_t i = 0; i < free.size(); ++i)
     ASSERT_NEAR((falls[i] - free[i]) / (falls.back() - free.back()), 1, 1e-9) << i;
+}
+TEST(LedgerExtremes, ResidualIsRelativeToTheLargestWorkOrMotion)
+{
+  const auto seen = [](const std::vector<std::array<double, 3>> &looks) {
+    LedgerExtremes extremes;
+    for (const auto &[residual, work, kinetic] : looks) {
+      EnergyLedger ledger;
+      ledger.external_work = work;
+      ledger.body.kinetic_discrete = kinetic;
+      ledger.damping = residual + work - kinetic;
+      extremes.see(ledger);
+    }
+    return extremes;
+  };
+  EXPECT_FALSE(LedgerExtremes().most_work);
+  EXPECT_FALSE(seen({{1, 0, 0}}).relative_residual());
+  const auto pulled = seen({{0, 0, 0}, {-2e-3, 5, 1}, {1e-3, 4, 1}});
+  EXPECT_NEAR(*pulled.relative_residual(), 2e-3 / 5, 1e-15);
+  EXPECT_EQ(*pulled.most_work, 5);
+  EXPECT_NEAR(*seen({{0, 0, 2}, {-2e-3, 0, 1}, {1e-3, 1e-4, 0}}).relative_residual(), 1e-3, 1e-15);
+  EXPECT_EQ(*seen({{0, -3, 0}, {0, -1, 0}}).most_work, -1);
 }
 } // namespace
