@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <climits>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <numeric>
 
@@ -140,8 +141,13 @@ private:
 };
 } // namespace
 
+// Open MPI's ranks wait by asking again and again. One that doesn't let others run meanwhile keeps
+// the rank that it waits for off its core wherever something else wants a core, too, and each
+// message takes a time slice of the system. Letting them run costs nothing that could be measured
+// where cores are idle (docs/scaling.md), and nobody knows at the start what else will run.
 MpiJob::MpiJob()
 {
+  ::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0); // what the user has set stays
   int threads = 0;
   require<EnvironmentError>(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads) ==
                                 MPI_SUCCESS,

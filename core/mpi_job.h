@@ -9,7 +9,8 @@ namespace ligament::core
 class MpiJob
 {
 public:
-  /// Throws core::EnvironmentError where MPI doesn't start.
+  /// Ranks that wait for a message let other processes run meanwhile. Throws core::EnvironmentError
+  /// where MPI doesn't start.
   MpiJob();
   ~MpiJob();
   MpiJob(const MpiJob &) = delete;

@@ -3,7 +3,10 @@
 #include "core/check.h"
 #include "core/interruption.h"
 #include "core/mpi_job.h"
+#include "core/version.h"
+#include "particles/instruction_set.h"
 #include "src/launcher/program.h"
+#include "src/launcher/solver_start.h"
 #include "src/output/open_run.h"
 
 #include <fmt/format.h>
@@ -11,7 +14,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -24,6 +29,41 @@ namespace
 // What all ranks find wrong the first one says, and ends the others; one that finds something alone
 // waits so long for that before it speaks.
 constexpr auto patience = std::chrono::seconds(3);
+
+/// Where what has started the processes isn't of the MPI that they use, each finds itself alone,
+/// and would compute the whole body into the same folder.
+void require_all(const CommandLine &line, const core::Ranks &ranks)
+{
+  core::require<core::EnvironmentError>(
+      launched_ranks() == ranks.size(),
+      fmt::format(
+          "started as one of {} ranks, of which Open MPI finds {}: what has started them is "
+          "not of Open MPI; use its mpirun or `srun --mpi=pmix`, or, where one process is "
+          "meant, unset {}",
+          launched_ranks(), ranks.size(), launch_variables()));
+  core::require(
+      line.ranks == 1 || line.ranks == ranks.size(),
+      fmt::format("-n {}, but mpirun or srun has started {} ranks, which is their number; "
+                  "leave -n out, or mpirun and srun",
+                  line.ranks, ranks.size()));
+}
+
+/// Other builds and other vectors give other last digits: what ranks compute of the same particles
+/// would come apart.
+void require_likeness(const core::Ranks &ranks)
+{
+  const std::string own = fmt::format("version {}, commit {}, {}", core::version(), core::commit(),
+                                      particles::instruction_set());
+  const auto all = ranks.gather(std::vector<char>(own.begin(), own.end()));
+  for (int r = 1; r < ranks.size(); ++r)
+    core::require<core::EnvironmentError>(
+        all[r] == all[0],
+        fmt::format("ranks are unlike: rank 0 is {}, rank {} is {}: their last digits differ, and "
+                    "results would depend on who computes what; start one build on nodes with one "
+                    "kind of processor",
+                    std::string(all[0].begin(), all[0].end()), r,
+                    std::string(all[r].begin(), all[r].end())));
+}
 } // namespace
 
 RankProcess::RankProcess(core::Ranks ranks) : ranks_(std::move(ranks))
@@ -73,7 +113,12 @@ int run_rank(int argc, char **argv,
   RankProcess process(job.ranks());
   const core::Ranks &ranks = process.ranks();
   const int code = run_program(
-      argc, argv, [&](const CommandLine &line, int, char **) { return dispatch(line, process); },
+      argc, argv,
+      [&](const CommandLine &line, int, char **) {
+        require_all(line, ranks);
+        require_likeness(ranks);
+        return dispatch(line, process);
+      },
       [&](const std::string &message, int exit_code) {
         if (!ranks.is_one())
           process.end_all(message, exit_code);

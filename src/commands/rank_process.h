@@ -39,8 +39,9 @@ private:
 /// where another rank doesn't.
 void require_one_mind(bool accepts, const core::Ranks &ranks);
 
-/// The main function of a rank, which all have: calls `dispatch`. What that throws on a rank ends
-/// all of them, with its message and exit code.
+/// The main function of a rank, which all have: calls `dispatch` where all ranks are there that
+/// were started, of one build and on one kind of processor. What is thrown on a rank ends all of
+/// them, with its message and exit code.
 int run_rank(int argc, char **argv,
              const std::function<int(const CommandLine &, RankProcess &)> &dispatch);
 } // namespace ligament::program

@@ -40,6 +40,23 @@ Checkpoint newest_checkpoint(const RunFolder &folder)
   return std::move(*found.checkpoint);
 }
 
+/// What one rank has lost the others do without: they keep and seek it together.
+void share_losses(Checkpoint &checkpoint, const core::Ranks &ranks)
+{
+  if (ranks.any(!checkpoint.reference_lost.empty()))
+    checkpoint.reference.clear();
+  std::vector<std::int64_t> is_lost;
+  for (const auto &[name, sum] : checkpoint.manifest.kept)
+    is_lost.push_back(checkpoint.kept.count(name) == 0);
+  is_lost = ranks.max(is_lost);
+  std::size_t k = 0;
+  for (const auto &[name, sum] : checkpoint.manifest.kept)
+    if (is_lost[k++] && checkpoint.kept.erase(name) > 0)
+      core::tell(stderr, fmt::format("warning: a picture or a snapshot of the run so far is lost: "
+                                     "another rank cannot read the kept state {}\n",
+                                     name));
+}
+
 /// The run's own scene unless another one is named. Particles that the run read from a file, or
 /// packed itself, lie in its folder.
 ReadResult scene_of(const CommandLine &line, const RunFolder &folder, const Checkpoint &checkpoint)
@@ -184,8 +201,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   Checkpoint checkpoint = newest_checkpoint(folder);
   // Ranks read it for themselves, maybe not from the same machine.
   ranks.agree_on("the newest checkpoint that can be read", double(checkpoint.manifest.number));
-  if (ranks.any(!checkpoint.reference_lost.empty()))
-    checkpoint.reference.clear();
+  share_losses(checkpoint, ranks);
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
   ReadResult input = scene_of(line, folder, checkpoint);

@@ -39,7 +39,7 @@ int compute(const CommandLine &line, int argc, char **argv)
     if (!refused.empty())
       return refuse(line, line.scene, refused, result.warnings);
     if (line.command == "run")
-      return run_on_ranks(line.ranks, argc, argv);
+      return run_on_ranks(line, argc, argv);
   }
   if (result.scene) {
     if (!core::is_named_file(line.scene))
@@ -128,7 +128,7 @@ int dispatch(const CommandLine &line, int argc, char **argv)
   if (line.command == "run" || line.command == "check")
     return compute(line, argc, argv);
   if (line.command == "resume" && line.ranks > 1 && launched_ranks() == 1)
-    return run_on_ranks(line.ranks, argc, argv);
+    return run_on_ranks(line, argc, argv);
   if (line.command == "resume")
     start_solver(argc, argv);
   if (line.command == "verify")

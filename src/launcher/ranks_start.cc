@@ -1,6 +1,8 @@
 #include "src/launcher/ranks_start.h"
 
 #include "core/check.h"
+#include "core/tell.h"
+#include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
 
 #include <fmt/format.h>
@@ -11,7 +13,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -23,13 +24,11 @@ namespace ligament::program
 {
 namespace
 {
-/// mpirun's command line. Where there are fewer cores than ranks, those that wait make room.
+/// mpirun's command line.
 std::vector<std::string> mpirun_words(int ranks, int argc, char *const *argv)
 {
   std::vector<std::string> words = {"mpirun",          "--quiet",   "-n",  std::to_string(ranks),
                                     "--oversubscribe", "--bind-to", "none"};
-  if (ranks > int(std::thread::hardware_concurrency()))
-    words.insert(words.end(), {"--mca", "mpi_yield_when_idle", "1"});
   words.push_back(solver_path());
   words.insert(words.end(), argv + 1, argv + argc);
   return words;
@@ -58,6 +57,9 @@ sigset_t awaited_signals()
   if (::getppid() != parent)
     ::_exit(int(SIGTERM));
   pthread_sigmask(SIG_SETMASK, &mask, nullptr);
+  // mpirun would read what is meant for the next command of a script.
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ::dup2(nothing, STDIN_FILENO);
   if (::geteuid() == 0) {
     ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
@@ -85,11 +87,42 @@ int wait_for(pid_t child, const sigset_t &signals, int &status)
   }
   return asked_by;
 }
+
+/// Codes with which ranks end that have said why (docs/manual/exit_codes.md): any of them may have
+/// been asked to end by a signal.
+bool is_told(int code)
+{
+  constexpr int out_of_time = 124;
+  return code == int(ExitCode::done) || code == int(ExitCode::wrong_input) ||
+         code == int(ExitCode::stopped_by_guard) || code == int(ExitCode::bad_environment) ||
+         code == out_of_time || code == 128 + SIGHUP || code == 128 + SIGINT ||
+         code == 128 + SIGUSR1 || code == 128 + SIGTERM;
+}
+
+/// mpirun, which is quiet, keeps most of what it knows to itself.
+std::string why_killed(const CommandLine &line, int signal, bool is_mpirun)
+{
+  return fmt::format(
+      "{} was ended by signal {} ({}), and the ranks with it{}; what was computed up to "
+      "the newest checkpoint is on the disk: `ligament resume {}` goes on from it",
+      is_mpirun ? "mpirun" : "a rank", signal, ::strsignal(signal),
+      signal == SIGKILL ? ": the system does that where memory is short, and "
+                          "`ligament check -n` predicts what each rank needs"
+                        : "",
+      line.command == "resume" ? line.run
+      : line.output.empty()    ? "FOLDER"
+                               : line.output);
+}
 } // namespace
 
-int run_on_ranks(int ranks, int argc, char *const *argv)
+int run_on_ranks(const CommandLine &line, int argc, char *const *argv)
 {
-  const auto words = mpirun_words(ranks, argc, argv);
+  const char *outer = "OMPI_COMM_WORLD_SIZE"; // mpirun doesn't start within another one
+  core::require(std::getenv(outer) == nullptr,
+                fmt::format("-n {} within mpirun ({} is set): mpirun does not start another one; "
+                            "leave -n out and give mpirun the number, or start without mpirun",
+                            line.ranks, outer));
+  const auto words = mpirun_words(line.ranks, argc, argv);
   ::signal(SIGCHLD, SIG_DFL); // where it is ignored, nobody says when a child ends
   const sigset_t signals = awaited_signals();
   sigset_t before;
@@ -113,6 +146,20 @@ int run_on_ranks(int ranks, int argc, char *const *argv)
                               "openmpi-bin), or leave -n out",
                               std::strerror(error)));
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return asked_by != 0 && code > 128 ? 128 + asked_by : code;
+  if (asked_by != 0)
+    return code > 128 ? 128 + asked_by : code;
+  if (is_told(code))
+    return code;
+  core::require<core::EnvironmentError>(
+      code > 128,
+      fmt::format("mpirun ended with code {}, with which no rank ends: it could not start them, or "
+                  "could not pass messages between them; `mpirun -n {} true` says more: see that "
+                  "TMPDIR, or /tmp, can be written and has room; or leave -n out",
+                  code, line.ranks));
+  const std::string why = why_killed(line, code - 128, WIFSIGNALED(status));
+  core::tell(stderr, fmt::format("error: {}\n", why));
+  if (line.json)
+    fmt::print("{}\n", error_json("failed", why));
+  return code;
 }
 } // namespace ligament::program

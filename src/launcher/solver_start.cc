@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -29,6 +30,13 @@ std::string path_of(const std::string &name)
   return (self.parent_path() / name).string();
 }
 
+std::string cannot_start(const std::string &name, const std::string &path, int error)
+{
+  return fmt::format(
+      "cannot start {}: {}; build it (scripts/build.sh {}), or install it into the same folder",
+      path, std::strerror(error), name);
+}
+
 [[noreturn]] void start(const std::string &name, int argc, char *const *argv)
 {
   std::string path = path_of(name);
@@ -36,15 +44,19 @@ std::string path_of(const std::string &name)
   arguments[0] = path.data();
   arguments.push_back(nullptr);
   execv(path.c_str(), arguments.data());
-  throw core::EnvironmentError(fmt::format(
-      "cannot start {}: {}; build it (scripts/build.sh {}), or install it into the same folder", path,
-      std::strerror(errno), name));
+  throw core::EnvironmentError(cannot_start(name, path, errno));
 }
+
+constexpr std::array<const char *, 3> counts_of_ranks = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
+                                                         "SLURM_STEP_NUM_TASKS"};
 } // namespace
 
 std::string solver_path()
 {
-  return path_of("ligament-solver");
+  const std::string name = "ligament-solver", path = path_of(name);
+  core::require<core::EnvironmentError>(::access(path.c_str(), X_OK) == 0,
+                                        cannot_start(name, path, errno));
+  return path;
 }
 
 void start_solver(int argc, char *const *argv)
@@ -75,10 +87,15 @@ void refill_standard_input(const std::string &text)
 
 int launched_ranks()
 {
-  for (const char *name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
+  for (const char *name : counts_of_ranks)
     if (const char *value = std::getenv(name))
       return std::max(1, std::atoi(value));
   return 1;
+}
+
+std::string launch_variables()
+{
+  return fmt::format("{}", fmt::join(counts_of_ranks, ", "));
 }
 
 void require_one_rank(const std::string &command)

@@ -5,7 +5,8 @@
 
 namespace ligament::program
 {
-/// Path of the solver, beside this program. Throws core::EnvironmentError.
+/// Path of the solver, beside this program. Throws core::EnvironmentError where it cannot be
+/// started.
 std::string solver_path();
 
 /// Replaces this process by the solver with the same arguments; returns only by an exception.
@@ -19,8 +20,11 @@ std::string solver_path();
 /// came through a pipe can be read only once. Throws core::EnvironmentError.
 void refill_standard_input(const std::string &text);
 
-/// How many processes mpirun or srun has started beside this one; 1 without them.
+/// How many processes mpirun or srun has started beside this one, by the variables that they set; 1
+/// without them.
 int launched_ranks();
+/// Their names, for messages.
+std::string launch_variables();
 
 /// Throws core::InputError where mpirun or srun has started several for a command that needs one.
 void require_one_rank(const std::string &command);

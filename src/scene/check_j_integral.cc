@@ -93,6 +93,68 @@ std::optional<Point> place_outside(const Scene &scene, const GaugeParameters &g,
   return std::nullopt;
 }
 
+bool has_other_constants(const MaterialParameters &a, const MaterialParameters &b)
+{
+  return a.youngs_modulus != b.youngs_modulus || a.poissons_ratio != b.poissons_ratio;
+}
+
+/// The inclusions as the rectangles see them: in their plane, whatever the third coordinate.
+class OtherMaterials
+{
+public:
+  OtherMaterials(const Scene &scene, int along, int across)
+      : scene_(scene), along_(along), across_(across)
+  {
+  }
+
+  /// An inclusion; without a key: none.
+  struct Found
+  {
+    std::string key;
+    bool differs = false; // its elastic constants, from those of /material
+  };
+  /// That of a place: later ones lie over earlier ones.
+  Found at(const Point &x) const
+  {
+    for (std::size_t k = scene_.inclusions.size(); k-- > 0;)
+      if (meets(scene_.inclusions[k], x, x))
+        return found(k);
+    return {};
+  }
+  /// One that differs and has a part of the rectangle.
+  Found inside(const Point &lower, const Point &upper) const
+  {
+    for (std::size_t k = 0; k < scene_.inclusions.size(); ++k)
+      if (found(k).differs && meets(scene_.inclusions[k], lower, upper))
+        return found(k);
+    return {};
+  }
+
+private:
+  Found found(std::size_t k) const
+  {
+    return {fmt::format("/inclusions/{}", k),
+            has_other_constants(scene_.inclusions[k].material, scene_.material)};
+  }
+  bool meets(const Inclusion &inclusion, const Point &lower, const Point &upper) const
+  {
+    for (const Hole &ball : inclusion.balls) {
+      double squared = 0;
+      for (const int c : {along_, across_})
+        squared += std::pow(std::clamp(ball.centre[c], lower[c], upper[c]) - ball.centre[c], 2);
+      if (squared < ball.radius * ball.radius)
+        return true;
+    }
+    return std::any_of(inclusion.boxes.begin(), inclusion.boxes.end(), [&](const Notch &box) {
+      return box.lower[along_] < upper[along_] && box.upper[along_] > lower[along_] &&
+             box.lower[across_] < upper[across_] && box.upper[across_] > lower[across_];
+    });
+  }
+
+  const Scene &scene_;
+  int along_, across_;
+};
+
 std::vector<Cut> openings_of(const Specimen &s)
 {
   std::vector<Cut> openings;
@@ -227,6 +289,25 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
                        "J is known where the flanks are free: the load's part would have to be "
                        "added",
                        "remove the gauge, or load another side");
+    if (!f.sound({"/inclusions", "/material"}))
+      return;
+    const OtherMaterials others(scene, along, across);
+    Point ahead{};
+    ahead[along] = front + sign * scene.zone.spacing / 2;
+    ahead[across] = (low + high) / 2;
+    if (const auto at_tip = others.at(ahead); at_tip.differs)
+      return f.error(
+          key,
+          fmt::format("the tip of {} lies in {}, and {} takes it for one in /material", cut.key,
+                      at_tip.key, key),
+          "what its rectangles see from outside is the tip and the surface of the inclusion "
+          "together, from which E' of neither material makes the stress intensity of the tip",
+          "let /material be what lies within the rectangles, and make that around them an "
+          "inclusion, or remove the gauge");
+    if (const auto other = others.inside(g.inner_lower, g.inner_upper); !other.key.empty())
+      f.warning(key, fmt::format("a part of {} lies inside the rectangles of {}", other.key, key),
+                "they see its surface together with the tip: J is no longer that of the tip alone",
+                "make the rectangles smaller, or take J for that of both");
     has_tip = true;
   }
   if (!has_tip)

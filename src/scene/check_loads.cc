@@ -168,23 +168,6 @@ void check_against_overlap(const Scene &scene, const LoadParameters &load, const
       return;
     }
 }
-
-void check_jumping_side(const Scene &scene, const LoadParameters &load, const std::string &key,
-                        Findings &f)
-{
-  const bool is_moved = std::any_of(load.displacement.begin(), load.displacement.end(),
-                                    [](const auto &v) { return v.value_or(0) != 0; });
-  if (is_moved && load.ramp == 0 && !load.history.is_given() && scene.coupling.step_ratio > 1 &&
-      !scene.time.has_phases() && scene.zone.extent == DiscreteZone::Extent::box &&
-      f.sound({"/coupling/step_ratio", "/time"}))
-    f.warning(key + "/displacement",
-              fmt::format("\"displacement\" in {} is there at once, beside a \"step_ratio\" of {} "
-                          "in /coupling",
-                          key, scene.coupling.step_ratio),
-              "how a jump swings the overlap between two steps of the mesh is not in the energy "
-              "ledger: its residual may be nearly as large as the work",
-              "give it a \"ramp\", or a step ratio of 1");
-}
 } // namespace
 
 void check_loads(const Scene &scene, const Layout *layout, Findings &f)
@@ -214,7 +197,6 @@ void check_loads(const Scene &scene, const Layout *layout, Findings &f)
               "one load is of one kind", "write two loads with different components");
     check_absorbing(scene, k, key, f);
     check_history(scene, load, key, f);
-    check_jumping_side(scene, load, key, f);
     if (load.servo)
       check_servo(scene, k, f);
     check_part(scene, load, key, f);

@@ -1,4 +1,5 @@
 // Values against each other: speeds against that of sound, loads against stiffness, how many steps.
+#include "core/time_function.h"
 #include "src/scene/check_scene.h"
 
 #include <fmt/format.h>
@@ -25,12 +26,36 @@ double largest(const PartialPoint &value)
   return largest;
 }
 
-/// A side that moves at this share of the wave speed strains what is behind it as much.
-void check_velocity(const LoadParameters &load, const std::string &key, double speed, Findings &f)
+/// By what the course of a load multiplies it at most, up to a time in s: the sign does not count.
+double largest_factor(const LoadParameters &load, double end)
 {
-  const double share = largest(load.velocity) / speed;
-  const std::string message =
-      fmt::format("\"velocity\" in {} is {:.3g} m/s", key, largest(load.velocity));
+  const History &h = load.history;
+  if (h.cycles)
+    return std::abs(h.cycles->mean) + std::abs(h.cycles->amplitude);
+  if (h.table.empty()) // ramps and pulses rise to 1
+    return 1;
+  const core::TimeTable table(h.table);
+  double factor = std::max(std::abs(table.value(0)), std::abs(table.value(end)));
+  for (const auto &[time, value] : h.table)
+    if (time <= end)
+      factor = std::max(factor, std::abs(value));
+  return factor;
+}
+
+/// Value, unit and name of a load as messages say them; its course in time may raise or lower it.
+std::string value_text(const std::string &name, const std::string &key, double value,
+                       const char *unit, double factor)
+{
+  return fmt::format("\"{}\" in {} is {:.3g} {}{}", name, key, value * factor, unit,
+                     factor == 1 ? "" : " at the peak of its history");
+}
+
+/// A side that moves at this share of the wave speed strains what is behind it as much.
+void check_velocity(const LoadParameters &load, const std::string &key, double speed, double factor,
+                    Findings &f)
+{
+  const double share = factor * largest(load.velocity) / speed;
+  const std::string message = value_text("velocity", key, largest(load.velocity), "m/s", factor);
   const std::string reason =
       fmt::format("P waves of this material travel at {:.4g} m/s: the front strains it by {:.2g}",
                   speed, share);
@@ -42,12 +67,13 @@ void check_velocity(const LoadParameters &load, const std::string &key, double s
               "give a slower one, or check its unit and those of /material");
 }
 
-void check_traction(const LoadParameters &load, const std::string &key, double modulus, Findings &f)
+void check_traction(const LoadParameters &load, const std::string &key, double modulus,
+                    double factor, Findings &f)
 {
   const double stress = std::max(largest(load.traction), std::abs(load.pressure.value_or(0)));
   const std::string name = load.pressure ? "pressure" : "traction";
-  const double share = stress / modulus;
-  const std::string message = fmt::format("\"{}\" in {} is {:.3g} Pa", name, key, stress);
+  const double share = factor * stress / modulus;
+  const std::string message = value_text(name, key, stress, "Pa", factor);
   const std::string reason = fmt::format("\"youngs_modulus\" in /material is {:.3g} Pa", modulus);
   if (share > 1)
     f.error(key + "/" + name, message + ", more than Young's modulus", reason,
@@ -58,14 +84,14 @@ void check_traction(const LoadParameters &load, const std::string &key, double m
 }
 
 void check_displacement(const Scene &scene, const LoadParameters &load, const std::string &key,
-                        Findings &f)
+                        double factor, Findings &f)
 {
   const auto &size = scene.specimen.size;
   const double extent = *std::max_element(size.begin(), size.end());
-  if (largest(load.displacement) > extent / 2)
+  if (factor * largest(load.displacement) > extent / 2)
     f.warning(key + "/displacement",
-              fmt::format("\"displacement\" in {} is {:.3g} m, more than half of the specimen", key,
-                          largest(load.displacement)),
+              value_text("displacement", key, largest(load.displacement), "m", factor) +
+                  ", more than half of the specimen",
               fmt::format("the specimen is {:.3g} m long", extent),
               "give a smaller one, or check both units");
 }
@@ -77,12 +103,14 @@ void check_load_scales(const Scene &scene, Findings &f)
     if (!f.sound({key}))
       continue;
     const LoadParameters &load = scene.loads[k];
+    const bool has_end = f.sound_and_given({"/time/duration"});
+    const double factor = largest_factor(load, has_end ? scene.time.duration : infinity);
     if (f.sound({"/material", "/atoms"}) && scene.material.youngs_modulus > 0) {
-      check_velocity(load, key, wave_speed(scene.material), f);
-      check_traction(load, key, scene.material.youngs_modulus, f);
+      check_velocity(load, key, wave_speed(scene.material), factor, f);
+      check_traction(load, key, scene.material.youngs_modulus, factor, f);
     }
     if (f.sound({"/specimen/size"}))
-      check_displacement(scene, load, key, f);
+      check_displacement(scene, load, key, factor, f);
   }
 }
 
@@ -111,6 +139,69 @@ double typical_step(const Scene &scene)
                         : scene.far_field ? scene.far_field->cell_size
                                           : 0;
   return length / wave_speed(scene.material);
+}
+
+/// The least time in s in which the course of a load changes by more than a tenth of its largest
+/// value, up to a time in s; 0: it is there at once.
+double shortest_change(const LoadParameters &load, double end)
+{
+  const History &h = load.history;
+  if (h.cycles) {
+    const double swing = h.cycles->amplitude != 0 ? h.cycles->period / 4 : infinity;
+    return h.cycles->mean != 0 ? std::min(load.ramp, swing) : swing;
+  }
+  if (h.pulse) // a wavelet goes from its trough to its peak in an eighth of it
+    return h.pulse->duration / (h.pulse->shape == PulseShape::ricker ? 8 : 2);
+  if (h.table.empty())
+    return load.ramp;
+  const double small = 0.1 * largest_factor(load, end);
+  double shortest = std::abs(h.table.front()[1]) > small ? 0 : infinity;
+  for (std::size_t k = 1; k < h.table.size(); ++k)
+    if (h.table[k - 1][0] < end && std::abs(h.table[k][1] - h.table[k - 1][1]) > small)
+      shortest = std::min(shortest, h.table[k][0] - h.table[k - 1][0]);
+  return shortest;
+}
+
+/// Sides that jump, beside a mesh that takes larger steps than the particles.
+void check_jumping_side(const Scene &scene, const LoadParameters &load, const std::string &key,
+                        Findings &f)
+{
+  if (largest(load.displacement) == 0 || scene.coupling.step_ratio <= 1 ||
+      scene.time.has_phases() || scene.zone.extent != DiscreteZone::Extent::box ||
+      !f.sound({"/coupling/step_ratio", "/time"}))
+    return;
+  const bool has_step = f.sound({"/material", "/atoms", "/discrete_zone"});
+  const double step = has_step ? scene.time.step.value_or(typical_step(scene)) : 0;
+  const double far_step = std::isfinite(step) ? scene.coupling.step_ratio * step : 0;
+  const double change = shortest_change(load, scene.time.duration);
+  if (change > 0 && !(change < far_step))
+    return;
+  const std::string reason =
+      "how a jump swings the overlap between two steps of the mesh is not in the energy "
+      "ledger: its residual may be nearly as large as the work";
+  const std::string beside =
+      fmt::format("beside a \"step_ratio\" of {} in /coupling", scene.coupling.step_ratio);
+  const bool has_history = load.history.is_given();
+  if (change == 0)
+    f.warning(has_history ? key + "/history" : key + "/displacement",
+              fmt::format("\"displacement\" in {} is there at once{}, {}", key,
+                          has_history ? " by its history" : "", beside),
+              reason,
+              load.history.cycles || !has_history
+                  ? "give it a \"ramp\", or a step ratio of 1"
+                  : "let the history begin at 0 and rise from there, or give a step ratio of 1");
+  else
+    f.warning(has_history ? key + "/history" : key + "/ramp",
+              fmt::format("\"displacement\" in {} jumps within {:.2g} s, {}", key, change, beside),
+              fmt::format("a step of the mesh takes about {:.2g} s, and {}", far_step, reason),
+              "let it change over some steps of the mesh, or give a step ratio of 1");
+}
+
+void check_jumping_sides(const Scene &scene, Findings &f)
+{
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    if (const auto key = fmt::format("/loads/{}", k); f.sound({key}) && !scene.loads[k].periodic)
+      check_jumping_side(scene, scene.loads[k], key, f);
 }
 
 void check_duration(const Scene &scene, Findings &f)
@@ -202,6 +293,7 @@ void check_output(const Scene &scene, Findings &f)
 void check_scales(const Scene &scene, Findings &f)
 {
   check_load_scales(scene, f);
+  check_jumping_sides(scene, f);
   check_strength(scene, f);
   check_duration(scene, f);
   check_intervals(scene, f);

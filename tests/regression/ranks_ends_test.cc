@@ -103,7 +103,10 @@ TEST_F(RanksEnds, AKilledRankEndsAll)
   ASSERT_EQ(solvers.size(), 3u);
   const auto killed_at = std::chrono::steady_clock::now();
   kill(solvers.back(), SIGKILL);
-  EXPECT_NE(process.wait().code, 0);
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.code, 128 + SIGKILL);
+  for (const char *part : {"a rank was ended by signal 9", "`ligament resume out` goes on"})
+    EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
   EXPECT_LT(std::chrono::steady_clock::now() - killed_at, std::chrono::seconds(10)); // documented
   EXPECT_EQ(solvers_of(name).size(), 0u);
 }
@@ -246,6 +249,129 @@ TEST_F(RanksEnds, ASceneOnStandardInputIsRefused)
     EXPECT_NE(outcome.errors.find("reach the first rank alone"), std::string::npos)
         << outcome.errors;
   }
+}
+
+/// A small body that is soon computed.
+std::string soon_done()
+{
+  Json scene = scene_of(2, "hexagonal", {20, 20});
+  pull(scene, 1, 1, 4e-4);
+  return written(scene, "scene.json");
+}
+
+// It belongs to the next command of a script.
+TEST_F(RanksEnds, StandardInputIsLeftAlone)
+{
+  soon_done();
+  std::ofstream("lines") << "one\ntwo\n";
+  const Outcome outcome =
+      run_shell("(" + program + " run scene.json -n 2 -o out && cat > rest) < lines");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_EQ(file_text("rest"), "one\ntwo\n");
+}
+
+// mpirun itself says nothing then.
+TEST_F(RanksEnds, AnMpirunThatCannotStartRanksIsAMatterOfTheEnvironment)
+{
+  soon_done();
+  const Outcome outcome =
+      run_shell("TMPDIR=/proc exec " + program + " run scene.json -n 2 -o out --json");
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_NE(outcome.errors.find("TMPDIR, or /tmp, can be written"), std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(outcome.json()["status"], "failed");
+}
+
+// One number of ranks counts, and all of them compute together.
+TEST_F(RanksEnds, RanksThatAreNotWhatWasAskedForAreRefused)
+{
+  soon_done();
+  ASSERT_EQ(run_ligament("run scene.json -o done").code, 0);
+  const std::string start = "exec timeout -k 5 60 mpirun -q --oversubscribe -n ",
+                    run = program + " run scene.json -o out";
+  struct Case
+  {
+    std::string line;
+    int code;
+    std::string error;
+  };
+  for (const Case &c :
+       {Case{start + "1 " + run + " -n 2", 2, "does not start another one"},
+        Case{start + "1 " + program + " resume done -n 2", 2, "does not start another one"},
+        Case{start + "2 " + run + " -n 3", 2, "has started 2 ranks"},
+        Case{"SLURM_STEP_NUM_TASKS=4 exec " + run, 4, "of which Open MPI finds 1"}})
+  {
+    const Outcome outcome = run_shell(c.line);
+    EXPECT_EQ(outcome.code, c.code) << c.line;
+    EXPECT_NE(outcome.errors.find(c.error), std::string::npos) << outcome.errors;
+    EXPECT_FALSE(fs::exists("out")) << c.line;
+  }
+  EXPECT_EQ(run_shell(start + "2 " + run + " -n 2").code, 0);
+}
+
+// Its text of the commit is changed, in place.
+TEST_F(RanksEnds, ARankOfAnotherBuildIsRefused)
+{
+  soon_done();
+  const std::string solver = (fs::path(program).parent_path() / "ligament-solver").string(),
+                    version = run_ligament("--version").output,
+                    commit = version.substr(version.find("commit ") + 7, 8);
+  std::string other = file_text(solver);
+  int n_found = 0;
+  for (auto at = other.find(commit); at != other.npos; at = other.find(commit, at + 1), ++n_found)
+    other.replace(at, commit.size(), "00000000");
+  if (n_found == 0)
+    GTEST_SKIP() << "the program doesn't hold \"" << commit << "\" in one piece";
+  std::ofstream("other", std::ios::binary) << other;
+  fs::permissions("other", fs::perms::owner_all);
+  const Outcome outcome =
+      run_shell("exec timeout -k 5 60 mpirun -q --oversubscribe -n 2 " + solver +
+                " run scene.json -o out : -n 1 ./other run scene.json -o out");
+  EXPECT_EQ(outcome.code, 4);
+  for (const std::string part : {"ranks are unlike", "commit 00000000", "one kind of processor"})
+    EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
+  EXPECT_FALSE(fs::exists("out"));
+}
+
+// Two ranks that share a core: were those that wait to keep it, each message would take a time
+// slice of the system, some milliseconds; it takes as long as the other one computes.
+TEST_F(RanksEnds, ARankThatWaitsMakesRoom)
+{
+  Json scene = scene_of(2, "hexagonal", {20, 20});
+  pull(scene, 1, 1, 4e-6);
+  scene["time"]["duration"] = 1000;
+  scene["output"] = {{"history_interval", 500}, {"checkpoint_interval", "never"}};
+  const std::string run =
+      " taskset -c 0 " + program + " run " + written(scene, "scene.json") + " -o ";
+  ASSERT_EQ(run_shell("exec" + run + "on_1").code, 0);
+  ASSERT_EQ(run_shell("exec mpirun -q --oversubscribe -n 2" + run + "on_2").code, 0);
+  const auto record = file_json("on_2/run.json");
+  EXPECT_GT(record["steps"], 1000);
+  const double one = file_json("on_1/run.json")["wall_seconds"], two = record["wall_seconds"];
+  EXPECT_LT(two, one + 3e-3 * double(record["steps"])) << one;
+}
+
+// A state that is kept for pictures is damaged where one rank reads it: all do without.
+TEST_F(RanksEnds, WhatOneRankHasLostIsLostForAll)
+{
+  written(halves_that_slide(), "scene.json");
+  ASSERT_EQ(run_ligament("run scene.json -n 2 --set /time/duration=120 -o out").code, 0);
+  fs::create_directory("elsewhere");
+  fs::copy("out", "elsewhere/out", fs::copy_options::recursive);
+  int n_kept = 0;
+  for (const auto &entry : fs::directory_iterator("elsewhere/out/checkpoints"))
+    if (entry.path().filename().string().rfind("kept_", 0) == 0) {
+      std::ofstream(entry.path()) << "damaged";
+      ++n_kept;
+    }
+  ASSERT_GT(n_kept, 0);
+  const std::string resume = program + " resume out --set /time/duration=160";
+  const Outcome outcome = run_shell("exec timeout -k 5 60 mpirun -q --oversubscribe -n 1 " +
+                                    resume + " : -n 1 -wdir elsewhere " + resume);
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("another rank cannot read the kept state"), std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(file_json("out/run.json")["status"], "done");
 }
 
 // A parent that ignores the end of its children hands that on.

@@ -80,20 +80,6 @@ TEST(Runs, APlateThatBreaksBetweenTwoRowsHasAPeak)
   EXPECT_GT(*record.peak_load, 0);
 }
 
-// From one corner on it is strained beyond all that its law and its steps bear, long before the
-// second row.
-TEST(Runs, TheBalanceOfEnergyIsLookedAtBetweenRows)
-{
-  const RunRecord record =
-      run("torn", {"/far_field=none",
-                   R"(/loads=[{"boundary": "right", "velocity": [1, null], "ramp": 100, "from": 50},
-                               {"boundary": "left", "displacement": [0, null]}])",
-                   "/time/duration=400", "/output/history_interval=390"});
-  EXPECT_EQ(record.status, "stopped");
-  EXPECT_NE(record.reason.find("came from nowhere"), std::string::npos) << record.reason;
-  EXPECT_LT(record.simulated_time, 380);
-}
-
 TEST(Runs, TheSameSceneGivesTheSameBits)
 {
   const auto overrides =

@@ -134,6 +134,10 @@ TEST(Launcher, MissingSolverIsAMatterOfTheEnvironment)
   EXPECT_EQ(WEXITSTATUS(std::system(("./ligament_alone run " + plate + " 2> stderr.txt").c_str())),
             4);
   EXPECT_TRUE(has(errors(), "ligament-solver"));
+  EXPECT_EQ(
+      WEXITSTATUS(std::system(("./ligament_alone run " + plate + " -n 2 2> stderr.txt").c_str())),
+      4);
+  EXPECT_TRUE(has(errors(), "scripts/build.sh ligament-solver")) << errors();
   EXPECT_EQ(WEXITSTATUS(std::system("./ligament_alone verify patch 2> stderr.txt")), 4);
   EXPECT_TRUE(has(errors(), "scripts/build.sh ligament-verify")) << errors();
 }

@@ -74,6 +74,29 @@ struct Recorded
   Table history() const { return read_csv(folder.history()); }
 };
 
+// What a channel loses between two rows is in the record; what it gains ends the run there.
+TEST(Recorder, TheBalanceIsLookedAtBetweenSparseRows)
+{
+  const std::vector<std::string> sparse = {"/output/history_interval=100000"};
+  Recorded lost("lost", sparse);
+  const long ratio = lost.small.body.coupler->step_ratio();
+  lost.advance(int(200 * ratio));
+  const double kinetic = read_ledger(lost.small.body, lost.step, 0).kinetic();
+  ASSERT_GT(kinetic, 0);
+  EXPECT_FALSE(lost.recorder.observe(lost.small.body, lost.step, -7 * kinetic));
+  lost.look(250 * ratio);
+  const EnergyLedger last = read_ledger(lost.small.body, lost.step, 0);
+  const double moved = std::max({kinetic, last.kinetic(), last.external_work});
+  EXPECT_NEAR(lost.finish().energy_residual.value() * moved / (7 * kinetic), 1, 0.01);
+  EXPECT_EQ(lost.history().n_rows(), 2u);
+
+  Recorded gained("gained", sparse);
+  gained.advance(int(200 * ratio));
+  const auto stop = gained.recorder.observe(gained.small.body, gained.step, 1e3);
+  ASSERT_TRUE(stop);
+  EXPECT_NE(stop->reason.find("came from nowhere"), std::string::npos) << stop->reason;
+}
+
 TEST(RecorderOfPhases, EveryEquilibriumHasARow)
 {
   Recorded run("equilibria", {loading, "/output/history_interval=1000"});
