@@ -54,8 +54,8 @@ constexpr std::array<const char *, 3> counts_of_ranks = {"OMPI_COMM_WORLD_SIZE",
 std::string solver_path()
 {
   const std::string name = "ligament-solver", path = path_of(name);
-  core::require<core::EnvironmentError>(::access(path.c_str(), X_OK) == 0,
-                                        cannot_start(name, path, errno));
+  if (::access(path.c_str(), X_OK) != 0)
+    throw core::EnvironmentError(cannot_start(name, path, errno));
   return path;
 }
 

@@ -29,12 +29,14 @@ template <int dim>
 Vector<dim> in_one_sense(Vector<dim> v)
 {
   v.normalize();
-  for (int c = 0; c < dim; ++c)
+  double sense = 0;
+  for (int c = 0; c < dim; ++c) {
     if (std::abs(v[c]) < 1e-12)
       v[c] = 0;
-    else
-      return v[c] < 0 ? Vector<dim>(-v) : v;
-  return v;
+    if (sense == 0 && v[c] != 0)
+      sense = v[c] < 0 ? -1 : 1;
+  }
+  return (sense * v).array() + 0.; // no -0
 }
 
 dem::CrackAxes<2> along(const Vector<2> &growth)
