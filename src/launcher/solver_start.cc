@@ -95,7 +95,10 @@ int launched_ranks()
 
 std::string launch_variables()
 {
-  return fmt::format("{}", fmt::join(counts_of_ranks, ", "));
+  std::string names;
+  for (const char *name : counts_of_ranks)
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
 }
 
 void require_one_rank(const std::string &command)
