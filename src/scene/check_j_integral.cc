@@ -304,7 +304,7 @@ void check_j_integral(const Scene &scene, const GaugeParameters &g, const Box &s
           "together, from which E' of neither material makes the stress intensity of the tip",
           "let /material be what lies within the rectangles, and make that around them an "
           "inclusion, or remove the gauge");
-    if (const auto other = others.inside(g.inner_lower, g.inner_upper); !other.key.empty())
+    if (const auto other = others.inside(g.inner_lower, g.inner_upper); other.differs)
       f.warning(key, fmt::format("a part of {} lies inside the rectangles of {}", other.key, key),
                 "they see its surface together with the tip: J is no longer that of the tip alone",
                 "make the rectangles smaller, or take J for that of both");

@@ -88,7 +88,7 @@ void check_displacement(const Scene &scene, const LoadParameters &load, const st
 {
   const auto &size = scene.specimen.size;
   const double extent = *std::max_element(size.begin(), size.end());
-  if (factor * largest(load.displacement) > extent / 2)
+  if (extent > 0 && factor * largest(load.displacement) > extent / 2) // 0: its file was refused
     f.warning(key + "/displacement",
               value_text("displacement", key, largest(load.displacement), "m", factor) +
                   ", more than half of the specimen",

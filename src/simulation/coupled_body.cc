@@ -8,6 +8,7 @@
 #include "coupling/heated_particles.h"
 #include "fem/import_mesh.h"
 #include "fem/join_sides.h"
+#include "fem/part_shares.h"
 #include "src/scene/atoms.h"
 #include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
@@ -263,6 +264,54 @@ void make_heated_particles(const Scene &scene, CoupledBody<dim> &body, core::Tim
   body.coupler = std::make_unique<Heated>(body.bodies(), p, timers);
 }
 
+/// What of a side moves as if it were held, in m^2, where a load holds the nodes of its part.
+/// Beyond the last node the side follows over a cell: a row of n nodes at a distance h presses a
+/// body as a rigid stamp of (n - 1/2) h does, so that of a face with one of two nodes a quarter
+/// counts. Where other loads hold the rest there is no such end, and each has its share.
+template <int dim>
+double held_area(const CoupledBody<dim> &body, int l)
+{
+  const auto &load = body.loads[l];
+  const auto &mesh = body.far->mesh();
+  int component = 0;
+  while (!load.value[component])
+    ++component;
+  double area = 0;
+  for (const auto &face : mesh.boundary_faces) {
+    if (face.boundary != load.boundary)
+      continue;
+    const auto nodes = fem::face_nodes<dim>(face.face);
+    int n_own = 0, n_held = 0;
+    for (const int a : nodes) {
+      const int node = mesh.cells[face.cell][a];
+      const bool is_own =
+          load.part.holds(mesh.nodes[node], 1e-9 * mesh.cell_size[face.cell].minCoeff());
+      n_own += is_own;
+      n_held += is_own || body.far->is_held(node, component);
+    }
+    const double share = double(n_own) / nodes.size();
+    if (n_own > 0)
+      area += (n_held == int(nodes.size()) ? share : share * share) *
+              fem::part_shares<dim>({}, mesh, face).sum();
+  }
+  return area * body.thickness;
+}
+
+/// Warns where the nodes that a load holds are not nearly its part of the side.
+template <int dim>
+void doubt_held_part(const CoupledBody<dim> &body, int l, int n_nodes, core::Log &log)
+{
+  const double wanted = body.load_places[l].area, held = held_area(body, l);
+  const double depth = dim == 2 ? body.thickness : 1;
+  const char *unit = dim == 2 ? "m" : "m^2";
+  if (!(std::abs(held / wanted - 1) <= 0.1))
+    log.warning("/loads/{}: the {} nodes of the far field that it holds move the side as a part of "
+                "{:.4g} {} would, and its part has {:.4g} {}: the mesh knows the ends of a part to "
+                "a cell; give smaller cells there, or let the part end a quarter of a cell beyond "
+                "a node",
+                l, n_nodes, held / depth, unit, wanted / depth, unit);
+}
+
 /// Each load must find faces or nodes in its part of a side, and a force all of its area.
 template <int dim>
 void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::Log &log)
@@ -289,6 +338,8 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
       log.info("load {} holds {} nodes of the far field and faces of {:.4g} m^2 in all; its part "
                "of the side has {:.4g} m^2",
                l, n_nodes, area, whole);
+      if (area == 0)
+        doubt_held_part(body, int(l), n_nodes, log);
       continue;
     }
     if (body.far)

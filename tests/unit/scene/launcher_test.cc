@@ -84,9 +84,9 @@ TEST(Launcher, MistakesOnTheCommandLineAreWrongInput)
   EXPECT_EQ(start("run").code, 2);
   EXPECT_EQ(start("run a.json --sett /a=1").code, 2);
   EXPECT_EQ(start("explain raduis").code, 2);
+  EXPECT_TRUE(has(errors(), "did you mean \"radius\"?"));
   EXPECT_EQ(start("explain overlap_cells --markdown").code, 2);
   EXPECT_EQ(start("new -o scene.json").code, 2);
-  EXPECT_TRUE(has(errors(), "did you mean \"radius\"?"));
   EXPECT_TRUE(has(start("run --json").text, "{\"status\":\"wrong input\",\"errors\":[{"));
 }
 

@@ -3,6 +3,8 @@
 #include "src/simulation/test_machine.h"
 #include "tests/support/small_plate.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 using namespace ligament;
@@ -202,6 +204,50 @@ TEST(LoadParts, PartWithoutNodesIsRefused)
   } catch (const core::InputError &error) {
     EXPECT_NE(std::string(error.what()).find("no node"), std::string::npos) << error.what();
   }
+}
+
+/// What set-up warns of where a part of the top of the mesh is moved.
+std::vector<std::string> warnings_of_part(const std::string &part)
+{
+  const Scene scene =
+      small_scene({"/discrete_zone=none", R"(/far_field={"cell_size": 4})",
+                   R"(/loads=[{"boundary": "top", "displacement": [null, 0.1], )" + part + "}]"});
+  core::Log log;
+  core::Timers timers;
+  make_body<2>(scene, log, timers);
+  return log.warnings();
+}
+
+// Nodes at -12, -8 ... 12. Three of them stand for 10: found as the width of the stamp on a body of
+// particles, 64 by 64, that meets the same force.
+TEST(LoadParts, NodesThatAreNotNearlyThePartAreTold)
+{
+  for (const double width : {9.2, 10., 10.9})
+    EXPECT_TRUE(
+        warnings_of_part(fmt::format(R"("from": {}, "to": {})", -width / 2, width / 2)).empty())
+        << width;
+  for (const double width : {8.1, 11.9}) {
+    const auto warnings =
+        warnings_of_part(fmt::format(R"("from": {}, "to": {})", -width / 2, width / 2));
+    ASSERT_EQ(warnings.size(), 1u) << width;
+    for (const std::string &part :
+         {std::string("/loads/0: the 3 nodes"), std::string("a part of 10 m would"),
+          fmt::format("its part has {:.4g} m:", width), std::string("give smaller cells")})
+      EXPECT_NE(warnings[0].find(part), std::string::npos) << part << "\n" << warnings[0];
+  }
+  EXPECT_EQ(warnings_of_part(R"("from": -4.1, "to": 0.1)").size(), 1u) << "6 are no 4.2";
+  // No end where the side ends.
+  EXPECT_TRUE(warnings_of_part(R"("from": -1)").empty());
+  EXPECT_EQ(warnings_of_part(R"("from": 0.1)").size(), 1u) << "9 are no 11.9";
+}
+
+// Where the neighbour is held, too, its end is in the middle between nodes.
+TEST(LoadParts, PartsThatMeetHaveNoEndBetweenThem)
+{
+  const std::string other =
+      R"("to": 1}, {"boundary": "top", "displacement": [null, 0.2], "from": 1)";
+  EXPECT_TRUE(warnings_of_part(other).empty()); // 14 are 13, and 10 are 11
+  EXPECT_EQ(warnings_of_part(R"("from": 1)").size(), 1u) << "9 are no 11";
 }
 
 const std::string small_block = R"({
