@@ -236,6 +236,7 @@ TEST(LoadParts, NodesThatAreNotNearlyThePartAreTold)
       EXPECT_NE(warnings[0].find(part), std::string::npos) << part << "\n" << warnings[0];
   }
   EXPECT_EQ(warnings_of_part(R"("from": -4.1, "to": 0.1)").size(), 1u) << "6 are no 4.2";
+  EXPECT_TRUE(warnings_of_part(R"("from": -0.5, "to": 0.5)").empty()) << "a knife edge";
   // No end where the side ends.
   EXPECT_TRUE(warnings_of_part(R"("from": -1)").empty());
   EXPECT_EQ(warnings_of_part(R"("from": 0.1)").size(), 1u) << "9 are no 11.9";
