@@ -4,8 +4,8 @@
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
 #include "src/scene/atoms.h"
+#include "src/scene/crack_axes.h"
 #include "src/scene/fracture_energy.h"
-#include "src/simulation/crack_axes.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -99,7 +99,7 @@ dem::FractureLaw::Criterion criterion_of(const MaterialParameters &material)
 
 /// Nothing for cracks along x that open along y.
 template <int dim>
-std::string text_of(const dem::CrackAxes<dim> &crack)
+std::string text_of(const CrackAxes<dim> &crack)
 {
   const auto components = [](const Vector<dim> &v) {
     std::vector<std::string> texts;
@@ -107,10 +107,9 @@ std::string text_of(const dem::CrackAxes<dim> &crack)
       texts.push_back(fmt::format("{:.6g}", v[c]));
     return fmt::format("({})", fmt::join(texts, ", "));
   };
-  return crack.growth == Vector<dim>::Unit(0) && crack.normal == Vector<dim>::Unit(1)
-             ? ""
-             : fmt::format(" along {} across {}", components(crack.growth),
-                           components(crack.normal));
+  return crack == CrackAxes<dim>() ? ""
+                                   : fmt::format(" along {} across {}", components(crack.growth),
+                                                 components(crack.normal));
 }
 
 /// All that the factor c depends on, in one line.
@@ -146,8 +145,9 @@ double toughness_factor(const Scene &scene, const MaterialParameters &parameters
       return dem::calibrate_toughness<dim>(packing, material, criterion);
     }
     const auto lattice = lattice_of<dim>(scene);
+    const auto crack = crack_axes<dim>(scene.specimen);
     return dem::calibrate_toughness<dim>(lattice.kind, lattice.orientation, material, criterion,
-                                         crack_axes<dim>(scene.specimen));
+                                         {crack.growth, crack.normal});
   });
 }
 

@@ -1,4 +1,4 @@
-#include "src/simulation/crack_axes.h"
+#include "src/scene/crack_axes.h"
 
 #include <cmath>
 #include <optional>
@@ -39,18 +39,18 @@ Vector<dim> in_one_sense(Vector<dim> v)
   return (sense * v).array() + 0.; // no -0
 }
 
-dem::CrackAxes<2> along(const Vector<2> &growth)
+CrackAxes<2> along(const Vector<2> &growth)
 {
   const Vector<2> along = in_one_sense<2>(growth);
   return {along, in_one_sense<2>({-along[1], along[0]})};
 }
 
 template <int dim>
-std::optional<dem::CrackAxes<dim>> axes_of(const Specimen &s, const Crack &crack);
+std::optional<CrackAxes<dim>> axes_of(const Specimen &s, const Crack &crack);
 
 /// The last end of a line if that lies in the body, or else its first one.
 template <>
-std::optional<dem::CrackAxes<2>> axes_of<2>(const Specimen &s, const Crack &crack)
+std::optional<CrackAxes<2>> axes_of<2>(const Specimen &s, const Crack &crack)
 {
   const std::size_t n = crack.points.size();
   const auto point = [&](std::size_t k) { return Vector<3>(crack.points[k].data()); };
@@ -63,7 +63,7 @@ std::optional<dem::CrackAxes<2>> axes_of<2>(const Specimen &s, const Crack &crac
 
 /// Of a polygon the longest edge in the body is its front.
 template <>
-std::optional<dem::CrackAxes<3>> axes_of<3>(const Specimen &s, const Crack &crack)
+std::optional<CrackAxes<3>> axes_of<3>(const Specimen &s, const Crack &crack)
 {
   const std::size_t n = crack.points.size();
   Vector<3> normal = Vector<3>::Zero(), centre = Vector<3>::Zero(), front = Vector<3>::Zero(),
@@ -80,15 +80,15 @@ std::optional<dem::CrackAxes<3>> axes_of<3>(const Specimen &s, const Crack &crac
   Vector<3> growth = front.cross(normal);
   if (growth.dot(place - centre) < 0)
     growth = -growth;
-  return dem::CrackAxes<3>{in_one_sense<3>(growth), in_one_sense<3>(normal)};
+  return CrackAxes<3>{in_one_sense<3>(growth), in_one_sense<3>(normal)};
 }
 
 /// In the plane of x and y: bodies with slots are extruded along z.
 template <int dim>
-dem::CrackAxes<dim> axes_of(const Slot &slot)
+CrackAxes<dim> axes_of(const Slot &slot)
 {
   const auto plane = along(vector_of<2>(slot.to) - vector_of<2>(slot.from));
-  dem::CrackAxes<dim> axes{Vector<dim>::Zero(), Vector<dim>::Zero()};
+  CrackAxes<dim> axes{Vector<dim>::Zero(), Vector<dim>::Zero()};
   axes.growth.template head<2>() = plane.growth;
   axes.normal.template head<2>() = plane.normal;
   return axes;
@@ -96,7 +96,7 @@ dem::CrackAxes<dim> axes_of(const Slot &slot)
 
 /// A box grows along its longest edge that ends in the body, and opens along its shortest one.
 template <int dim>
-std::optional<dem::CrackAxes<dim>> axes_of(const Specimen &s, const Notch &notch)
+std::optional<CrackAxes<dim>> axes_of(const Specimen &s, const Notch &notch)
 {
   int growth = -1, normal = 0;
   const auto width = [&](int c) { return notch.upper[c] - notch.lower[c]; };
@@ -109,12 +109,12 @@ std::optional<dem::CrackAxes<dim>> axes_of(const Specimen &s, const Notch &notch
   }
   if (growth < 0 || growth == normal)
     return {};
-  return dem::CrackAxes<dim>{Vector<dim>::Unit(growth), Vector<dim>::Unit(normal)};
+  return CrackAxes<dim>{Vector<dim>::Unit(growth), Vector<dim>::Unit(normal)};
 }
 } // namespace
 
 template <int dim>
-dem::CrackAxes<dim> crack_axes(const Specimen &s)
+CrackAxes<dim> crack_axes(const Specimen &s)
 {
   for (const Crack &crack : s.cracks)
     if (const auto axes = axes_of<dim>(s, crack))
@@ -127,6 +127,6 @@ dem::CrackAxes<dim> crack_axes(const Specimen &s)
   return {};
 }
 
-template dem::CrackAxes<2> crack_axes(const Specimen &);
-template dem::CrackAxes<3> crack_axes(const Specimen &);
+template CrackAxes<2> crack_axes(const Specimen &);
+template CrackAxes<3> crack_axes(const Specimen &);
 } // namespace ligament::program
