@@ -305,10 +305,10 @@ void doubt_held_part(const CoupledBody<dim> &body, int l, int n_nodes, core::Log
   const LoadPlace<dim> &place = body.load_places[l];
   const double held = held_area(body, l), depth = dim == 2 ? body.thickness : 1;
   const char *unit = dim == 2 ? "m" : "m^2";
-  const std::string finding =
-      fmt::format("/loads/{}: the {} nodes of the far field that it holds move the side as a part "
-                  "of {:.4g} {} would, and its part has {:.4g} {}",
-                  l, n_nodes, held / depth, unit, place.area / depth, unit);
+  const std::string finding = fmt::format(
+      "/loads/{}: the nodes of the far field that it holds ({}) move the side as a part "
+      "of {:.4g} {} would, and its part has {:.4g} {}",
+      l, n_nodes, held / depth, unit, place.area / depth, unit);
   const bool fits = std::abs(held / place.area - 1) <= 0.1;
   if (fits || place.area < 0.05 * place.side_area)
     log.info("{}", finding);

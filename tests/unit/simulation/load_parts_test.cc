@@ -231,8 +231,9 @@ TEST(LoadParts, NodesThatAreNotNearlyThePartAreTold)
         warnings_of_part(fmt::format(R"("from": {}, "to": {})", -width / 2, width / 2));
     ASSERT_EQ(warnings.size(), 1u) << width;
     for (const std::string &part :
-         {std::string("/loads/0: the 3 nodes"), std::string("a part of 10 m would"),
-          fmt::format("its part has {:.4g} m:", width), std::string("give smaller cells")})
+         {std::string("/loads/0: the nodes of the far field that it holds (3)"),
+          std::string("a part of 10 m would"), fmt::format("its part has {:.4g} m:", width),
+          std::string("give smaller cells")})
       EXPECT_NE(warnings[0].find(part), std::string::npos) << part << "\n" << warnings[0];
   }
   EXPECT_EQ(warnings_of_part(R"("from": -4.1, "to": 0.1)").size(), 1u) << "6 are no 4.2";
