@@ -17,7 +17,4 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks);
 
 /// Builds everything, steps for a moment to predict the run, prints the pre-flight card.
 int check_command(const CommandLine &line, const ReadResult &input);
-
-/// Folder for the outputs of a scene file: --output, or the folder's name with "-out".
-std::string output_folder(const CommandLine &line);
 } // namespace ligament::program

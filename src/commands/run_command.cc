@@ -1,6 +1,5 @@
 #include "src/commands/commands.h"
 
-#include "core/input_file.h"
 #include "src/commands/run_end.h"
 #include "src/commands/simulate.h"
 #include "src/launcher/program.h"
@@ -8,25 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 namespace ligament::program
 {
-std::string output_folder(const CommandLine &line)
-{
-  if (!line.output.empty()) {
-    const auto path = std::filesystem::path(line.output).lexically_normal();
-    return path.has_filename() ? path.string() : path.parent_path().string();
-  }
-  if (!core::is_named_file(line.scene))
-    return "ligament-out";
-  // scene.json in a folder of its own is named after the folder.
-  const auto scene = std::filesystem::absolute(line.scene).lexically_normal();
-  const std::string name =
-      scene.stem() == "scene" ? scene.parent_path().filename().string() : scene.stem().string();
-  return name + "-out";
-}
-
 int run_command(const CommandLine &line, const ReadResult &input, const core::Ranks &ranks)
 {
   if (!ranks.is_one())

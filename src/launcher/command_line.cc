@@ -1,5 +1,6 @@
 #include "src/launcher/command_line.h"
 
+#include "core/input_file.h"
 #include "core/parameters/spelling.h"
 #include "core/tell.h"
 #include "core/version.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string_view>
 
 namespace ligament::program
@@ -247,5 +249,20 @@ CommandLine parse_command_line(int argc, const char *const *argv)
       fmt::print("{}\n", error_json("wrong input", message));
   }
   return line;
+}
+
+std::string output_folder(const CommandLine &line)
+{
+  if (!line.output.empty()) {
+    const auto path = std::filesystem::path(line.output).lexically_normal();
+    return path.has_filename() ? path.string() : path.parent_path().string();
+  }
+  if (!core::is_named_file(line.scene))
+    return "ligament-out";
+  // scene.json in a folder of its own is named after the folder.
+  const auto scene = std::filesystem::absolute(line.scene).lexically_normal();
+  const std::string name =
+      scene.stem() == "scene" ? scene.parent_path().filename().string() : scene.stem().string();
+  return name + "-out";
 }
 } // namespace ligament::program

@@ -52,4 +52,7 @@ std::string json_text(const nlohmann::ordered_json &json, int indent = -1);
 /// Text of {"status": .., "errors": [message]} on one line, for what has no place in a scene:
 /// status "wrong input", "stopped" or "failed".
 std::string error_json(const std::string &status, const std::string &message);
+
+/// Folder for the outputs of `run`: --output, or the scene's name with "-out".
+std::string output_folder(const CommandLine &line);
 } // namespace ligament::program

@@ -4,6 +4,7 @@
 #include "core/tell.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
+#include "src/output/open_run.h"
 
 #include <fmt/format.h>
 
@@ -100,7 +101,7 @@ bool is_told(int code)
 }
 
 /// mpirun, which is quiet, keeps most of what it knows to itself.
-std::string why_killed(const CommandLine &line, int signal, bool is_mpirun)
+std::string why_killed(const std::string &folder, int signal, bool is_mpirun)
 {
   return fmt::format(
       "{} was ended by signal {} ({}), and the ranks with it{}; what was computed up to "
@@ -109,9 +110,7 @@ std::string why_killed(const CommandLine &line, int signal, bool is_mpirun)
       signal == SIGKILL ? ": the system does that where memory is short, and "
                           "`ligament check -n` predicts what each rank needs"
                         : "",
-      line.command == "resume" ? line.run
-      : line.output.empty()    ? "FOLDER"
-                               : line.output);
+      folder);
 }
 } // namespace
 
@@ -156,7 +155,9 @@ int run_on_ranks(const CommandLine &line, int argc, char *const *argv)
                   "could not pass messages between them; `mpirun -n {} true` says more: see that "
                   "TMPDIR, or /tmp, can be written and has room; or leave -n out",
                   code, line.ranks));
-  const std::string why = why_killed(line, code - 128, WIFSIGNALED(status));
+  const std::string folder = line.command == "resume" ? line.run : output_folder(line);
+  const std::string why = why_killed(folder, code - 128, WIFSIGNALED(status));
+  end_for_another({folder}, "failed", why);
   core::tell(stderr, fmt::format("error: {}\n", why));
   if (line.json)
     fmt::print("{}\n", error_json("failed", why));

@@ -1,5 +1,7 @@
 #include "src/scene/crack_axes.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <optional>
 

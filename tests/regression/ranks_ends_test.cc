@@ -109,6 +109,9 @@ TEST_F(RanksEnds, AKilledRankEndsAll)
     EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
   EXPECT_LT(std::chrono::steady_clock::now() - killed_at, std::chrono::seconds(10)); // documented
   EXPECT_EQ(solvers_of(name).size(), 0u);
+  const auto record = file_json("out/run.json");
+  EXPECT_EQ(record["status"], "failed");
+  EXPECT_NE(std::string(record["reason"]).find("signal 9"), std::string::npos) << record["reason"];
 }
 
 // What only the first rank finds ends the others, too.
@@ -240,7 +243,7 @@ TEST_F(RanksEnds, ASceneOnStandardInputIsRefused)
   pull(scene, 1, 1, 4e-4);
   written(scene, "scene.json");
   ASSERT_EQ(run_ligament("run scene.json -o done").code, 0);
-  for (const std::string how :
+  for (const std::string &how :
        {"mpirun -q -n 2 --oversubscribe " + program + " run - -o out",
         program + " run - -n 2 -o out", program + " resume done -n 2 --scene -"})
   {

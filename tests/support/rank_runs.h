@@ -152,8 +152,9 @@ inline void expect_same_body(const std::string &run, const std::string &referenc
     EXPECT_FALSE(content.empty()) << name;
     EXPECT_TRUE(found.count(name) && found.at(name) == content) << run << "/" << name;
   }
-  if (has_state)
+  if (has_state) {
     EXPECT_TRUE(last_state(run) == last_state(reference)) << run;
+  }
   const auto record = file_json(run + "/run.json"), wanted = file_json(reference + "/run.json");
   for (const char *key : {"status",
                           "reason",
