@@ -217,16 +217,20 @@ private:
   /// What the law reads of the particles with records at these places.
   HWY_INLINE typename Law::Numbers read(const int *places) const
   {
-    typename Law::Numbers numbers;
-    static_cast<Record<SliceLanes> &>(numbers) =
+    const auto of_records =
         transpose(SliceLanes(), [&](int n) { return sweep_.records + places[n]; });
-    if constexpr (Law::strained) {
+    // A copy of eight vectors goes through memory where there are sixteen registers: half the speed.
+    if constexpr (!Law::strained)
+      return of_records;
+    else {
+      typename Law::Numbers numbers;
+      static_cast<Record<SliceLanes> &>(numbers) = of_records;
       const auto strain =
           transpose(SliceLanes(), [&](int n) { return sweep_.strain_records + places[n]; });
       for (int c = 0; c < record_size; ++c)
         numbers.strain[c] = strain.number[c];
+      return numbers;
     }
-    return numbers;
   }
   HWY_INLINE typename Law::Numbers read(int s, int lane) const
   {

@@ -116,6 +116,7 @@ private:
     is_new_ = version == "4.1";
     if (number() != 0)
       fail("is binary", "text is read", "save it as text (Mesh.Binary = 0)");
+    number(); // bytes of a number where it is binary
   }
   void read_names()
   {
