@@ -21,7 +21,8 @@ Scene plate(std::mt19937 &random, int number)
   const Point tip = {a * std::cos(angle), a * std::sin(angle), 0};
   scene.specimen.cracks = {{{{-tip[0], -tip[1], 0}, tip}}};
   scene.material.friction = number % 3 == 0 ? 0.3 : 0;
-  scene.material.fracture = {Criterion::maximum_tension, 1e-3, {}};
+  scene.material.fracture.criterion = Criterion::maximum_tension;
+  scene.material.fracture.strength = 1e-3;
   constexpr PackingKind packings[] = {PackingKind::hexagonal, PackingKind::random,
                                       PackingKind::hexagonal, PackingKind::square,
                                       PackingKind::random};

@@ -30,7 +30,8 @@ Scene pressed_plate(const Plate &plate)
   scene.material.youngs_modulus = 40e9;
   scene.material.density = 2600;
   scene.material.friction = friction;
-  scene.material.fracture = {Criterion::maximum_tension, {}, toughness};
+  scene.material.fracture.criterion = Criterion::maximum_tension;
+  scene.material.fracture.toughness = toughness;
   const double tip = half / std::sqrt(2.);
   scene.specimen.cracks = {{{{-tip, -tip, 0}, {tip, tip, 0}}}};
   scene.zone.packing = named<PackingKind>(plate.packing);

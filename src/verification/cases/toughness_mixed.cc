@@ -31,7 +31,8 @@ Scene pulled_plate(const InclinedPlate &plate)
   Scene scene = unit_scene(2, {width, height, 0}, 0.22);
   scene.material.youngs_modulus = 72e9;
   scene.material.density = 2450;
-  scene.material.fracture = {Criterion::maximum_tension, {}, toughness};
+  scene.material.fracture.criterion = Criterion::maximum_tension;
+  scene.material.fracture.toughness = toughness;
   scene.zone.packing = named<PackingKind>(plate.packing);
   scene.zone.orientation[0] = plate.degrees * M_PI / 180;
   scene.zone.seed = plate.seed;

@@ -92,8 +92,9 @@ void expect_the_run_of_one_process(const Overrides &overrides, int rebuild_inter
     EXPECT_TRUE(text_of(together + "/" + name) == text) << name;
   }
   for (const auto &[name, figure] : twin.figures)
-    if (name.find("servo") == 0)
+    if (name.find("servo") == 0) {
       EXPECT_EQ(record.figures.at(name).value, figure.value) << name;
+    }
   ranks().any(false); // all have read the files
 }
 

@@ -122,10 +122,12 @@ core::State expect_the_state_to_go_on(const Scene<dim> &scene, int steps, int n_
   }
   EXPECT_GE(whole.force->broken_bonds().size(), least_broken); // else the test would say little
   EXPECT_EQ(n_soft > 20, scene.law.faces_open());
-  if (flows(scene.material.plasticity))
+  if (flows(scene.material.plasticity)) {
     EXPECT_GT(whole.force->plastic_dissipation(), 0);
-  if (is_viscous(scene.material.viscosity))
+  }
+  if (is_viscous(scene.material.viscosity)) {
     EXPECT_GT(whole.force->viscous_dissipation(), 0);
+  }
   return state_of(whole);
 }
 
