@@ -155,6 +155,16 @@ TEST(PeriodicSides, WidthsThatDoNotFitAreRefused)
   }
   p.orientation[0] = 0.3;
   EXPECT_THROW(make_lattice_packing(p), core::InputError);
+  p = lattice_of<2>(LatticeKind::square, {9, 9});
+  p.orientation[0] = std::atan2(5, 12); // repeats itself after 13 d: no whole number fits below
+  p.periodic[0] = true;
+  try {
+    make_lattice_packing(p);
+    FAIL() << "no error";
+  } catch (const core::InputError &error) {
+    EXPECT_NE(std::string(error.what()).find("width of 4.5 m: give 6.5 m"), std::string::npos)
+        << error.what();
+  }
   p = lattice_of<2>(LatticeKind::square, {5, 9}); // too narrow
   p.periodic[0] = true;
   EXPECT_THROW(make_lattice_packing(p), core::InputError);

@@ -256,9 +256,10 @@ TEST(Gmsh, WrongFilesAreRefused)
   for (const std::string count : {"-1", "2000000000"}) // no room is taken on a number's word
     says("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 " + count + "\n1\n2\n", 2,
          count == "-1" ? "has \"1\" where $EndNodes" : "ends too early");
-  // A file that was cut within its last number, which is another number then, and wrong counts.
+  // A file that was cut behind or within its last number, which is another number then, and wrong
+  // counts.
   const std::string whole = head_2 + names + nodes_2 + elements_2;
-  says(whole.substr(0, whole.find(" 9 8\n$EndElements") + 3), 2, "$EndElements is missing");
+  says(whole.substr(0, whole.find(" 9 8\n$EndElements") + 4), 2, "$EndElements is missing");
   says(replaced(whole, "$Elements\n5", "$Elements\n4"), 2, "has \"5\" where $EndElements should be");
   says(replaced(version_4, "$EndNodes\n", ""), 2, "has \"$Elements\" where $EndNodes should be");
   says(head_2 + nodes_2 + elements_2, 3, "bounds no body");
