@@ -1,11 +1,13 @@
 // Which way the cracks of a scene point, and that a lattice's toughness turns with the body.
 #include "dem/toughness_calibration.h"
 #include "src/scene/crack_axes.h"
+#include "tests/support/small_plate.h"
 
 #include <gtest/gtest.h>
 
 using namespace ligament;
 using namespace ligament::program;
+using namespace ligament::tests;
 
 namespace
 {
@@ -82,5 +84,18 @@ TEST(CrackAxes, ToughnessTurnsWithTheBody)
   EXPECT_NEAR(factor(inclined, M_PI / 4), along_rows, 1e-9);
   EXPECT_NEAR(factor(level, M_PI / 4), along_diagonals, 1e-9);
   EXPECT_GT(std::abs(along_diagonals / along_rows - 1), 0.05);
+}
+
+TEST(CrackAxes, OfTheSceneGoIntoItsStrength)
+{
+  const auto factor = [](const std::string &crack) {
+    SmallBody small(small_scene(
+        {R"(/material/fracture={"criterion": "principal_stress", "toughness": 1e-3})", crack,
+         R"(/discrete_zone/packing="square")", "/far_field=none", "/discrete_zone/extent=all"}));
+    return small.body.figures.at("toughness_factor").value;
+  };
+  const double level = factor(R"(/specimen/cracks=[{"points": [[-3, 0.4], [3, 0.4]]}])"),
+               inclined = factor(R"(/specimen/cracks=[{"points": [[-3, -3], [3, 3]]}])");
+  EXPECT_GT(std::abs(inclined / level - 1), 0.05);
 }
 } // namespace
