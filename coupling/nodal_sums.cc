@@ -1,5 +1,7 @@
 #include "coupling/nodal_sums.h"
 
+#include "core/check.h"
+
 #include <algorithm>
 
 namespace ligament::coupling
@@ -30,7 +32,7 @@ NodalSums<dim>::NodalSums(const std::vector<Cell> &cells, int n_nodes, int n_qua
   const auto begin_entry = [&](int rank) { entries.push_back({rank, n_entries[rank]++}); };
   const auto add_term = [&](const Corner &c) {
     if (c.cell->rank == ranks.rank())
-      terms_.push_back({index(c.cell->batch, 0, 0, c.corner), c.cell->lane});
+      terms_.push_back(index(c.cell->batch, 0, 0, c.corner) * lane_array_size + c.cell->lane);
   };
   const auto end_entry = [&](int rank) {
     if (rank == ranks.rank())
@@ -62,39 +64,61 @@ template <int dim>
 void NodalSums<dim>::add(const std::vector<LaneArray> &sums, int first,
                          const std::vector<Nodal<dim> *> &to) const
 {
-  const std::size_t n = to.size(), width = dim * n, stride = nc;
+  const double *from = sums.empty() ? nullptr : sums[0].value + first * dim * stride;
+  switch (to.size()) {
+  case 1:
+    return add_components<dim>(from, to);
+  case 2:
+    return add_components<2 * dim>(from, to);
+  case 3:
+    return add_components<3 * dim>(from, to);
+  }
+  core::require(false, "nodes take up to three sums of their cells at once");
+}
+
+template <int dim>
+template <int width>
+void NodalSums<dim>::add_components(const double *sums, const std::vector<Nodal<dim> *> &to) const
+{
   values_.resize(first_.back() * width);
   double *own = values_.data() + first_[ranks_.rank()] * width;
-  for (std::size_t e = 0; e + 1 < begin_.size(); ++e)
-    for (std::size_t k = 0; k < width; ++k) {
-      double sum = 0;
-      const std::size_t shift = (first * dim + k) * stride;
-      for (std::size_t t = begin_[e]; t < begin_[e + 1]; ++t)
-        sum += sums[terms_[t].at + shift].value[terms_[t].lane];
-      *own++ = sum;
-    }
-  if (!ranks_.is_one()) {
-    std::vector<core::Communicator::Outgoing> out;
-    std::vector<core::Communicator::Incoming> in;
-    const auto bytes = [&](int r) { return (first_[r + 1] - first_[r]) * width * sizeof(double); };
-    for (int r = 0; r < ranks_.size(); ++r) {
-      if (r == ranks_.rank())
-        continue;
-      if (bytes(ranks_.rank()) > 0)
-        out.push_back({r, values_.data() + first_[ranks_.rank()] * width, bytes(ranks_.rank())});
-      if (bytes(r) > 0)
-        in.push_back({r, values_.data() + first_[r] * width, bytes(r)});
-    }
-    ranks_.exchange(out, in);
+  for (std::size_t e = 0; e + 1 < begin_.size(); ++e, own += width) {
+    double sum[width] = {};
+    for (std::size_t t = begin_[e]; t < begin_[e + 1]; ++t)
+      for (int k = 0; k < width; ++k)
+        sum[k] += sums[terms_[t] + k * stride];
+    std::copy_n(sum, width, own);
   }
-  for (std::size_t q = 0; q < n; ++q)
-    for (std::size_t node = 0; node + 1 < node_begin_.size(); ++node)
-      for (int c = 0; c < dim; ++c) {
-        double sum = 0;
-        for (std::size_t e = node_begin_[node]; e < node_begin_[node + 1]; ++e)
-          sum += values_[entries_[e] * width + q * dim + c];
-        (*to[q])(node, c) += sum;
-      }
+  if (!ranks_.is_one())
+    exchange(width);
+  std::array<double *, width / dim> nodal;
+  for (std::size_t q = 0; q < nodal.size(); ++q)
+    nodal[q] = to[q]->data();
+  for (std::size_t node = 0; node + 1 < node_begin_.size(); ++node) {
+    double sum[width] = {};
+    for (std::size_t e = node_begin_[node]; e < node_begin_[node + 1]; ++e)
+      for (int k = 0; k < width; ++k)
+        sum[k] += values_[entries_[e] * width + k];
+    for (int k = 0; k < width; ++k)
+      nodal[k / dim][node * dim + k % dim] += sum[k];
+  }
+}
+
+template <int dim>
+void NodalSums<dim>::exchange(std::size_t width) const
+{
+  std::vector<core::Communicator::Outgoing> out;
+  std::vector<core::Communicator::Incoming> in;
+  const auto bytes = [&](int r) { return (first_[r + 1] - first_[r]) * width * sizeof(double); };
+  for (int r = 0; r < ranks_.size(); ++r) {
+    if (r == ranks_.rank())
+      continue;
+    if (bytes(ranks_.rank()) > 0)
+      out.push_back({r, values_.data() + first_[ranks_.rank()] * width, bytes(ranks_.rank())});
+    if (bytes(r) > 0)
+      in.push_back({r, values_.data() + first_[r] * width, bytes(r)});
+  }
+  ranks_.exchange(out, in);
 }
 
 template class NodalSums<2>;

@@ -52,18 +52,19 @@ public:
   }
 
 private:
-  /// Of a cell's corner: its sum of the first quantity's first component.
-  struct Term
-  {
-    std::size_t at;
-    int lane;
-  };
+  static constexpr std::size_t stride = nc * lane_array_size; // from one component to the next
+
+  /// add() for `width` components, of all quantities together: they are summed side by side.
+  template <int width>
+  void add_components(const double *sums, const std::vector<Nodal<dim> *> &to) const;
+  void exchange(std::size_t width) const;
 
   core::Ranks ranks_;
   int n_quantities_ = 0;
   // What this rank hands on: entry k is the sum of terms_[begin_[k]] to terms_[begin_[k + 1]].
-  std::vector<Term> terms_;
-  std::vector<std::size_t> begin_;
+  // Terms are places among the doubles of the sums: of a cell's corner, for the first quantity's
+  // first component.
+  std::vector<std::size_t> terms_, begin_;
   // What all ranks hand on, those of rank r from first_[r] on: node i adds entries_[node_begin_[i]]
   // to entries_[node_begin_[i + 1]].
   std::vector<std::size_t> first_, node_begin_, entries_;
