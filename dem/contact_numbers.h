@@ -40,7 +40,8 @@ void for_each_number(C &c, Visit &&visit)
   visit("correction", c.correction);
 }
 
-/// Of its face and its materials, visit(number): what they were in the reference.
+/// Of its face and its materials, visit(number): what they were in the reference, and the modulus,
+/// which follows from them and from share_i.
 template <int dim, typename C, typename Visit>
 void for_each_constant(C &c, Visit &&visit)
 {

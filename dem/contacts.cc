@@ -79,10 +79,16 @@ Contact<dim> Contacts<dim>::make(const Bond<dim> &face, bool from_face) const
   const auto [first, second] = std::minmax({ids_[face.i], ids_[face.j]});
   Contact<dim> c{{first, second, 0}, face, from_face, face.distance, 0, 0, 0};
   c.share_i = face.lever_i.dot(face.normal) / face.distance;
-  c.shear_modulus = in_series(materials_.of(face.i).shear_modulus(),
-                              materials_.of(face.j).shear_modulus(), c.share_i);
+  c.shear_modulus = modulus(c);
   c.friction = materials_.friction(face.i, face.j);
   return c;
+}
+
+template <int dim>
+double Contacts<dim>::modulus(const Contact<dim> &c) const
+{
+  return in_series(materials_.of(c.face.i).shear_modulus(), materials_.of(c.face.j).shear_modulus(),
+                   c.share_i);
 }
 
 template <int dim>

@@ -227,6 +227,8 @@ private:
                                         const Particles &particles) const;
   static Motion motion_of(const Particles &particles, int i);
   Contact<dim> make(const Bond<dim> &face, bool from_face) const;
+  /// Pa, of both sides in series by their shares.
+  double modulus(const Contact<dim> &c) const;
 
   Materials materials_;
   particles::GlobalIds ids_;

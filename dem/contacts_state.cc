@@ -76,6 +76,8 @@ void Contacts<dim>::load(const core::State &state, const core::Names &names,
     ContactFlags::set(c, flags[r], overlap[r]);
     for_each_number<dim>(
         c, [&](const std::string &column, double &value) { value = numbers.at(column)[r]; });
+    if (!c.is_joint()) // whose partners change, not their moduli
+      c.shear_modulus = modulus(c);
     contacts_.push_back(std::move(c));
   }
   // Of particles that the state does not know: as they are in the reference.

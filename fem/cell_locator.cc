@@ -103,6 +103,28 @@ int CellLocator<dim>::find(const Vector<dim> &p, Vector<dim> *place) const
   return -1;
 }
 
+template <int dim>
+int CellLocator<dim>::nearest(const Vector<dim> &p, double reach) const
+{
+  const auto outside = [](const Vector<dim> &s) { // of the unit cell
+    return std::max({-s.minCoeff(), s.maxCoeff() - 1, 0.});
+  };
+  int found = -1;
+  double least = reach;
+  for (int c = 0; c < mesh_.n_cells(); ++c) {
+    const Vector<dim> s = (p - mesh_.cell_lower[c]).cwiseQuotient(mesh_.cell_size[c]);
+    if (!(outside(s) <= reach))
+      continue;
+    const auto place =
+        mesh_.is_box(c) ? std::optional(s) : unit_place<dim>(cell_corners(mesh_, c), p);
+    if (place && outside(*place) < least) {
+      least = outside(*place);
+      found = c;
+    }
+  }
+  return found;
+}
+
 template class CellLocator<2>;
 template class CellLocator<3>;
 } // namespace ligament::fem

@@ -104,6 +104,9 @@ public:
   explicit CellLocator(const Mesh<dim> &mesh);
   /// Cell that contains p (within 1e-10 of its size), or -1. `place`: where in the unit cell.
   int find(const Vector<dim> &p, Vector<dim> *place = nullptr) const;
+  /// The cell from which p lies the least way outside, at most `reach` of its size, or -1: a place
+  /// on a curved side, which straight edges cut off. Asks all cells.
+  int nearest(const Vector<dim> &p, double reach) const;
 
 private:
   const Mesh<dim> &mesh_;

@@ -17,6 +17,8 @@ public:
   explicit BodyForce(const std::vector<core::BoundaryLoad<dim>> &loads);
 
   bool is_empty() const { return loads_.empty(); }
+  /// In m/s^2, at a time in s.
+  Vector<dim> acceleration(double time) const;
   /// To the forces of a time in s.
   void add_forces(Particles<dim> &particles, double time) const;
   /// Adds to work() what it did since the last call on every block of one's own particles: the mean
@@ -31,7 +33,6 @@ public:
   void load(const core::State &state, const Particles<dim> &particles);
 
 private:
-  Vector<dim> acceleration(double time) const;
   /// The first one of each block.
   static std::vector<int> blocks(const Particles<dim> &particles);
 

@@ -39,6 +39,7 @@ COUPLING_TESTS = ["test_unit_coupling", "test_unit_coupling_crystal", "test_zone
                   "test_zone_parts_on_3"]
 TESTS = [("core/", ["test_ranks"], RANKS),
          ("packings/", ["test_packings", "test_ranks"], ["test_packings"] + RANKS),
+         ("particles/orientation.h", COUPLING, COUPLING_TESTS),  # no other unit test includes it
          ("particles/", ["test_particles", "test_ranks", "test_dem"],
           ["test_particles", "test_dem"] + RANKS),
          ("dem/contacts.cc", ["test_ranks", "test_dem", "test_simulation"],

@@ -188,6 +188,11 @@ private:
     (peaks ? r_.peak_load_error : r_.largest_load_error) = error;
     line(fmt::format("{} {}", peaks ? "peak" : "largest", load ? "load" : "stress"),
          text(a, by_largest.y_unit), text(b, by_largest.y_unit), percent(error));
+    if (error && *error < -1 && !reference_.record)
+      r_.notes.push_back(
+          "the largest loads have opposite signs: in a run tension is positive; write "
+          "loads and displacements of a curve that counts compression as positive "
+          "with the other sign");
     if (!error)
       r_.notes.push_back("peak: both curves need a column load (N) or stress (Pa) that is not 0");
     else if (!peaks)

@@ -289,8 +289,12 @@ ValueRange value_range(const std::vector<Picture> &pictures)
     lower = quantile(0);
     upper = quantile(1);
   }
-  const double least = std::max(1e-12 * std::max(std::abs(lower), std::abs(upper)), 1e-300);
-  return {lower, std::max(upper, lower + least)};
+  // What differs by less is the noise of a solver: it has one colour.
+  const double least = std::max(1e-6 * std::max(std::abs(lower), std::abs(upper)), 1e-300);
+  if (upper - lower >= least)
+    return {lower, upper};
+  const double middle = lower + (upper - lower) / 2;
+  return {middle - least / 2, middle + least / 2};
 }
 
 std::string draw_picture(const Picture &picture, ImageFormat format)

@@ -36,13 +36,25 @@ public:
                "no particle would be of this material", "add one of them, or remove the inclusion");
   }
 
+  /// Whether bonds join elastic constants that differ.
+  bool joins_other_constants() const
+  {
+    const MaterialParameters &m = scene_.material;
+    return std::any_of(scene_.inclusions.begin(), scene_.inclusions.end(), [&](const auto &i) {
+      return i.material.youngs_modulus != m.youngs_modulus ||
+             i.material.poissons_ratio != m.poissons_ratio;
+    });
+  }
+
   void poissons_ratio(const MaterialParameters &material, const std::string &key)
   {
-    if (f_.sound_and_given({key}) && material.poissons_ratio < 0)
+    if (f_.sound_and_given({key}) && material.poissons_ratio < 0 && joins_other_constants())
       f_.error(key,
-               fmt::format("\"poissons_ratio\" is {} in a scene with inclusions",
+               fmt::format("\"poissons_ratio\" is {} in a scene with inclusions of other elastic "
+                           "constants",
                            material.poissons_ratio),
-               "pairs of two materials are stable from 0 on", "give 0 or more");
+               "pairs of two materials are stable from 0 on",
+               "give 0 or more, or all the same \"youngs_modulus\" and \"poissons_ratio\"");
   }
 
   void region(Box box, const std::string &key)

@@ -1,7 +1,10 @@
+#include "src/scene/body_file.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/check_scene.h"
 
 #include <fmt/format.h>
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -167,6 +170,16 @@ std::vector<Cut> openings_of(const Specimen &s)
     box.upper[2] = s.upper(2);
     openings.push_back({fmt::format("/specimen/cutouts/{}", k), box, false});
   }
+  for (const core::Polygon &polygon : s.body ? s.body->polygons : std::vector<core::Polygon>())
+    if (core::signed_area(polygon) < 0) {
+      Eigen::AlignedBox2d box;
+      for (const auto &corner : polygon)
+        box.extend(corner.place);
+      openings.push_back(
+          {"a hole of /specimen/file",
+           {{box.min()[0], box.min()[1], s.lower(2)}, {box.max()[0], box.max()[1], s.upper(2)}},
+           false});
+    }
   return openings;
 }
 } // namespace

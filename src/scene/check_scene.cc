@@ -156,6 +156,34 @@ void check_time(const Scene &scene, Findings &f)
               "the fracture criterion is \"none\"", "remove it, or choose a criterion");
 }
 
+/// Whether there is a load that a testing machine would read: sides between which it is carried.
+bool has_test_load(const Scene &scene)
+{
+  const auto is_any = [](const PartialPoint &value) {
+    return std::any_of(value.begin(), value.end(),
+                       [](const auto &v) { return v.value_or(0) != 0; });
+  };
+  const auto is_given = [&](const LoadParameters &load) {
+    return load.pressure || is_any(load.velocity) || is_any(load.displacement) ||
+           is_any(load.traction) || is_any(load.force) || is_any(load.strain);
+  };
+  return std::any_of(scene.loads.begin(), scene.loads.end(), is_given) ||
+         std::any_of(scene.tools.begin(), scene.tools.end(),
+                     [](const ToolParameters &tool) { return tool.is_driven(); });
+}
+
+void check_load_path(const Scene &scene, Findings &f)
+{
+  if (f.sound({"/time/stop_when", "/loads", "/tools"}) &&
+      scene.time.stop_when == StopWhen::specimen_broken && !has_test_load(scene))
+    f.warning(
+        "/time/stop_when",
+        "\"stop_when\" in /time waits for a load path to be lost, and there is none",
+        "it lies between a side or a tool that is driven and the other end; what a body force "
+        "or an initial motion breaks is not looked for",
+        "remove it, and give the duration that is wanted");
+}
+
 /// The field of this word; null: one that is nowhere by itself.
 const FieldInfo *field_of(const std::string &word, int dimension)
 {
@@ -240,6 +268,7 @@ void check_scene(const Scene &scene, Findings &f)
   check_loads(scene, layout ? &*layout : nullptr, f);
   check_motion(scene, f);
   check_tools(scene, f);
+  check_load_path(scene, f);
   check_phases(scene, f);
   check_scales(scene, f);
   check_flow_loads(scene, f);

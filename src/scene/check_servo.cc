@@ -131,9 +131,8 @@ private:
     int c = 0;
     while (c < 2 && load_.velocity[c].value_or(0) == 0)
       ++c;
-    const double gain = !servo_.gauge.empty()
-                            ? std::abs(servo_.gain != 0 ? servo_.gain : 1)
-                            : scene_.material.youngs_modulus / scene_.specimen.size[c],
+    const double gain = !servo_.gauge.empty() ? std::abs(servo_.gain != 0 ? servo_.gain : 1)
+                                              : servo_stiffness(scene_, load_, c),
                  asked = largest_rate() * std::abs(servo_.wanted()) / gain,
                  fastest = std::abs(*load_.velocity[c]);
     if (asked > fastest)

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,24 +24,37 @@ using BoostPoint = bg::model::d2::point_xy<double>;
 using BoostPolygon = bg::model::polygon<BoostPoint, false, false>; // counter-clockwise, open
 using BoostPolygons = bg::model::multi_polygon<BoostPolygon>;
 
-/// The largest coordinate, m. Boost.Geometry drops what has an area of the order of its numbers'
-/// precision, in whatever unit: it is given places of the order of 1.
-double size_of(const std::vector<Polygon> &polygons)
+/// Places as Boost.Geometry is given them, from -1 to 1: it drops what has an area of the order of
+/// its numbers' precision, in whatever unit and wherever the body lies.
+class Frame
 {
-  double size = 0;
-  for (const Polygon &polygon : polygons)
-    for (const auto &corner : polygon)
-      size = std::max(size, corner.place.cwiseAbs().maxCoeff());
-  return size;
-}
+public:
+  explicit Frame(const std::vector<Polygon> &polygons)
+  {
+    Eigen::AlignedBox2d box;
+    for (const Polygon &polygon : polygons)
+      for (const auto &corner : polygon)
+        box.extend(corner.place);
+    middle_ = box.center();
+    size_ = box.sizes().maxCoeff() / 2;
+  }
 
-BoostPolygon to_boost(const Polygon &polygon, double size)
-{
-  BoostPolygon result;
-  for (const auto &corner : polygon)
-    result.outer().emplace_back(corner.place[0] / size, corner.place[1] / size);
-  return result;
-}
+  double size() const { return size_; } // m
+  BoostPolygon inward(const Polygon &polygon) const
+  {
+    BoostPolygon result;
+    for (const auto &corner : polygon) {
+      const Vector<2> x = (corner.place - middle_) / size_;
+      result.outer().emplace_back(x[0], x[1]);
+    }
+    return result;
+  }
+  Vector<2> outward(const BoostPoint &x) const { return middle_ + size_ * Vector<2>(x.x(), x.y()); }
+
+private:
+  Vector<2> middle_; // m
+  double size_;
+};
 
 /// The boundary of the polygon's side that passes through a point.
 int boundary_at(const std::vector<Polygon> &polygons, const Vector<2> &x)
@@ -85,12 +100,12 @@ Vector<2> exact(const std::vector<Polygon> &polygons, const Vector<2> &x, double
 
 /// Without sides that are shorter than the tolerance, which intersections of sides that nearly
 /// touch leave.
-Polygon from_boost(const BoostPolygon::ring_type &ring, double size,
+Polygon from_boost(const BoostPolygon::ring_type &ring, const Frame &frame,
                    const std::vector<Polygon> &sources, double tolerance)
 {
   std::vector<Vector<2>> corners;
   for (const BoostPoint &point : ring) {
-    const Vector<2> x = exact(sources, size * Vector<2>(point.x(), point.y()), tolerance);
+    const Vector<2> x = exact(sources, frame.outward(point), tolerance);
     if (corners.empty() || (x - corners.back()).norm() > tolerance)
       corners.push_back(x);
   }
@@ -107,14 +122,15 @@ Polygon from_boost(const BoostPolygon::ring_type &ring, double size,
 std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::size_t n,
                                   const std::vector<std::string> &keys, double tolerance)
 {
-  const double size = size_of(polygons), least_area = std::pow(tolerance / size, 2);
+  const Frame frame(polygons);
+  const double least_area = std::pow(tolerance / frame.size(), 2);
   BoostPolygons left;
   for (std::size_t k = 0; k < n; ++k)
     if (core::signed_area(polygons[k]) > 0)
-      left.push_back(to_boost(polygons[k], size));
+      left.push_back(frame.inward(polygons[k]));
   for (std::size_t k = 0; k < n; ++k)
     if (core::signed_area(polygons[k]) < 0) {
-      BoostPolygon hole = to_boost(polygons[k], size);
+      BoostPolygon hole = frame.inward(polygons[k]);
       std::reverse(hole.outer().begin(), hole.outer().end());
       BoostPolygons next;
       bg::difference(left, hole, next);
@@ -123,7 +139,7 @@ std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::siz
   const BoostPolygons whole = left;
   for (std::size_t k = n; k < polygons.size(); ++k) {
     BoostPolygons next;
-    const BoostPolygon cut = to_boost(polygons[k], size);
+    const BoostPolygon cut = frame.inward(polygons[k]);
     if (!bg::intersects(cut, whole))
       throw core::KeyedError(keys[k], fmt::format("{} lies outside the specimen", keys[k]),
                              "it takes nothing away", "move it, or remove it");
@@ -134,10 +150,10 @@ std::vector<Polygon> cut_polygons(const std::vector<Polygon> &polygons, std::siz
   for (const BoostPolygon &piece : left) {
     if (std::abs(bg::area(piece)) < least_area)
       continue;
-    result.push_back(from_boost(piece.outer(), size, polygons, tolerance));
+    result.push_back(from_boost(piece.outer(), frame, polygons, tolerance));
     for (const auto &hole : piece.inners())
       if (std::abs(bg::area(hole)) > least_area)
-        result.push_back(from_boost(hole, size, polygons, tolerance));
+        result.push_back(from_boost(hole, frame, polygons, tolerance));
   }
   if (result.empty())
     throw core::KeyedError("/specimen", "nothing of the specimen is left",

@@ -24,4 +24,14 @@ bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge)
          (servo.gauge == gauge.name ||
           servo.gauge.compare(0, gauge.name.size() + 1, gauge.name + "_") == 0);
 }
+
+double servo_stiffness(const Scene &scene, const LoadParameters &load, int component)
+{
+  const bool has_own_name = load.boundary > 2 * scene.dimension;
+  const int axis = has_own_name ? component : load.boundary / 2; // across the side
+  const MaterialParameters &m = scene.material;
+  const double modulus =
+      axis == component ? m.youngs_modulus : m.youngs_modulus / (2 * (1 + m.poissons_ratio));
+  return modulus / scene.specimen.size[axis];
+}
 } // namespace ligament::program

@@ -7,6 +7,10 @@ namespace ligament::program
 {
 /// s, within which the machine answers: as given, or from the travel times of waves.
 double servo_response(const Scene &scene, const ServoParameters &servo);
+/// What the mean stress of a load's side answers to its motion along `component` while the specimen
+/// is a bar between this side and the other end, pulled or sheared: a modulus over its length,
+/// Pa/m.
+double servo_stiffness(const Scene &scene, const LoadParameters &load, int component);
 /// The column that the servo follows is one of this gauge.
 bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge);
 } // namespace ligament::program

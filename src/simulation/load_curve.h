@@ -10,7 +10,8 @@
 namespace ligament::program
 {
 /// Takes readings until the load has fallen: when something has broken and it is below 10 % of its
-/// maximum. What comes later are rebounds.
+/// maximum, while the specimen is at least half as long or short as it was there. What comes later
+/// are rebounds (theory.md eq. (E12)).
 class LoadCurve
 {
 public:
@@ -34,6 +35,7 @@ public:
 private:
   /// Whether it still counts.
   bool takes(const Reading &reading, std::int64_t n_broken);
+  bool goes_back(const Reading &reading) const;
   void put(double time, const Reading &reading);
 
   std::vector<double> time_, load_, stress_, strain_;

@@ -323,6 +323,8 @@ std::string Recorder<dim>::report(const std::string &finding, const coupling::St
 template <int dim>
 void Recorder<dim>::look_for_break(const CoupledBody<dim> &body, const coupling::StepTime &step)
 {
+  if (!machine_.has_load()) // nor sides between which something is carried
+    return;
   const auto left = path_.lost(body);
   if (!left)
     return;

@@ -1,6 +1,7 @@
 #include "src/simulation/servo_target.h"
 
 #include "core/keyed_error.h"
+#include "src/scene/servo_scales.h"
 #include "src/simulation/make_loads.h"
 
 #include <fmt/format.h>
@@ -35,7 +36,7 @@ ServoTarget<dim>::ServoTarget(const Scene &scene, int load, const CoupledBody<di
     sign_ = is_upper ? 1 : -1;
     area_ = body.load_places[load].area;
     const double outward = *parameters.velocity[component_] > 0 ? sign_ : -sign_;
-    gain_ = outward * scene.material.youngs_modulus / scene.specimen.size[axis];
+    gain_ = outward * servo_stiffness(scene, parameters, component_);
     column_ = {fmt::format("servo_{}_error", load), "Pa"};
     return;
   }

@@ -61,6 +61,11 @@ long n_broken(const CoupledBody<dim> &body)
   return body.force() ? long(body.force()->n_broken()) : 0;
 }
 
+double potential_of(const coupling::CoupledEnergy &e)
+{
+  return e.potential_discrete + e.potential_far + e.blended;
+}
+
 /// In s, of the bonds that have broken so far.
 template <int dim>
 double last_break(const CoupledBody<dim> &body)
@@ -131,6 +136,7 @@ struct StaticPhases<dim>::Work
   double residual = 0;          // of the ledger between them, J
   double stretching_energy = 0; // J, in the last commit
   long broken_then = 0;
+  double held_energy = 0; // J, at the end of the last static phase
 };
 
 template <int dim>
@@ -208,8 +214,12 @@ bool StaticPhases<dim>::Work::is_calm(const CoupledBody<dim> &body, const Clock 
   if (is_restless)
     return true;
   const auto e = body.coupler->energy(body.bodies(), clock.now);
-  return e.kinetic_discrete + e.kinetic_far <
-         quiet_share * (e.potential_discrete + e.potential_far + e.blended);
+  const double kinetic = e.kinetic_discrete + e.kinetic_far, potential = potential_of(e);
+  // What has fallen apart holds nothing, and its pieces go on with their grips: where the body
+  // stretched evenly they have three times the energy of that motion.
+  constexpr double of_pieces = 4;
+  return kinetic < quiet_share * potential ||
+         std::max(kinetic - of_pieces * stretching_energy, potential) < quiet_share * held_energy;
 }
 
 template <int dim>
@@ -285,6 +295,7 @@ std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clo
     dynamic_before = 0;
     dynamic_began = std::chrono::steady_clock::now();
     broken_then = n_broken(body);
+    held_energy = potential_of(body.coupler->energy(body.bodies(), clock.now));
     const std::string by = phase.solves > 0 ? std::string(" by ") + solver->preconditioner() : "";
     log.info("static phase to {:.6g} s: {} ({} solves{}, {} iterations, {} faces broken)",
              clock.now.time, text_of(reason), phase.solves, by, phase.iterations, phase.broken);
@@ -456,6 +467,7 @@ void StaticPhases<dim>::save(core::State &state) const
   core::save_value(state, "static_phases", "largest_load",
                    has_solver ? work_->solver->largest_load() : work_->largest_load);
   core::save_value(state, "static_phases", "stretching_energy", work_->stretching_energy);
+  core::save_value(state, "static_phases_held", "energy", work_->held_energy);
   // Found again, in a body in which bonds have broken, they would differ by round-off.
   const auto free = has_solver ? work_->solver->free_shares() : work_->free_shares;
   core::save_value(state, "static_phases", "free_motions", std::int64_t(free.n));
@@ -480,6 +492,8 @@ void StaticPhases<dim>::load(const core::State &state)
   work_->dynamic_began = std::chrono::steady_clock::now();
   work_->largest_load = core::load_real(state, "static_phases", "largest_load");
   work_->stretching_energy = core::load_real(state, "static_phases", "stretching_energy");
+  if (state.count("static_phases_held")) // which older checkpoints don't have
+    work_->held_energy = core::load_real(state, "static_phases_held", "energy");
   work_->free_shares = {int(core::load_integer(state, "static_phases", "free_motions")),
                         core::table(state, "free_motions").reals("share")};
   if (work_->solver) {

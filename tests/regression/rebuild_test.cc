@@ -150,6 +150,26 @@ TEST_F(Rebuild, LoadsInTimeOnAMovingPlate)
   expect_same("moving_often", "moving_whole");
 }
 
+// Torn, then pressed: contacts of faces between two materials have the moduli of the lengths at
+// which they broke, which flow had stretched.
+TEST_F(Rebuild, ContactsOfTwoMaterials)
+{
+  std::ofstream("layers.json") << R"({
+    "title": "layers", "dimension": 2, "plane": "stress", "specimen": {"size": ["20 mm", "40 mm"]},
+    "material": {"youngs_modulus": "10 GPa", "poissons_ratio": 0.3, "density": 2450, "friction": 0.3,
+                 "fracture": {"criterion": "maximum_tension", "strength": "8 MPa"}},
+    "inclusions": [{"youngs_modulus": "30 GPa", "poissons_ratio": 0.3, "density": 2450, "friction": 0.3,
+      "boxes": [{"lower": ["-50 mm", 0], "upper": ["50 mm", "50 mm"]}],
+      "plasticity": {"yield_stress": "6 MPa", "hardening": "300 MPa"},
+      "fracture": {"criterion": "none"}}],
+    "discrete_zone": {"extent": "all", "packing": "random", "spacing": "1 mm"},
+    "loads": [{"boundary": "top", "displacement": [null, 2e-4],
+               "history": {"table": [[0, 0], [1e-4, 1], [2.5e-4, -2], [4e-4, 1]]}},
+              {"boundary": "bottom", "displacement": [0, 0]}],
+    "damping": {"mass": 1e4}, "time": {"duration": 4e-4}, "output": {}})";
+  expect_the_same_run({"layers", "layers.json", "", 1.3e-4, 3e-4, 50});
+}
+
 const std::string bar = examples + "notched_bar_3d/scene.json";
 
 TEST_F(Rebuild, SmallNotchedBar)

@@ -60,7 +60,7 @@ JIntegral<dim>::JIntegral(const GaugeParameters &gauge, const GaugePlaces<dim> &
       across_(dim == 2 ? 1 - along_ : axis_of<dim>(gauge.normal)),
       sign_(gauge.direction[along_] > 0 ? 1 : -1), lower_(to_vector<dim>(gauge.lower)),
       upper_(to_vector<dim>(gauge.upper)), inner_lower_(to_vector<dim>(gauge.inner_lower)),
-      inner_upper_(to_vector<dim>(gauge.inner_upper))
+      inner_upper_(to_vector<dim>(gauge.inner_upper)), body_force_(places.body.loads)
 {
   const CoupledBody<dim> &body = places.body;
   const auto constants = elastic_constants_of<dim>(places.scene);
@@ -80,31 +80,34 @@ JIntegral<dim>::JIntegral(const GaugeParameters &gauge, const GaugePlaces<dim> &
     particles::for_each(state.part.owned, [&](int i) {
       const Vector<dim> x = get(state.reference, i);
       const double share = overlap ? overlap->weight(x) : 1;
-      if (share == 0 || slope(x).isZero(0))
+      if (share == 0 || !counts(x))
         return;
-      core::require(body.force()->material(i) == 0,
+      const int material = body.force()->material(i);
+      core::require(material == 0 || slope(x).isZero(0),
                     "an inclusion lies between its rectangles: J is no longer that of the tip "
                     "alone; move the rectangles");
-      add_sample(x, share * state.volume[i], around(body, i), i);
+      const MaterialParameters &m =
+          material == 0 ? places.scene.material : places.scene.inclusions[material - 1].material;
+      add_sample(x, share * state.volume[i], m.density, around(body, i), i);
     });
   }
   n_particles_ = samples_.size();
   n_of_body_ = body.ranks.sum(std::int64_t(n_particles_));
   if (body.far)
-    add_cells(body);
+    add_cells(body, places.scene.material.density);
   core::require(n_of_body_ > 0 || !samples_.empty(),
                 "nothing lies between its rectangles; move them apart");
 }
 
 template <int dim>
-void JIntegral<dim>::add_cells(const CoupledBody<dim> &body)
+void JIntegral<dim>::add_cells(const CoupledBody<dim> &body, double density)
 {
   const auto &mesh = body.far->mesh();
   const MeshShare<dim> share(body);
   for_each_cell_part<dim>(mesh, lower_, upper_, [&](int cell, const auto &, const auto &) {
     share.for_each_point(cell, [&](const Vector<dim> &x, double volume) {
-      if (!slope(x).isZero(0))
-        add_sample(x, volume * body.thickness, interpolate(mesh, cell, x), -1);
+      if (counts(x))
+        add_sample(x, volume * body.thickness, density, interpolate(mesh, cell, x), -1);
     });
   });
 }
@@ -126,11 +129,29 @@ Vector<dim> JIntegral<dim>::slope(const Vector<dim> &x) const
 }
 
 template <int dim>
-void JIntegral<dim>::add_sample(const Vector<dim> &x, double volume,
+double JIntegral<dim>::q(const Vector<dim> &x) const
+{
+  double product = 1;
+  for (const int c : {along_, across_})
+    product *=
+        plateau(x[c], lower_[c], inner_lower_[c]) * plateau(x[c], upper_[c], inner_upper_[c]);
+  return product;
+}
+
+// Forces on masses take part up to the tip.
+template <int dim>
+bool JIntegral<dim>::counts(const Vector<dim> &x) const
+{
+  return !slope(x).isZero(0) || (!body_force_.is_empty() && q(x) > 0);
+}
+
+template <int dim>
+void JIntegral<dim>::add_sample(const Vector<dim> &x, double volume, double density,
                                 const MotionReading<dim> &reading, int particle)
 {
   const auto &terms = particle >= 0 ? reading.particles : reading.nodes;
-  samples_.push_back({particle, volume, slope(x), int(terms_.size()), int(terms.size())});
+  const double mass = body_force_.is_empty() ? 0 : density * volume * q(x);
+  samples_.push_back({particle, volume, slope(x), mass, int(terms_.size()), int(terms.size())});
   for (const auto &t : terms)
     terms_.push_back({t.item, t.gradient});
 }
@@ -180,6 +201,7 @@ template <int dim>
 void JIntegral<dim>::read(GaugeLook<dim> &look, double *values)
 {
   follow(look.body);
+  const Vector<dim> acceleration = body_force_.acceleration(look.time);
   core::ExactSum sum;
   const auto end = look.body.ranks.is_first() ? samples_.size() : n_particles_;
   for (std::size_t n = 0; n < end; ++n) {
@@ -192,7 +214,8 @@ void JIntegral<dim>::read(GaugeLook<dim> &look, double *values)
     const Strain<dim> strain = small_strain<dim>(h), stress = stiffness_ * strain;
     const Vector<dim> along = sign_ * h.col(along_);
     sum.add(s.volume * (traction<dim>(stress, s.dq).dot(along) -
-                        stress.dot(strain) / 2 * sign_ * s.dq[along_]));
+                        stress.dot(strain) / 2 * sign_ * s.dq[along_]) -
+            s.mass * acceleration.dot(along));
   }
   values[0] = look.body.ranks.sum(sum).value() / depth_;
   values[1] = std::copysign(std::sqrt(modulus_ * std::abs(values[0])), values[0]);

@@ -29,6 +29,7 @@ private:
     int particle;    // -1: of the mesh
     double volume;   // m^3, its share
     Vector<dim> dq;  // 1/m
+    double mass;     // q times that of its share, kg; 0 without forces on masses
     int first, size; // of its terms
   };
   struct Term
@@ -39,9 +40,12 @@ private:
 
   /// Gradient of q.
   Vector<dim> slope(const Vector<dim> &x) const;
-  void add_sample(const Vector<dim> &x, double volume, const MotionReading<dim> &reading,
-                  int particle);
-  void add_cells(const CoupledBody<dim> &body);
+  double q(const Vector<dim> &x) const;
+  /// Whether a place has a part in J.
+  bool counts(const Vector<dim> &x) const;
+  void add_sample(const Vector<dim> &x, double volume, double density,
+                  const MotionReading<dim> &reading, int particle);
+  void add_cells(const CoupledBody<dim> &body, double density);
   MotionReading<dim> around(const CoupledBody<dim> &body, int particle) const;
   /// Fits anew where bonds have broken.
   void follow(const CoupledBody<dim> &body);
@@ -53,6 +57,7 @@ private:
   Stiffness<dim> stiffness_;                              // Pa
   double modulus_;                                        // E', Pa
   double depth_;                                          // m, along the front
+  particles::BodyForce<dim> body_force_;
   std::vector<Sample> samples_; // those of one's own particles first, ascending; then cells, which
                                 // all ranks have
   std::vector<Term> terms_;

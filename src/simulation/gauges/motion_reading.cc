@@ -17,6 +17,9 @@ namespace
 // A point has its particle within so many spacings, else it lies where no material is.
 constexpr double reach = 3;
 
+// Or, beside a curved side, its cell within this share of the cell's size.
+constexpr double rim_reach = 0.1;
+
 // Steps from bond to bond around a point: one is enough inside a lattice, two are beside surfaces.
 constexpr int n_rings = 2;
 
@@ -195,14 +198,18 @@ PointMotion<dim>::PointMotion(const GaugePlaces<dim> &places, const Vector<dim> 
 {
   if (places.cells)
     cell_ = places.cells->find(place);
+  const auto nearest =
+      cell_ < 0 ? places.nearest_particle(place) : typename GaugePlaces<dim>::Nearest();
+  if (places.cells && cell_ < 0 && !nearest.is_there)
+    cell_ = places.cells->nearest(place, rim_reach);
   if (cell_ >= 0) {
     reading_ = interpolate(places.body.far->mesh(), cell_, place);
     return;
   }
-  const auto nearest = places.nearest_particle(place);
   core::require(nearest.is_there,
-                "no particle lies within three spacings of a point: it is outside "
-                "the material; move it");
+                places.body.zone ? "no particle lies within three spacings of a point: it is "
+                                   "outside the material; move it"
+                                 : "no cell holds a point: it is outside the material; move it");
   particle_ = nearest.particle;
   if (particle_ >= 0)
     find_particles(places.body);

@@ -210,4 +210,22 @@ TEST(CellLocator, agrees_with_looking_at_all_cells)
   check_locator(incommensurate(ring<2>()));
   check_locator(incommensurate(band<3>()));
 }
+
+TEST(CellLocator, finds_what_lies_a_little_outside)
+{
+  const Mesh<2> mesh = make_mesh(ring<2>());
+  const CellLocator<2> locator(mesh);
+  for (const int c : {0, mesh.n_cells() - 1}) {
+    const Vector<2> &size = mesh.cell_size[c], x = mesh.cell_lower[c] + 0.3 * size;
+    EXPECT_EQ(locator.nearest(x, 0.1), c);
+  }
+  Vector<2> lower = mesh.nodes[0];
+  for (const auto &node : mesh.nodes)
+    lower = lower.cwiseMin(node);
+  const int corner = locator.find(lower);
+  const Vector<2> size = mesh.cell_size[corner];
+  EXPECT_EQ(locator.find(lower - 0.05 * size), -1);
+  EXPECT_EQ(locator.nearest(lower - 0.05 * size, 0.1), corner);
+  EXPECT_EQ(locator.nearest(lower - 0.2 * size, 0.1), -1);
+}
 } // namespace ligament::fem

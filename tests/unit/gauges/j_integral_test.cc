@@ -156,4 +156,38 @@ TEST(JIntegral, DoesNotSeeShiftsAndSmallTurns)
   // sum.
   EXPECT_NEAR(gauges.read(small.body, 0)[0] / still, 1, 1e-3);
 }
+
+// Stresses that a force on all masses holds in balance, without a crack's: along x a bar whose end
+// is pulled, along y one that hangs, turned by a small angle. Without the force's own part J would
+// be a modulus of the force times that strain or angle.
+TEST(JIntegral, KnowsForcesOnMasses)
+{
+  const std::string rings = "/gauges=[" + ring("near", 12, 24) + "," + ring("wide", 20, 55) + "]";
+  for (const Body &b : packings)
+    for (const int axis : {0, 1}) {
+      SCOPED_TRACE(fmt::format("{}, {}", b.name, "xy"[axis]));
+      const double g = 1e-6, pull = 1e-4;
+      const Scene scene = small_scene(
+          std::vector<std::string>{size, crack, rings,
+                                   fmt::format("/body_force={{\"acceleration\": [{}, {}]}}",
+                                               axis == 0 ? g : 0, axis == 1 ? g : 0)} +
+          b.overrides);
+      SmallBody small(scene);
+      GaugeSet<2> gauges(scene, small.body);
+      const MaterialParameters &m = scene.material;
+      const double nu = m.poissons_ratio, e = m.youngs_modulus / (1 - nu * nu), v = nu / (1 - nu),
+                   k = m.density * g / e;
+      impose(small, [&](const Vector<2> &x) -> Vector<2> {
+        if (axis == 0)
+          return {-k * (x[0] * x[0] + v * x[1] * x[1]) / 2 + pull / e * x[0],
+                  v * k * x[0] * x[1] - v * pull / e * x[1]};
+        return {v * k * x[0] * x[1] - pull * x[1],
+                -k * (x[1] * x[1] + v * x[0] * x[0]) / 2 + pull * x[0]};
+      });
+      const auto values = gauges.read(small.body, 0);
+      const double part = m.density * g * (axis == 0 ? pull / e : pull);
+      EXPECT_NEAR(values[0] / (part * 36 * 36), 0, 0.01);
+      EXPECT_NEAR(values[2] / (part * 75 * 75), 0, 0.01);
+    }
+}
 } // namespace

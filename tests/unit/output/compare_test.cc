@@ -5,6 +5,7 @@
 #include "src/analysis/crack_path.h"
 #include "tests/unit/output/synthetic_run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -233,6 +234,26 @@ TEST(Compare, CurveWithUnitsAsReference)
   EXPECT_FALSE(r.particle_ratio);
   EXPECT_FALSE(r.crack_distance_max);
   EXPECT_EQ(r.file_name, "compare_paper");
+}
+
+// A laboratory that counts compression as positive measures the same; nothing is turned unasked.
+TEST(Compare, LoadsOfOppositeSignAreNamed)
+{
+  SyntheticRun run;
+  run.write("run");
+  for (const double sign : {1., -1.}) {
+    std::string text = "displacement;load\nmm;kN\n";
+    for (int i = 0; i <= 50; ++i)
+      text += fmt::format("{};{}\n", sign * i / 50. * 1e3 * run.peak_strain() * run.length,
+                          sign * i / 50. * 1e-3 * run.peak_load());
+    core::write_file("paper.csv", text);
+    const CompareResult r = compare("run", "paper.csv");
+    EXPECT_NEAR(*r.peak_load_error, sign > 0 ? 0 : -2, 1e-12);
+    EXPECT_EQ(std::any_of(
+                  r.notes.begin(), r.notes.end(),
+                  [](const std::string &note) { return note.find("opposite signs") != note.npos; }),
+              sign < 0);
+  }
 }
 
 // A cell that is empty, or a number that is none, is a row that nobody measured.

@@ -205,6 +205,19 @@ TEST(Picture, RareValuesHaveColours)
   EXPECT_LT(value_range({picture})[1], 1000);
 }
 
+// The same everywhere but for what a solver leaves: in the middle of the colours.
+TEST(Picture, NoiseHasOneColour)
+{
+  Picture picture;
+  Scatter scatter;
+  for (int k = 0; k < 1000; ++k)
+    scatter.values.push_back(-7e5 * (1 + 1e-9 * (k % 7)));
+  picture.scatters = {scatter};
+  const auto [lower, upper] = value_range({picture});
+  for (const double value : scatter.values)
+    EXPECT_NEAR((value - lower) / (upper - lower), 0.5, 0.01);
+}
+
 /// Two particles, a cell and the face between the particles, which have moved apart.
 BodyState two_particles()
 {

@@ -52,6 +52,34 @@ TEST(LoadCurve, ALoadThatHasNotFallenGoesOn)
   EXPECT_EQ(*record_of({{0, 0}, {1, 1}, {0.11, 5}, {2, 8}}).peak_load, 2);
 }
 
+// Between cycles the machine lets go: what bears more in the next one is no rebound. Once broken,
+// it goes on pulling.
+TEST(LoadCurve, UnloadingIsNoFall)
+{
+  LoadCurve curve;
+  double time = 0;
+  for (const auto &[load, strain, n_broken] :
+       std::vector<std::tuple<double, double, int>>{{-1, -1, 0},
+                                                    {-3, -3, 4},
+                                                    {-0.1, -0.1, 4},
+                                                    {0.2, 0, 4},
+                                                    {-5, -6, 9},
+                                                    {-0.2, -7, 90},
+                                                    {-8, -8, 90}})
+    curve.add(time++, {load, 10 * load, 0, strain}, n_broken);
+  RunRecord record;
+  curve.put_into(record);
+  EXPECT_EQ(record.peak_load.value(), -5);
+  EXPECT_TRUE(curve.has_fallen());
+}
+
+// What broke before the test begins has no load that could fall.
+TEST(LoadCurve, NoiseIsNoLoad)
+{
+  EXPECT_EQ(*record_of({{0, 0}, {-2, 7}, {-3, 7}}).peak_load, -3);
+  EXPECT_EQ(*record_of({{1e-12, 0}, {-2, 7}, {-3, 7}}).peak_load, -3);
+}
+
 TEST(LoadCurve, WavesWithoutFractureHaveNoPeak)
 {
   const RunRecord r = record_of({{0, 0}, {1, 0}, {-2, 0}, {0.1, 0}, {1.5, 0}});
