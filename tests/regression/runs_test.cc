@@ -80,6 +80,29 @@ TEST(Runs, APlateThatBreaksBetweenTwoRowsHasAPeak)
   EXPECT_GT(*record.peak_load, 0);
 }
 
+// No side bears a load that another one answers: whichever way it hangs, nothing is said of a path.
+TEST(Runs, WhatItsWeightBreaksHasNoLoadPath)
+{
+  for (const bool along_x : {false, true}) {
+    SCOPED_TRACE(along_x);
+    const RunRecord record = run(
+        "hanging",
+        {along_x ? "/specimen={\"size\": [60, 24], \"cracks\": [{\"points\": [[0, -12], [0, 8]]}]}"
+                 : "/specimen={\"size\": [24, 60], \"cracks\": [{\"points\": [[-12, 0], [8, 0]]}]}",
+         R"(/material/fracture={"criterion": "maximum_tension", "strength": 1e-3})",
+         along_x ? R"(/loads=[{"boundary": "right", "velocity": [0, 0]}])"
+                 : R"(/loads=[{"boundary": "top", "velocity": [0, 0]}])",
+         along_x ? R"(/body_force={"acceleration": [-4e-5, 0]})"
+                 : R"(/body_force={"acceleration": [0, -4e-5]})",
+         "/far_field=none",
+         R"(/discrete_zone={"extent": "all", "packing": "square", "spacing": 1})",
+         "/time/duration=400", until_broken});
+    EXPECT_GE(record.broken_bonds, 3);
+    EXPECT_FALSE(record.broken_time);
+    EXPECT_EQ(record.reason, "end of the scene's duration");
+  }
+}
+
 TEST(Runs, TheSameSceneGivesTheSameBits)
 {
   const auto overrides =

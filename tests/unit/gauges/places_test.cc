@@ -249,4 +249,20 @@ TEST(Gauges, OtherColumnsOfTheSameNameAreRefused)
     {"name": "a", "kind": "stress", "points": [[0, 0]]}])"});
   EXPECT_EQ(scene.gauges.size(), 2u); // a_xx is another column than a_x
 }
+
+// Straight edges of cells cut off a little of a round side: what lies there moves with its cell.
+TEST(Gauges, PointsOnACurvedSideOfAMeshMoveWithIt)
+{
+  Measured m(R"([
+    {"name": "rim", "kind": "distance", "points": [[-1, 0], [0, 12]]},
+    {"name": "aslant", "kind": "distance", "points": [[0, -12], [7.2, 9.6]]}])",
+             {R"(/specimen={"outline": [{"at": [-12, 0], "centre": [0, 0], "side": "low"},
+                                        {"at": [12, 0], "centre": [0, 0], "side": "top"}]})",
+              "/discrete_zone=none"});
+  const Eigen::Matrix2d f = turn() * stretch();
+  m.small.deform(f - Eigen::Matrix2d::Identity());
+  const auto v = m.read();
+  EXPECT_NEAR(v[0], (f * Vector<2>(1, 12)).norm() - std::hypot(1, 12), 1e-12);
+  EXPECT_NEAR(v[1], (f * Vector<2>(7.2, 21.6)).norm() - std::hypot(7.2, 21.6), 1e-12);
+}
 } // namespace

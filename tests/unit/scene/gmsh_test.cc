@@ -4,6 +4,7 @@
 #include "src/scene/body_shape.h"
 #include "src/scene/read_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -288,6 +289,43 @@ TEST(Gmsh, SizesOfCellsBesideThoseOfTheFileAreDoubted)
   for (std::size_t k = 0; k < sizes.size(); ++k) {
     EXPECT_EQ(result.warnings[k].key, "/far_field/" + sizes[k]);
     EXPECT_EQ(result.warnings[k].reason, "the cells are those of /specimen/file");
+  }
+}
+
+// A hole of the file is one like that of the scene.
+TEST(Gmsh, HolesBetweenTheRectanglesOfAJIntegralAreRefused)
+{
+  std::string nodes = "$Nodes\n16\n", cells = "$Elements\n8\n";
+  for (int k = 0; k < 16; ++k)
+    nodes += fmt::format("{} {} {} 0\n", k + 1, 20 * (k % 4), 20 * (k / 4));
+  int n = 0;
+  for (int k = 0; k < 9; ++k)
+    if (k != 4) { // the middle one of nine squares is missing
+      const int a = 1 + k % 3 + 4 * (k / 3);
+      cells += fmt::format("{} 3 2 1 1 {} {} {} {}\n", ++n, a, a + 1, a + 5, a + 4);
+    }
+  const File file("frame.msh", head_2 + nodes + "$EndNodes\n" + cells + "$EndElements\n");
+  for (const double top : {19., 30.}) {
+    const ReadResult result = parse_scene(
+        R"({
+      "dimension": 2,
+      "specimen": {"file": "frame.msh", "cracks": [{"points": [[-1, 10], [30, 10]]}]},
+      "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.2, "density": 1000,
+                   "fracture": {"criterion": "maximum_tension", "strength": 1e6}},
+      "discrete_zone": {"extent": "all", "packing": "random", "spacing": 1},
+      "loads": [{"boundary": "left", "velocity": [-1e-3, 0], "ramp": 0.1},
+                {"boundary": "right", "velocity": [1e-3, 0], "ramp": 0.1}],
+      "gauges": [{"name": "j", "kind": "j_integral", "direction": [1, 0], "lower": [18, 1],
+                  "upper": [50, 30], "inner_lower": [26, 6], "inner_upper": [34, 14]}],
+      "time": {"duration": 1}
+    })",
+        "scene.json", {fmt::format("/gauges/0/upper/1={}", top)});
+    EXPECT_EQ(result.scene.has_value(), top < 20);
+    if (top > 20) {
+      ASSERT_EQ(result.errors.size(), 1u);
+      EXPECT_EQ(result.errors[0].message,
+                "the outer rectangle of /gauges/0 meets a hole of /specimen/file");
+    }
   }
 }
 } // namespace
