@@ -48,6 +48,12 @@ public:
   std::optional<Stop> observe(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping);
 
+  /// A reading that counts for the peak and has no row: bonds broke in the same step.
+  void see_load(double time, const Reading &reading, std::int64_t n_broken)
+  {
+    curve_.look(time, reading, n_broken);
+  }
+
   /// Until it is said again: whether observe() looks at equilibria of a static phase. Each of them
   /// is a row of the history.
   void in_static_phase(bool is_static) { in_static_phase_ = is_static; }

@@ -173,7 +173,10 @@ std::optional<Stop> Simulation<dim>::skip_steps()
       return stop;
   const auto timing = timers_.scope(timers_.section("equilibria"));
   recorder_.in_static_phase(true);
-  return phases_.advance(body_, clock_, damping_.energy(), [&] { return look(true); });
+  const auto stop = phases_.advance(body_, clock_, damping_.energy(), [&] { return look(true); });
+  if (const Borne borne = phases_.borne(); borne.reading)
+    recorder_.see_load(borne.time, *borne.reading, borne.n_broken);
+  return stop;
 }
 
 // Impulses of loads that are there at once, which the mesh takes for m steps, have (E5) and swing V

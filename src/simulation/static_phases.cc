@@ -135,6 +135,7 @@ struct StaticPhases<dim>::Work
   int skipped = 0;              // steps, between two static phases
   double residual = 0;          // of the ledger between them, J
   double stretching_energy = 0; // J, in the last commit
+  Borne borne;
   long broken_then = 0;
   double held_energy = 0; // J, at the end of the last static phase
 };
@@ -246,6 +247,7 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
                                                const Look &look)
 {
   Work &work = *work_;
+  work.borne = {};
   const auto stop = work.advance(body, clock, damping, look);
   const PhaseEnd reason = work.phases.back().reason;
   // The last step of all is one of the loop, which ends the run.
@@ -253,6 +255,12 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
                  clock.now.step + work.ratio < clock.n_steps &&
                  reason != PhaseEnd::out_of_balance && reason != PhaseEnd::no_resistance;
   return stop;
+}
+
+template <int dim>
+Borne StaticPhases<dim>::borne() const
+{
+  return work_ ? work_->borne : Borne();
 }
 
 template <int dim>
@@ -375,7 +383,14 @@ std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clo
       failed(end);
       return stop;
     }
-    const auto commit_here = [&](const Eigen::VectorXd &v) { commit(body, clock, v); };
+    const long last = clock.now.step + stretch.n_steps();
+    const auto commit_here = [&](const Eigen::VectorXd &v) {
+      if (clock.now.step == last) { // before bonds break and the load drops
+        solver->system().forces(clock.now.time);
+        borne = {clock.now.time, machine.read(body, clock.now.time), n_broken(body)};
+      }
+      commit(body, clock, v);
+    };
     const bool may_halve = n_strayed < most_strayed && stretch.n_steps() >= 4 * ratio;
     if ((stop = stretch.walk(clock, commit_here, look, may_halve))) {
       finish(PhaseEnd::stopped);

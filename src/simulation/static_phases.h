@@ -10,6 +10,14 @@
 
 namespace ligament::program
 {
+/// What a body in equilibrium bore at the end of a static phase, before bonds broke there.
+struct Borne
+{
+  double time = 0; // s
+  std::optional<Reading> reading;
+  std::int64_t n_broken = 0; // before
+};
+
 /// A run alternates: dynamic phases, in which the loop takes its steps, until the body is calm; and
 /// static ones, which end at the first step in which a bond bears its strength (theory.md section
 /// 6). Signals and checkpoints wait for the end of a static phase.
@@ -41,6 +49,9 @@ public:
   /// far. Of a whole body alone.
   std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
                               const Look &look);
+
+  /// At the end of the phase of the last advance(); without a reading where it found none.
+  Borne borne() const;
 
   /// Whether another static phase follows the last one at once: sequential loading has no steps in
   /// between, nor is there one where a face has softened to the end. Until then the forces are

@@ -103,6 +103,27 @@ TEST(Runs, WhatItsWeightBreaksHasNoLoadPath)
   }
 }
 
+// The first bond breaks beside a grip and takes a part of the load with it: the peak is what the
+// strip bore before, its strength times its width. Particles at lattice sites: all stresses are
+// equal.
+TEST(Runs, APeakByEquilibriaIsThatBeforeTheBreak)
+{
+  for (const std::string packing : {"square", "hexagonal"}) {
+    SCOPED_TRACE(packing);
+    const RunRecord record =
+        run("strip", {"/specimen={\"size\": [20, 40]}", "/plane=\"stress\"",
+                      R"(/material/fracture={"criterion": "principal_stress", "strength": 1e-3})",
+                      R"(/loads=[{"boundary": "top", "velocity": [null, 1e-6], "ramp": 1000},
+                             {"boundary": "bottom", "velocity": [null, 0]}])",
+                      "/far_field=none",
+                      "/discrete_zone={\"extent\": \"all\", \"spacing\": 1, \"packing\": \"" +
+                          packing + "\"}",
+                      "/time/duration=60000", "/time/loading=\"sequential\"", until_broken});
+    ASSERT_TRUE(record.peak_stress);
+    EXPECT_NEAR(*record.peak_stress, 1e-3, 1e-6);
+  }
+}
+
 TEST(Runs, TheSameSceneGivesTheSameBits)
 {
   const auto overrides =

@@ -257,7 +257,7 @@ TEST(Gauges, PointsOnACurvedSideOfAMeshMoveWithIt)
     {"name": "rim", "kind": "distance", "points": [[-1, 0], [0, 12]]},
     {"name": "aslant", "kind": "distance", "points": [[0, -12], [7.2, 9.6]]}])",
              {R"(/specimen={"outline": [{"at": [-12, 0], "centre": [0, 0], "side": "low"},
-                                        {"at": [12, 0], "centre": [0, 0], "side": "top"}]})",
+                                        {"at": [12, 0], "centre": [0, 0], "side": "high"}]})",
               "/discrete_zone=none"});
   const Eigen::Matrix2d f = turn() * stretch();
   m.small.deform(f - Eigen::Matrix2d::Identity());
