@@ -29,12 +29,7 @@ void check_company(const Scene &scene, const std::string &key, const std::string
     if (is_wrong)
       f.error(key, fmt::format("\"{}\" cannot be used with {}", name, with), reason, remedy);
   };
-  const auto &base = scene.material;
-  const bool differ =
-      std::any_of(scene.inclusions.begin(), scene.inclusions.end(), [&](const Inclusion &i) {
-        return i.material.youngs_modulus != base.youngs_modulus ||
-               i.material.poissons_ratio != base.poissons_ratio;
-      });
+  const bool differ = joins_other_constants(scene);
   refuse(differ, "inclusions of other elastic constants",
          "faces between two of them see the pressures of all others",
          "give all materials the same Young's modulus and Poisson's ratio");

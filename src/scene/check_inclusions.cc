@@ -36,19 +36,9 @@ public:
                "no particle would be of this material", "add one of them, or remove the inclusion");
   }
 
-  /// Whether bonds join elastic constants that differ.
-  bool joins_other_constants() const
-  {
-    const MaterialParameters &m = scene_.material;
-    return std::any_of(scene_.inclusions.begin(), scene_.inclusions.end(), [&](const auto &i) {
-      return i.material.youngs_modulus != m.youngs_modulus ||
-             i.material.poissons_ratio != m.poissons_ratio;
-    });
-  }
-
   void poissons_ratio(const MaterialParameters &material, const std::string &key)
   {
-    if (f_.sound_and_given({key}) && material.poissons_ratio < 0 && joins_other_constants())
+    if (f_.sound_and_given({key}) && material.poissons_ratio < 0 && joins_other_constants(scene_))
       f_.error(key,
                fmt::format("\"poissons_ratio\" is {} in a scene with inclusions of other elastic "
                            "constants",
@@ -84,6 +74,18 @@ private:
   Findings &f_;
 };
 } // namespace
+
+bool have_other_constants(const MaterialParameters &a, const MaterialParameters &b)
+{
+  return a.youngs_modulus != b.youngs_modulus || a.poissons_ratio != b.poissons_ratio;
+}
+
+bool joins_other_constants(const Scene &scene)
+{
+  return std::any_of(scene.inclusions.begin(), scene.inclusions.end(), [&](const Inclusion &i) {
+    return have_other_constants(i.material, scene.material);
+  });
+}
 
 void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout, Findings &f)
 {

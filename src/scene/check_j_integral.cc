@@ -96,11 +96,6 @@ std::optional<Point> place_outside(const Scene &scene, const GaugeParameters &g,
   return std::nullopt;
 }
 
-bool has_other_constants(const MaterialParameters &a, const MaterialParameters &b)
-{
-  return a.youngs_modulus != b.youngs_modulus || a.poissons_ratio != b.poissons_ratio;
-}
-
 /// The inclusions as the rectangles see them: in their plane, whatever the third coordinate.
 class OtherMaterials
 {
@@ -137,7 +132,7 @@ private:
   Found found(std::size_t k) const
   {
     return {fmt::format("/inclusions/{}", k),
-            has_other_constants(scene_.inclusions[k].material, scene_.material)};
+            have_other_constants(scene_.inclusions[k].material, scene_.material)};
   }
   bool meets(const Inclusion &inclusion, const Point &lower, const Point &upper) const
   {

@@ -58,6 +58,9 @@ void check_path(const Scene &scene, const Crack &crack, const std::string &key, 
 void check_inside_zone(const Box &cut, const std::string &name, const std::string &key,
                        const Layout &layout, Findings &findings);
 
+/// Whether two materials differ in Young's modulus or Poisson's ratio; any two of the scene.
+bool have_other_constants(const MaterialParameters &a, const MaterialParameters &b);
+bool joins_other_constants(const Scene &scene);
 /// Other materials. `layout` as above.
 void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout,
                       Findings &findings);

@@ -106,9 +106,7 @@ void check_company(const Scene &scene, const MaterialParameters &m, const std::s
     for (std::size_t k = 0; k < scene.inclusions.size(); ++k) {
       const MaterialParameters &other = scene.inclusions[k].material;
       const std::string inclusion = fmt::format("/inclusions/{}", k);
-      if (f.sound({inclusion, "/material"}) &&
-          (other.youngs_modulus != scene.material.youngs_modulus ||
-           other.poissons_ratio != scene.material.poissons_ratio))
+      if (f.sound({inclusion, "/material"}) && have_other_constants(other, scene.material))
         f.error(energy,
                 fmt::format("faces soften beside {} of other elastic constants, and \"loading\" is "
                             "\"{}\"",

@@ -122,12 +122,7 @@ void check_viscosity(const Scene &scene, Findings &f)
                      [](const LoadParameters &l) { return l.pressure.has_value(); }),
          "a pressure that follows the surface",
          "it does not enter the strains of what is viscous yet", "give a \"traction\"");
-  const auto &base = scene.material;
-  const bool differ = std::any_of(
-      scene.inclusions.begin(), scene.inclusions.end(), [&](const Inclusion &i) {
-        return i.material.youngs_modulus != base.youngs_modulus ||
-               i.material.poissons_ratio != base.poissons_ratio;
-      });
+  const bool differ = joins_other_constants(scene);
   for (const auto &[key, material] : materials)
     if (differ && material->viscosity && material->viscosity->shear_viscosity.value_or(0) > 0)
       f.error(key + "/viscosity/shear_viscosity",
