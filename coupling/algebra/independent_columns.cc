@@ -6,7 +6,31 @@
 
 namespace ligament::coupling
 {
-std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
+namespace
+{
+/// Without columns that are empty, and likewise ordered.
+Eigen::SparseMatrix<double> without_empty(const Eigen::SparseMatrix<double> &gram,
+                                          std::vector<int> &columns)
+{
+  std::vector<int> number(gram.cols(), -1);
+  for (int col = 0; col < gram.cols(); ++col)
+    if (gram.coeff(col, col) > 0) {
+      number[col] = int(columns.size());
+      columns.push_back(col);
+    }
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(gram.nonZeros());
+  for (const int col : columns)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(gram, col); it; ++it)
+      if (number[it.row()] >= 0)
+        entries.emplace_back(number[it.row()], number[col], it.value());
+  Eigen::SparseMatrix<double> filled(columns.size(), columns.size());
+  filled.setFromTriplets(entries.begin(), entries.end());
+  return filled;
+}
+
+/// Of a matrix without empty columns.
+std::vector<char> independent_of(const Eigen::SparseMatrix<double> &gram)
 {
   const int n = int(gram.rows());
   int band = 0;
@@ -46,6 +70,19 @@ std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
   }
   return keep;
 }
+} // namespace
+
+// Most nodes near an overlap have no entry: the band of the others is narrower.
+std::vector<char> independent_columns(const Eigen::SparseMatrix<double> &gram)
+{
+  std::vector<int> columns;
+  const std::vector<char> of_filled = independent_of(without_empty(gram, columns));
+  std::vector<char> keep(gram.cols(), 0);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    keep[columns[k]] = of_filled[k];
+  return keep;
+}
+
 template <int dim>
 std::vector<int> nodes_along_overlap(const Overlap<dim> &overlap)
 {

@@ -1,6 +1,7 @@
 #include "coupling/operators/blended_operators.h"
 
 #include "core/check.h"
+#include "core/part.h"
 #include "coupling/algebra/nodal_matrix.h"
 #include "coupling/operators/dead_load.h"
 #include "coupling/operators/member_terms.h"
@@ -262,8 +263,21 @@ void add_normal(std::vector<Vector<dim>> &normals, const Vector<dim> &normal)
   normals.push_back(normal);
 }
 
+/// Whether the mesh ends there because particles alone go on: as deep as the overlap is long.
+template <int dim>
+bool looks_into_zone(const Overlap<dim> &overlap, const fem::CellFace<dim> &face,
+                     const core::FaceCorners<dim> &corners)
+{
+  if (face.boundary != inner_surface<dim>)
+    return false;
+  constexpr double round_off = 1e-6;
+  return overlap.distance_to_edge(core::face_centroid<dim>(corners)) >
+         overlap.parameters.length * (1 - round_off);
+}
+
 // A node feels a free surface when a particle at that surface, or a neighbour of one, hands it
-// forces, or when it lies on the surface itself.
+// forces, or when it lies on the surface itself: on a side of the box, one with a name or one
+// without. Where no particle lies in the outermost cells the mesh alone tells.
 template <int dim>
 std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &overlap,
                                                         const particles::Particles<dim> &particles,
@@ -302,14 +316,19 @@ std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &over
   std::vector<int> near(overlap.mesh.n_nodes(), -1);
   for (int i = 0; i < overlap.n_nodes(); ++i)
     near[overlap.near_nodes[i]] = i;
-  for (const auto &face : overlap.mesh.boundary_faces)
-    if (face.boundary < inner_surface<dim>) {
-      const auto local = fem::face_nodes<dim>(face.face); // in axes of the cell's own
-      const int axis = face.boundary / 2, side = face.boundary % 2;
-      for (const int a : local)
-        if (const int node = near[overlap.mesh.cells[face.cell][a]]; node >= 0)
-          add_normal<dim>(normals[node], (side ? 1. : -1.) * Vector<dim>::Unit(axis));
-    }
+  for (const auto &face : overlap.mesh.boundary_faces) {
+    const auto &nodes = overlap.mesh.cells[face.cell];
+    const auto local = fem::face_nodes<dim>(face.face);
+    if (std::none_of(local.begin(), local.end(), [&](int a) { return near[nodes[a]] >= 0; }))
+      continue;
+    const auto corners = fem::cell_corners(overlap.mesh, face.cell);
+    if (looks_into_zone(overlap, face, fem::face_corners<dim>(corners, face.face)))
+      continue;
+    const Vector<dim> normal = fem::face_normal<dim>(corners, face.face);
+    for (const int a : local)
+      if (const int node = near[nodes[a]]; node >= 0)
+        add_normal<dim>(normals[node], normal);
+  }
   return normals;
 }
 
