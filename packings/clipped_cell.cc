@@ -1,6 +1,9 @@
 #include "packings/clipped_cell.h"
 
 #include "core/check.h"
+#include "packings/seeds.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +44,19 @@ SolidPiece<dim> in_solid(const VoronoiCell<dim> &convex, const SpecimenShape<dim
   return piece;
 }
 
+/// The face of the cell in whose plane the facet lies and that looks the other way; null: none.
+template <int dim>
+const typename VoronoiCell<dim>::Face *
+opposite(const std::vector<typename VoronoiCell<dim>::Face> &faces,
+         const typename SolidPiece<dim>::Face &facet, double spacing)
+{
+  for (const auto &face : faces)
+    if ((face.normal + facet.normal).norm() < 1e-10 &&
+        std::abs(face.distance + facet.distance) < 1e-10 * spacing)
+      return &face;
+  return nullptr;
+}
+
 template <int dim>
 bool is_near_solid(const VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape,
                    const Vector<dim> &x)
@@ -73,18 +89,18 @@ VoronoiCell<dim> voronoi_cell(const Lattice<dim> &lattice, const SpecimenShape<d
 /// voids: inclusion and exclusion of every set of voids, from number `first` on, that meets in it.
 template <int dim, typename Visit>
 void for_each_convex_part(const VoronoiCell<dim> &cell, const SpecimenShape<dim> &shape,
-                          const Vector<dim> &x, double spacing, Visit &&visit,
-                          std::size_t first = 0, double sign = 1)
+                          const Vector<dim> &x, double spacing, Visit &&visit, int first = 0,
+                          double sign = 1)
 {
   if (first == 0)
     visit(cell, sign);
-  int id = first_void_plane;
-  for (std::size_t v = 0; v < shape.voids.size(); id -= int(shape.voids[v++].sides.size())) {
-    // The polygon of a hole reaches a little out of its circle.
-    if (v < first || shape.voids[v].distance(x) > cell.max_radius() + 0.1 * spacing)
+  // The polygon of a hole reaches a little out of its circle.
+  const double reach = cell.max_radius() + 0.1 * spacing;
+  for (const int v : shape.grid.within(x, reach)) {
+    if (v < first || shape.voids[v].distance(x) > reach)
       continue;
     VoronoiCell<dim> common = cell;
-    int side_id = id;
+    int side_id = first_void_plane - shape.n_sides_before[v];
     for (const HalfSpace<dim> &side : shape.voids[v].sides)
       common.clip(side.normal, side.offset - side.normal.dot(x), side_id--);
     if (common.is_empty())
@@ -149,8 +165,16 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
     if (near_solid) {
       piece = in_solid(convex, shape, x, spacing);
       const auto faces = piece.faces();
+      const auto cuts = convex.faces();
       for (std::size_t k = 0; k < faces.size(); ++k) {
         const auto &face = faces[k];
+        // A facet of the neighbour's material in the plane between both: what lies there is the
+        // void, and the cut has closed a sheet of no thickness with it.
+        if (is_facet(face.id))
+          if (const auto *cut = opposite<dim>(cuts, face, spacing)) {
+            add(cut->id, cut->normal, cut->distance, -sign * face.area, -sign * face.moment);
+            continue;
+          }
         const auto [sum, is_first] =
             add(face.id, face.normal, face.distance, sign * face.area, sign * face.moment);
         if (dim == 3 && is_facet(face.id))
@@ -167,9 +191,10 @@ ClippedCell<dim>::ClippedCell(const VoronoiCell<dim> &cell, const SpecimenShape<
       }
     }
     // Corners inside a void bound nothing.
+    const std::vector<int> &near = shape.grid.within(x, convex.max_radius() + 0.1 * spacing);
     for (const Vector<dim> &corner : near_solid ? piece.vertices() : convex.vertices())
-      if (std::none_of(shape.voids.begin(), shape.voids.end(),
-                       [&](const auto &v) { return v.contains(x + corner, 1e-9 * spacing); }))
+      if (std::none_of(near.begin(), near.end(),
+                       [&](int v) { return shape.voids[v].contains(x + corner, 1e-9 * spacing); }))
       {
         lower = lower.cwiseMin(corner);
         upper = upper.cwiseMax(corner);
@@ -202,8 +227,8 @@ bool ClippedCell<dim>::reaches_through(const SpecimenShape<dim> &shape, const Ve
   // Round a corner the line of sight dips less deep into a void, which is at least d wide.
   for (const Part &part : parts) {
     const Vector<dim> there = x + part.moment / part.area;
-    for (const Void<dim> &v : shape.voids)
-      if (v.hides(x, there, 0.45 * spacing))
+    for (const int v : shape.grid.within(x, (there - x).norm() + spacing))
+      if (shape.voids[v].hides(x, there, 0.45 * spacing))
         return true;
     if (shape.leaves_solid(x, there, 0.45 * spacing))
       return true;
@@ -219,9 +244,13 @@ ClippedCell<dim>::ClippedCell(const Lattice<dim> &lattice, const SpecimenShape<d
   // All who compete for a point within 3 d of this particle lie within reach, so up to there cells
   // are true. Farther points, or points behind a void, are material without particles of its own.
   const double d = lattice.spacing;
-  core::require(radius <= 3 * d && !reaches_through(shape, lattice.position(k), d),
-                "beside a hole or notch the specimen is thinner than the particles can fill: make "
-                "the spacing smaller, or let the hole or notch reach through the surface");
+  const Vector<dim> x = lattice.position(k);
+  core::require(radius <= 3 * d && !reaches_through(shape, x, d),
+                fmt::format("near {} the specimen is thinner, or a corner of it sharper, than the "
+                            "particles of a lattice can fill: make the spacing smaller, blunt the "
+                            "corner, let a hole or notch reach through the surface, or choose the "
+                            "packing \"random\"",
+                            place_text<dim>(x)));
 }
 
 template void clip_by_sides(VoronoiCell<2> &, const SpecimenShape<2> &, const Vector<2> &);

@@ -207,8 +207,9 @@ auto Packer<dim>::cell_at(const Index &k, double distance) const -> Cell
             ((shape_.upper - x - extent).array() > -1e-12 * d).all();
     if (shape_.solid)
       whole = whole && shape_.solid->distance(x, 4 * d) > lattice_.cell_radius;
-    for (const Void<dim> &v : shape_.voids)
-      whole = whole && v.distance(x) > lattice_.cell_radius + 0.1 * d;
+    const double reach = lattice_.cell_radius + 0.1 * d;
+    for (const int v : shape_.grid.within(x, reach))
+      whole = whole && shape_.voids[v].distance(x) > reach;
   }
   if (whole)
     return {is_in_zone(x, -extent, extent), {}};

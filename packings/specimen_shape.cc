@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ligament::packings
 {
@@ -72,6 +73,54 @@ bool Void<dim>::hides(const Vector<dim> &a, const Vector<dim> &b, double depth) 
       end = std::min(end, excess_a / (excess_a - excess_b));
   }
   return begin < end;
+}
+
+template <int dim>
+VoidGrid<dim>::VoidGrid(const std::vector<Void<dim>> &voids, const Vector<dim> &lower,
+                        const Vector<dim> &upper, double reach)
+    : all_(voids.size()), lower_(lower), reach_(reach)
+{
+  std::iota(all_.begin(), all_.end(), 0);
+  bin_ = std::max(2 * reach, (upper - lower).maxCoeff() / (dim == 2 ? 500 : 60));
+  std::size_t n = 1;
+  for (int a = 0; a < dim; ++a)
+    n *= n_bins_[a] = std::max(1, int(std::ceil((upper[a] - lower[a]) / bin_)));
+  if (voids.size() < 8)
+    return; // a look at all of them is as fast
+  near_.resize(n);
+  for (const int v : all_) {
+    // Bins at the border hold what lies beyond it.
+    std::array<int, dim> first, last;
+    for (int a = 0; a < dim; ++a) {
+      const double at = voids[v].centre()[a] - lower[a], half = voids[v].half_size()[a] + reach;
+      first[a] = int(std::clamp(std::floor((at - half) / bin_), 0., n_bins_[a] - 1.));
+      last[a] = int(std::clamp(std::floor((at + half) / bin_), 0., n_bins_[a] - 1.));
+    }
+    for (std::array<int, dim> k = first;;) {
+      std::size_t bin = 0;
+      for (int a = dim - 1; a >= 0; --a)
+        bin = bin * n_bins_[a] + k[a];
+      near_[bin].push_back(v);
+      int a = 0;
+      while (a < dim && k[a] == last[a])
+        k[a] = first[a], ++a;
+      if (a == dim)
+        break;
+      ++k[a];
+    }
+  }
+}
+
+template <int dim>
+const std::vector<int> &VoidGrid<dim>::within(const Vector<dim> &x, double distance) const
+{
+  if (near_.empty() || distance > reach_)
+    return all_;
+  std::size_t bin = 0;
+  for (int a = dim - 1; a >= 0; --a)
+    bin = bin * n_bins_[a] +
+          std::size_t(std::clamp(std::floor((x[a] - lower_[a]) / bin_), 0., n_bins_[a] - 1.));
+  return near_[bin];
 }
 
 template <int dim>
@@ -165,6 +214,12 @@ SpecimenShape<dim>::SpecimenShape(const SpecimenParameters<dim> &p)
     }
     voids.push_back(Void<dim>::box(notch));
   }
+  int n_sides = 0;
+  for (const Void<dim> &v : voids) {
+    n_sides_before.push_back(n_sides);
+    n_sides += int(v.sides.size());
+  }
+  grid = VoidGrid<dim>(voids, lower, upper, 4 * d);
   for (const CrackPoints<dim> &points : p.cracks)
     cracks.emplace_back(points, 1e-9 * d);
   if (solid)
@@ -176,8 +231,8 @@ double SpecimenShape<dim>::distance(const Vector<dim> &x) const
 {
   double nearest = solid ? solid->distance(x, 4 * spacing)
                          : std::min((x - lower).minCoeff(), (upper - x).minCoeff());
-  for (const Void<dim> &v : voids)
-    nearest = std::min(nearest, v.distance(x));
+  for (const int v : grid.within(x, 4 * spacing))
+    nearest = std::min(nearest, voids[v].distance(x));
   return nearest;
 }
 
@@ -198,6 +253,8 @@ bool SpecimenShape<dim>::leaves_solid(const Vector<dim> &a, const Vector<dim> &b
 
 template class Void<2>;
 template class Void<3>;
+template class VoidGrid<2>;
+template class VoidGrid<3>;
 template class CrackPlane<2>;
 template class CrackPlane<3>;
 template int first_crossed(const std::vector<CrackPlane<2>> &, const Vector<2> &,

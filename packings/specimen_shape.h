@@ -4,6 +4,8 @@
 #include "packings/solid_piece.h"
 #include "packings/specimen.h"
 
+#include <array>
+
 namespace ligament::packings
 {
 /// The half-space normal . x <= offset.
@@ -31,11 +33,36 @@ public:
   /// Does the segment a - b run through it deeper than `depth`?
   bool hides(const Vector<dim> &a, const Vector<dim> &b, double depth) const;
 
+  /// Of a box around it, its polygon included.
+  const Vector<dim> &centre() const { return centre_; }
+  Vector<dim> half_size() const { return half_size_ + Vector<dim>::Constant(1.1 * radius_); }
+
   std::vector<HalfSpace<dim>> sides; // outward normals; the void is their intersection
 
 private:
   Vector<dim> centre_ = Vector<dim>::Zero(), half_size_ = Vector<dim>::Zero();
   double radius_ = 0;
+};
+
+/// Which of many voids are near a place, by bins.
+template <int dim>
+class VoidGrid
+{
+public:
+  VoidGrid() = default;
+  /// Of places in the box, in m.
+  VoidGrid(const std::vector<Void<dim>> &voids, const Vector<dim> &lower, const Vector<dim> &upper,
+           double reach);
+
+  /// Numbers in order of those within so far (m) of x, perhaps with others.
+  const std::vector<int> &within(const Vector<dim> &x, double distance) const;
+
+private:
+  std::vector<int> all_;
+  Vector<dim> lower_ = Vector<dim>::Zero();
+  double bin_ = 1, reach_ = 0; // m
+  std::array<int, dim> n_bins_{};
+  std::vector<std::vector<int>> near_; // of a bin: what is within reach of it
 };
 
 /// A cut without width.
@@ -78,8 +105,8 @@ struct SpecimenShape
   /// Checks the parameters; throws core::InputError with reason and remedy.
   explicit SpecimenShape(const SpecimenParameters<dim> &parameters);
 
-  /// From x to the nearest surface; negative outside the material. Surfaces of a solid count up to
-  /// four spacings away.
+  /// From x to the nearest surface; negative outside the material. Surfaces of voids and of a solid
+  /// count up to four spacings away.
   double distance(const Vector<dim> &x) const;
   /// Does the segment a - b leave the solid by more than `depth`?
   bool leaves_solid(const Vector<dim> &a, const Vector<dim> &b, double depth) const;
@@ -89,6 +116,8 @@ struct SpecimenShape
   std::shared_ptr<const core::Solid<dim>> solid;  // null: the box
   std::shared_ptr<const SolidPieces<dim>> pieces; // of it
   std::vector<Void<dim>> voids;
+  std::vector<int> n_sides_before; // of the voids in front of each
+  VoidGrid<dim> grid;              // of them
   std::vector<CrackPlane<dim>> cracks;
 };
 } // namespace ligament::packings

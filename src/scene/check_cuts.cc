@@ -57,6 +57,13 @@ public:
       inside.lower[c] = std::max(inside.lower[c], specimen_.lower[c]);
       inside.upper[c] = std::min(inside.upper[c], specimen_.upper[c]);
     }
+    for (int c = 0; c < scene_.dimension; ++c)
+      if (const double width = notch.upper[c] - notch.lower[c]; width < spacing_ * (1 - 1e-9))
+        return f_.error(key,
+                        fmt::format("the notch {} is {:.4g} m wide in {}, less than a spacing", key,
+                                    width, axis_names[c]),
+                        fmt::format("the particles cannot show it: \"spacing\" is {} m", spacing_),
+                        "widen it, make the spacing smaller, or give a crack");
     off_overlap(inside, "the notch " + key, key);
   }
 
@@ -95,8 +102,9 @@ public:
                                             : "a crack in 3D is a polygon",
                       scene_.dimension == 2 ? "give its two ends, and its corners between"
                                             : "give three corners or more");
-    for (std::size_t k = 1; k < n && scene_.dimension == 2; ++k)
-      if (crack.points[k] == crack.points[k - 1] && n > 2)
+    // A polygon closes itself: its last point is not its first one again.
+    for (std::size_t k = scene_.dimension == 2 ? 1 : 0; k < n && n > 2; ++k)
+      if (crack.points[k] == crack.points[(k + n - 1) % n])
         return f_.error(points, fmt::format("\"points\" in {} has the same point twice", key),
                         "the crack has no direction there", "remove one of them");
     if (diameter(crack.points) == 0)

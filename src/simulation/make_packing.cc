@@ -7,6 +7,7 @@
 #include "packings/gathered_part.h"
 #include "packings/packing_file.h"
 #include "packings/random_part.h"
+#include "packings/solid_piece.h"
 #include "src/scene/body_shape.h"
 #include "src/scene/geometry.h"
 #include "src/simulation/make_force.h"
@@ -141,6 +142,28 @@ packings::Seeds<dim> read_seeds(const Scene &scene)
   }
 }
 
+/// Corners of the box around what of the body lies in the zone.
+template <int dim>
+std::pair<Vector<dim>, Vector<dim>> extent_in_zone(const packings::RandomParameters<dim> &p)
+{
+  Vector<dim> lower = p.lower.cwiseMax(p.zone_lower), upper = p.upper.cwiseMin(p.zone_upper);
+  if (!p.solid)
+    return {lower, upper};
+  packings::SolidPiece<dim> piece(*p.solid, 0);
+  for (int c = 0; c < dim; ++c) {
+    piece.clip(Vector<dim>::Unit(c), upper[c], 0, 0);
+    piece.clip(-Vector<dim>::Unit(c), -lower[c], 0, 0);
+  }
+  if (piece.vertices().empty())
+    return {lower, upper};
+  lower = upper = piece.vertices()[0];
+  for (const Vector<dim> &x : piece.vertices()) {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  return {lower, upper};
+}
+
 /// Cells reach to the next seed, however far: the file of a zone would fill a whole specimen badly.
 template <int dim>
 void require_cover(const Scene &scene, const packings::RandomParameters<dim> &p,
@@ -151,15 +174,16 @@ void require_cover(const Scene &scene, const packings::RandomParameters<dim> &p,
     lower = lower.cwiseMin(seeds.centre[i]);
     upper = upper.cwiseMax(seeds.centre[i]);
   }
+  const auto [body_lower, body_upper] = extent_in_zone(p);
+  const double far = (p.solid ? 6 : 3) * p.spacing; // no seed lies in the tip of a sharp corner
   for (int c = 0; c < dim; ++c) {
-    const double low = std::max(p.lower[c], p.zone_lower[c]),
-                 high = std::min(p.upper[c], p.zone_upper[c]);
-    if (std::max(lower[c] - low, high - upper[c]) > 3 * p.spacing)
+    const double low = body_lower[c], high = body_upper[c];
+    if (std::max(lower[c] - low, high - upper[c]) > far)
       throw core::KeyedError(
           "/discrete_zone/packing_file",
           fmt::format("the particles of {} do not fill the discrete zone in {}",
                       scene.zone.packing_file, "xyz"[c]),
-          fmt::format("they go from {:.4g} m to {:.4g} m, the zone from {:.4g} m to {:.4g} m",
+          fmt::format("they go from {:.4g} m to {:.4g} m, the body there from {:.4g} m to {:.4g} m",
                       lower[c], upper[c], low, high),
           "give a file for this zone: that of a run with far field holds its zone alone, its pure "
           "discrete twin needs the packing of the whole specimen");

@@ -175,6 +175,40 @@ TEST(SolidPackings, SidesOnTheBoxKeepTheirNumbersFarFromTheOrigin)
     }
 }
 
+/// Slots of round sizes, whose flanks and tips lie in the planes between particles: from all four
+/// sides, so that the material lies behind such a plane and before it.
+TEST(SolidPackings, FacetsBetweenParticles)
+{
+  const double d = 0.01;
+  for (const double width : {2., 2.4, 3.})
+    for (const double tip : {2., 2.5, -1.})
+      for (int turn = 0; turn < 4; ++turn) {
+        const double h = width / 2;
+        Outline outline;
+        for (const Vector<2> &x : std::vector<Vector<2>>{
+                 {-10, -8}, {10, -8}, {10, -h}, {tip, -h}, {tip, h}, {10, h}, {10, 8}, {-10, 8}})
+          outline.push_back({d * (Eigen::Rotation2Dd(turn * M_PI / 2).toRotationMatrix() * x)
+                                     .unaryExpr([](double v) { return std::round(10 * v) / 10; }),
+                             {},
+                             false,
+                             int(outline.size())});
+        const std::vector<Polygon> polygons = {polygon(outline, 0.5)};
+        auto p = specimen<2>(LatticeKind::square, 20);
+        p.spacing = d;
+        const auto solid = std::make_shared<Solid<2>>(make_solid(polygons));
+        put<2>(solid, p);
+        check(make_lattice_packing(p), *solid, 10 * round_off(p));
+        for (const LatticeKind kind : {LatticeKind::simple_cubic, LatticeKind::fcc}) {
+          auto q = specimen<3>(kind, 10);
+          q.spacing = d;
+          const auto prism =
+              std::make_shared<Solid<3>>(extrude(polygons, -1.5 * d, 2 * d, {10, 11}));
+          put<3>(prism, q);
+          check(make_lattice_packing(q), *prism, 10 * round_off(q));
+        }
+      }
+}
+
 TEST(SolidPackings, SlitsThinnerThanParticlesAreRefusedWhereCellsWouldReachAcross)
 {
   auto p = specimen<2>(LatticeKind::hexagonal, 20);
