@@ -19,8 +19,9 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
   using Kind = typename core::BoundaryLoad<dim>::Kind;
   for (auto &component : stiffness_)
     component.assign(packing.size(), 0.);
-  std::map<std::pair<int, int>, int> holder; // load that holds component c of atom i
-  // And of sides: how much of its share of their area supports hold already, m^2.
+  // Of component c of atom i on a side: the loads that hold it, and how much of the atom's share of
+  // the side's area they hold already, m^2.
+  std::map<std::array<int, 3>, std::vector<int>> holders;
   std::map<std::array<int, 3>, double> held;
   const auto for_each_face_of = [&](int l, auto &&visit) {
     for (const auto &face : packing.boundary_faces)
@@ -38,7 +39,7 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
         const int i = face.i;
         for (int c = 0; c < dim; ++c)
           if (loads_[l].value[c]) {
-            holder.emplace(std::pair(i, c), l);
+            holders[{i, c, face.boundary}].push_back(l);
             // Parts of a side that meet share the atoms there.
             double &sum = held[{i, c, face.boundary}];
             sum += area;
@@ -54,11 +55,15 @@ AtomLoads<dim>::AtomLoads(const packings::Packing<dim> &packing, double stiffnes
     if (loads_[l].kind == Kind::traction)
       for_each_face_of(l, [&](const packings::BoundaryFace<dim> &face, double area) {
         const int i = face.i;
+        // Where supports hold a component the traction has none: elsewhere on the same atom it has.
         Vector<dim> acting = Vector<dim>::Constant(area);
         for (int c = 0; c < dim; ++c)
-          if (const auto held = holder.find({i, c});
-              held != holder.end() && loads_[held->second].boundary == loads_[l].boundary)
-            acting[c] = 0;
+          if (const auto by = holders.find({i, c, face.boundary}); by != holders.end())
+            for (const int h : by->second)
+              if (const auto both = packings::OuterFace<dim>(face, packing)
+                                        .inside({loads_[l].part, loads_[h].part}))
+                acting[c] -= both->area;
+        acting = acting.cwiseMax(0);
         pushes_.push_back({i, l, acting});
       });
 }

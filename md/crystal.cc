@@ -128,17 +128,18 @@ Jet Crystal<dim>::energy_of(double a, const Potential &potential) const
 // The lowest of the minima, or the one near what the file says; then the sign of the slope is
 // bisected down to neighbouring numbers.
 template <int dim>
-double Crystal<dim>::find_lattice_parameter(const Potential &potential) const
+double Crystal<dim>::find_lattice_parameter(const Potential &potential, int reach) const
 {
   const Species &s = potential.species(parameters_.species);
   const double nearest = half_bonds_[0].norm();
-  double from = 0.2 * potential.cutoff() / nearest, to = 0.99 * potential.cutoff() / nearest;
+  double from = potential.cutoff() / (reach * nearest), to = 0.99 * potential.cutoff() / nearest;
   if (s.lattice_parameter > 0 && s.lattice == name_of(parameters_.kind)) {
     from = std::max(from, 0.85 * s.lattice_parameter);
     to = std::min(to, 1.15 * s.lattice_parameter);
   }
   constexpr int n = 400;
-  double best = 0, lowest = 0;
+  int best = 0;
+  double lowest = 0;
   const auto place = [&](int k) { return from * std::pow(to / from, double(k) / n); };
   for (int k = 0; k <= n; ++k) {
     const double e = energy_of(place(k), potential).value;
@@ -147,9 +148,11 @@ double Crystal<dim>::find_lattice_parameter(const Potential &potential) const
       best = k;
     }
   }
-  double lower = place(int(best) - 1), upper = place(int(best) + 1);
+  if (lowest < 0 && best == 0)
+    return 0; // the least energy lies below
+  double lower = place(best - 1), upper = place(best + 1);
   const auto slope = [&](double a) { return energy_of(a, potential).slope; };
-  core::require(lowest < 0 && best > 0 && best < n && slope(lower) < 0 && slope(upper) > 0,
+  core::require(lowest < 0 && best < n && slope(lower) < 0 && slope(upper) > 0,
                 fmt::format("the potential of {} has no {} crystal without stress: no spacing "
                             "between {:.3g} and {:.3g} m has the least energy; choose another "
                             "lattice",
@@ -167,9 +170,17 @@ Crystal<dim>::Crystal(const Potential &potential, const CrystalParameters<dim> &
     : parameters_(checked(parameters, potential)), potential_(potential)
 {
   const Matrix<dim> unit = parameters_.orientation * unit_basis();
-  // In the search the nearest neighbours come down to a fifth of the cut-off.
-  half_bonds_ = lattice_vectors<dim>(unit, 5 * unit.col(0).norm());
-  lattice_parameter_ = find_lattice_parameter(potential);
+  // The nearest neighbours come down to a fifth of the cut-off, as a rule.
+  for (const int reach : {5, 12}) {
+    half_bonds_ = lattice_vectors<dim>(unit, reach * unit.col(0).norm());
+    lattice_parameter_ = find_lattice_parameter(potential, reach);
+    if (lattice_parameter_ > 0)
+      break;
+  }
+  core::require(lattice_parameter_ > 0,
+                fmt::format("the cut-off of {:.3g} m is more than twelve spacings of the crystal "
+                            "without stress; choose a shorter one",
+                            potential.cutoff()));
   if (const double given = parameters_.lattice_parameter; given > 0) {
     core::require(std::abs(given / lattice_parameter_ - 1) < 0.1,
                   fmt::format("a lattice parameter of {:.4g} m is far from the {:.4g} m of the "

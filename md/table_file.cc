@@ -68,8 +68,10 @@ public:
   {
     const int n = grids.n_distance;
     std::vector<double> values = file.numbers(what, n);
+    // Of the outer half of its range: tables may go on behind their cut-off.
+    const int end = std::clamp(int(std::ceil(cutoff / grids.distance_step)), 1, n);
     double size = 0;
-    for (int k = n / 2; k < n; ++k)
+    for (int k = end / 2; k < end; ++k)
       size = std::max(size, std::abs(values[k]));
     values.push_back(std::abs(values[n - 1]) < 1e-6 * size ? 0.
                                                            : 2 * values[n - 1] - values[n - 2]);

@@ -24,19 +24,27 @@ const std::string section = "/atoms";
 md::Potential potential_of(const AtomsParameters &a, const std::vector<std::string> &names)
 {
   const md::Species species = {a.species.empty() ? "A" : a.species, a.mass};
-  const double begin = a.taper_begin, end = a.cutoff;
+  // Where only the end is given the taper begins before it, as early as by default or later.
+  const auto cut_off = [&](double begin, double end) {
+    end = a.cutoff > 0 ? a.cutoff : end * a.distance;
+    begin = a.taper_begin > 0 ? a.taper_begin : std::min(begin * a.distance, 0.88 * end);
+    if (begin >= end)
+      throw core::KeyedError(
+          section + (a.cutoff > 0 ? "/cutoff" : "/taper_begin"),
+          fmt::format("the pair's energy in /atoms goes to 0 from {:.4g} m to {:.4g} m", begin,
+                      end),
+          "it must begin below its end", "give a smaller \"taper_begin\" or a larger \"cutoff\"");
+    return md::CutOff{begin, end};
+  };
   switch (a.potential) {
   case AtomPotential::zhou:
     return md::zhou_johnson_wadley(names);
   case AtomPotential::plane_crystal:
     return md::plane_crystal(species, a.energy, a.distance);
   case AtomPotential::lennard_jones:
-    return md::lennard_jones(
-        species, a.energy, a.distance,
-        {begin > 0 ? begin : 2.2 * a.distance, end > 0 ? end : 2.5 * a.distance});
+    return md::lennard_jones(species, a.energy, a.distance, cut_off(2.2, 2.5));
   case AtomPotential::morse:
-    return md::morse(species, a.energy, a.distance, a.decay,
-                     {begin > 0 ? begin : 1.6 * a.distance, end > 0 ? end : 2.0 * a.distance});
+    return md::morse(species, a.energy, a.distance, a.decay, cut_off(1.6, 2));
   case AtomPotential::setfl:
     return md::read_setfl(a.file, names);
   case AtomPotential::setfl_fs:
@@ -127,7 +135,8 @@ void follow_sides(int axis, double old_lower, double old_upper, Scene &scene)
   for (LoadParameters &load : scene.loads) {
     follow(load.within.lower);
     follow(load.within.upper);
-    const int along = load.boundary < 2 ? 1 : 0; // "from" and "to" in 2D
+    // "from" and "to" in 2D; numbers of sides are not known yet.
+    const int along = load.side == "left" || load.side == "right" ? 1 : 0;
     if (scene.dimension == 2 && axis == along)
       for (std::optional<double> *end : {&load.from, &load.to})
         if (*end) {
@@ -150,27 +159,22 @@ void follow_sides(int axis, double old_lower, double old_upper, Scene &scene)
 }
 } // namespace
 
+// The axis in lattice vectors, stretched until one of them after the other is met a whole number of
+// times.
 template <int dim>
 double period_along(const md::Crystal<dim> &crystal, int axis, double most)
 {
   const md::Matrix<dim> &basis = crystal.basis();
-  double shortest = 0;
-  const int reach = 24;
-  Eigen::Matrix<int, dim, 1> k = Eigen::Matrix<int, dim, 1>::Constant(-reach);
-  while (k[dim - 1] <= reach) {
-    const Vector<dim> r = basis * k.template cast<double>();
-    const double along = r[axis];
-    if (along > 0.5 * crystal.spacing() && along <= most * (1 + 1e-9) &&
-        (r - along * Vector<dim>::Unit(axis)).norm() < 1e-9 * crystal.spacing() * reach &&
-        (shortest == 0 || along < shortest))
-      shortest = along;
-    ++k[0];
-    for (int c = 0; c + 1 < dim && k[c] > reach; ++c) {
-      k[c] = -reach;
-      ++k[c + 1];
-    }
+  const Vector<dim> course = basis.inverse().col(axis); // per m
+  const double largest = course.cwiseAbs().maxCoeff(), tolerance = 2.4e-8 * crystal.spacing();
+  const long last = long(std::floor(most * (1 + 1e-9) * largest));
+  for (long k = 1; k <= last; ++k) {
+    const double along = double(k) / largest;
+    const Vector<dim> r = basis * (along * course).array().round().matrix();
+    if (along > 0.5 * crystal.spacing() && (r - along * Vector<dim>::Unit(axis)).norm() < tolerance)
+      return r[axis];
   }
-  return shortest;
+  return 0;
 }
 
 namespace
@@ -286,6 +290,23 @@ void derive(Scene &scene)
   fit_periods<dim>(crystal, scene);
 }
 
+/// Potentials are made for one lattice; in another one the crystal has other constants than the
+/// element, if it holds at all.
+void doubt_lattice(const Scene &scene, Findings &f)
+{
+  const std::string key = "/discrete_zone/packing";
+  if (scene.dimension == 2 || !scene.zone.packing)
+    return;
+  const md::Species species = read_potential(*scene.atoms, species_of(scene)).species(0);
+  if ((species.lattice == "fcc" || species.lattice == "bcc") &&
+      species.lattice != word_of(*scene.zone.packing))
+    f.warning(key,
+              fmt::format("\"packing\" in /discrete_zone is \"{}\" for {}",
+                          word_of(*scene.zone.packing), species.name),
+              fmt::format("its potential was made for a crystal that is {}", species.lattice),
+              fmt::format("choose \"{}\", unless that is meant", species.lattice));
+}
+
 /// Keys that its potential reads, and others that it doesn't.
 class KeyCheck
 {
@@ -350,6 +371,10 @@ void check_lattice(const Scene &scene, Findings &f)
               "crystals are hexagonal in 2D, fcc or bcc in 3D",
               scene.dimension == 2 ? "choose \"hexagonal\"" : "choose \"fcc\" or \"bcc\"");
   }
+  if (scene.dimension == 3 && scene.atoms->potential == AtomPotential::plane_crystal)
+    f.error(section + "/potential", "\"potential\" in /atoms is \"plane_crystal\" in 3D",
+            "its density is that of six neighbours in a plane",
+            "choose another one, or \"dimension\" 2");
   if (f.sound_and_given({spacing}))
     f.error(spacing, "\"spacing\" in /discrete_zone of atoms",
             "it follows from the potential: that of the crystal without stress", "remove it");
@@ -407,10 +432,12 @@ void resolve_atoms(Scene &scene, Findings *f)
     f->error(error.key, error.message, error.reason, error.remedy);
     return;
   }
-  if (f)
-    for (const char *key : {"/discrete_zone/spacing", "/material/youngs_modulus",
-                            "/material/poissons_ratio", "/material/density"})
-      f->derive(key);
+  if (!f)
+    return;
+  doubt_lattice(scene, *f);
+  for (const char *key : {"/discrete_zone/spacing", "/material/youngs_modulus",
+                          "/material/poissons_ratio", "/material/density"})
+    f->derive(key);
 }
 
 std::vector<std::string> species_of(const Scene &scene)

@@ -124,11 +124,16 @@ void check_temperature(const Scene &scene, Findings &f)
              "the dashpots of such a side take the heat of what they hold, and give none back",
              is_coupled ? "remove it; a larger mesh puts off what comes back"
                         : "remove it; /atoms/zone_friction is a friction with its noise");
-  const bool is_moved = scene.body_force.is_any() ||
-                        std::any_of(scene.loads.begin(), scene.loads.end(), [](const auto &load) {
-                          return std::any_of(load.velocity.begin(), load.velocity.end(),
-                                             [](const auto &v) { return v.value_or(0) != 0; });
-                        });
+  const auto moves = [](const LoadParameters &load) {
+    const auto is_any = [](const auto &vector) {
+      return std::any_of(vector.begin(), vector.end(),
+                         [](const auto &v) { return v.value_or(0) != 0; });
+    };
+    return is_any(load.velocity) || is_any(load.displacement) || is_any(load.traction) ||
+           is_any(load.force);
+  };
+  const bool is_moved =
+      scene.body_force.is_any() || std::any_of(scene.loads.begin(), scene.loads.end(), moves);
   if (a.zone_friction > 0 && is_moved)
     f.warning("/atoms/zone_friction",
               fmt::format("\"zone_friction\" in /atoms is {} 1/s beside loads that move the body",

@@ -37,6 +37,17 @@ void check_spacing(const Scene &scene, const Box &zone, Findings &f)
   double number = 1;
   for (int c = 0; c < scene.dimension; ++c) {
     number *= (zone.upper[c] - zone.lower[c]) / d;
+    if (scene.specimen.size[c] < 4 * d && scene.atoms) {
+      if (scene.specimen.is_periodic(c) && scene.specimen.size[c] >= 2 * d)
+        continue; // atoms may meet several images of each other
+      f.error(
+          "/specimen/size",
+          fmt::format("the specimen is {:.4g} m long in {}", scene.specimen.size[c], axis_names[c]),
+          fmt::format("that is less than {} spacings of the crystal, {:.4g} m",
+                      scene.specimen.is_periodic(c) ? 2 : 4, d),
+          "make it longer");
+      return;
+    }
     if (scene.specimen.size[c] < 4 * d) {
       f.error(spacing_key,
               fmt::format("\"spacing\" in /discrete_zone is {} m, more than a quarter of the "

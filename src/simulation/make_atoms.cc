@@ -96,7 +96,10 @@ void add_griffith(const Scene &scene, const md::Crystal<3> &crystal,
   }
   if (fronts.size() != 1)
     return;
-  if (const auto crack = md::griffith_crack(crystal, cuts[0].normal(), fronts[0])) {
+  // Across the front to the last digit.
+  Vector<3> normal = cuts[0].normal();
+  normal -= normal.dot(fronts[0]) * fronts[0];
+  if (const auto crack = md::griffith_crack(crystal, normal.normalized(), fronts[0])) {
     figures["surface_energy"] = {crack->surface_energy, "J/m^2"};
     figures["crack_modulus"] = {crack->modulus, "Pa"};
     figures["griffith_k"] = {crack->stress_intensity, "Pa*m^0.5"};

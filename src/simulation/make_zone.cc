@@ -119,19 +119,23 @@ std::vector<std::vector<int>> load_layers(const CoupledBody<dim> &body,
   return layers;
 }
 
-/// Atoms near a side share all of it alike, those near a part of it have its area to a spacing: the
-/// forces of scenes are met all the same.
+/// The loads as the zone meets them. Atoms near a side share all of it alike, those near a part of
+/// it have its area to a spacing: with what the mesh bears, whose share is exact, the forces of
+/// scenes are met all the same.
 template <int dim>
-void fit_forces(const Scene &scene, CoupledBody<dim> &body)
+std::vector<core::BoundaryLoad<dim>> loads_of_zone(const Scene &scene, const CoupledBody<dim> &body)
 {
-  for (std::size_t l = 0; l < scene.loads.size(); ++l) {
+  auto loads = body.loads;
+  for (std::size_t l = 0; scene.atoms && l < scene.loads.size(); ++l) {
     if (scene.loads[l].kind != LoadKind::force || body.loaded_faces[l] <= 0)
       continue;
-    const double share = body.load_places[l].area / body.loaded_faces[l];
-    for (auto &component : body.loads[l].value)
+    const double of_mesh = body.far ? body.far->loaded_area(int(l)) : 0;
+    const double share = (body.load_places[l].area - of_mesh) / body.loaded_faces[l];
+    for (auto &component : loads[l].value)
       if (component)
         *component *= share;
   }
+  return loads;
 }
 
 /// As those of the mesh: in a crystal they depend on the side. Of absorbing sides alone: a crystal
@@ -256,8 +260,6 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
   body.n_particles = held.n_whole;
   body.loaded_faces = loaded_areas(body, held);
   body.load_layers = load_layers(body, packing);
-  if (scene.atoms && !body.far)
-    fit_forces(scene, body);
   body.cut_faces = all_cut_faces(body, held);
   body.n_cracked_faces = std::int64_t(body.cut_faces.size());
   const auto constants = elastic_constants_of<dim>(scene);
@@ -268,7 +270,7 @@ void make_zone(const Scene &scene, const ForceMaker<dim> &make_force, Reference 
     faces = packing;
   // Particles come when the faces are gone.
   packings::Packing<dim> of_particles = without_faces(packing);
-  auto force = make_force(scene, std::move(packing), body.loads, body.figures, log);
+  auto force = make_force(scene, std::move(packing), loads_of_zone(scene, body), body.figures, log);
   for (const auto &[name, figure] : body.figures)
     if (name.compare(0, calibrated.size(), calibrated) == 0) {
       body.ranks.agree_on("the " + name + " (kept in " + ToughnessCache::default_folder() + ")",

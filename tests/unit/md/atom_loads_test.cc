@@ -63,6 +63,28 @@ TEST(AtomLoadsTest, SidesKeepTheirArea)
     EXPECT_NEAR(area[side], body.top[1 - side / 2], 1e-12 * body.top.norm()) << side;
 }
 
+/// A traction beside a support of the same side acts on all of its part: the atom between them is
+/// held by its one side and pulled by the other.
+TEST(AtomLoadsTest, TractionsBesideSupportsKeepTheirArea)
+{
+  Body<2> body = specimen();
+  const double end = 0.43 * body.top[0], width = 2.3 * body.crystal.spacing();
+  const auto part = [&](double from, double to) { return core::Part<2>::box({from, -1}, {to, 1}); };
+  Load support = load(3, Load::Kind::displacement, 1, 0),
+       pull = load(3, Load::Kind::traction, 1, 1);
+  support.part = part(-1, end);
+  pull.part = part(end, end + width);
+  AtomForce<2> force(body.crystal, body.packing, body.options, {support, pull});
+  force.compute(body.atoms, 2);
+  const double expected = width * body.packing.thickness;
+  EXPECT_NEAR(force.reaction(1)[1] / expected, 1, 1e-9);
+  // Where both are on the same part the support holds.
+  pull.part = part(end - width, end);
+  AtomForce<2> none(body.crystal, body.packing, body.options, {support, pull});
+  none.compute(body.atoms, 2);
+  EXPECT_NEAR(none.reaction(1)[1] / expected, 0, 1e-9);
+}
+
 // Inside a specimen there is no side to load.
 TEST(AtomLoadsTest, ZonesInsideHaveNoSides)
 {

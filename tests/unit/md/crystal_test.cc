@@ -243,6 +243,24 @@ TEST(CrystalTest, SurfaceEnergyCountsBrokenBonds)
   EXPECT_NEAR(plane.surface_energy({0, 1}) / (2 * depth / 2 / (d * 3e-10)), 1, 1e-9);
 }
 
+/// The spacing of Lennard-Jones's crystals nears what its lattice sums give without a cut-off,
+/// r^6 = 2 A_12 / A_6: 14.4539, 12.1319 (fcc) and 6.3759, 6.0098 (triangular).
+TEST(CrystalTest, LongCutOffs)
+{
+  const double size = 3.4e-10;
+  for (const double cutoff : {5.4, 6., 7., 9.}) {
+    const Potential p =
+        lennard_jones({"A", 1e-25}, 1e-21, size, {0.9 * cutoff * size, cutoff * size});
+    CrystalParameters<3> cubic;
+    cubic.kind = CrystalKind::fcc;
+    EXPECT_NEAR(Crystal<3>(p, cubic).spacing() / size, std::pow(2 * 12.1319 / 14.4539, 1. / 6),
+                2e-3);
+    EXPECT_NEAR(Crystal<2>(p, {}).spacing() / size, std::pow(2 * 6.0098 / 6.3759, 1. / 6), 1e-3);
+  }
+  EXPECT_THROW(Crystal<2>(lennard_jones({"A", 1e-25}, 1e-21, size, {13 * size, 14 * size}), {}),
+               core::InputError);
+}
+
 TEST(CrystalTest, WrongParametersAreRefused)
 {
   const Potential p = foiles_copper();

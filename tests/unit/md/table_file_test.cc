@@ -47,6 +47,22 @@ std::string complaint(Read &&read)
   return "nothing";
 }
 
+/// Functions that end smoothly at their cut-off may be followed by any number of zeros.
+TEST(TableFileTest, TablesMayGoOnBehindTheCutOff)
+{
+  for (const int n : {110, 160, 240}) { // up to 5.5, 8 and 12 angstrom
+    std::string functions;
+    for (const double size : {9., 3.})
+      for (int k = 0; k < n; ++k)
+        functions += fmt::format("{}\n", size * std::pow(std::max(0., 1 - 0.05 * k / 4.95), 3));
+    const std::string text = fmt::format("a comment\n29 63.5 3.6 FCC\n5 0.25 {} 0.05 4.95\n"
+                                         "0 -1 -1.5 -1.8 -2\n",
+                                         n) +
+                             functions;
+    EXPECT_NEAR(read_funcfl({path_of(text)}).cutoff(), 4.95 * angstrom, 1e-24) << n;
+  }
+}
+
 TEST(TableFileTest, ValuesOfTheFileAreThoseOfThePotential)
 {
   const Potential p = read_funcfl({path_of(small_funcfl())});

@@ -90,6 +90,84 @@ TEST(AtomScenes, LoadsFollowSidesThatAreMoved)
   EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
 }
 
+// Sides are known by name alone when the period is found.
+TEST(AtomScenes, LoadsFollowSidesToBothEnds)
+{
+  const Scene scene =
+      *read(crystal_scene(),
+            {R"(/specimen/periodic=["x"])", R"(/specimen/size=["41 nm", "30 nm"])",
+             R"(/discrete_zone={"extent": "all", "packing": "hexagonal"})", "/far_field=none",
+             R"(/loads=[{"boundary": "top", "traction": [null, "1 MPa"], "from": "-20.5 nm",
+                         "to": "20.5 nm"}])"})
+           .scene;
+  const double size = scene.specimen.size[0];
+  EXPECT_GT(std::abs(size - 41e-9), 1e-12);
+  EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
+}
+
+// [13 12 0] is longer than 24 primitive vectors; across it the lattice repeats itself, too.
+TEST(AtomScenes, PeriodsOfHighIndicesAreFound)
+{
+  const std::string copper = R"({
+    "dimension": 3, "specimen": {"size": ["100 nm", "20 nm", "20 nm"], "periodic": ["x"]},
+    "atoms": {"potential": "zhou", "species": "Cu", "along_x": [13, 12, 0], "along_y": [-12, 13, 0]},
+    "discrete_zone": {"extent": "all", "packing": "fcc"}, "far_field": "none",
+    "time": {"duration": "1 ps"}
+  })";
+  const Scene scene = *read(copper).scene;
+  const double a = crystal_of<3>(scene).lattice_parameter();
+  EXPECT_NEAR(scene.specimen.size[0] / (16 * std::sqrt(313.) * a), 1, 1e-9); // 13 + 12 is odd
+  EXPECT_NEAR(period_along<3>(crystal_of<3>(scene), 1, 100e-9) / (std::sqrt(313.) * a), 1, 1e-9);
+  EXPECT_NEAR(period_along<3>(crystal_of<3>(scene), 2, 100e-9) / a, 1, 1e-12);
+}
+
+// Two or three atoms thick: a period or two of the crystal, of which atoms see several images.
+TEST(AtomScenes, JoinedSidesMayLieCloseTogether)
+{
+  const auto sized = [](const std::string &z) {
+    return parse_scene(solid, "scene.json",
+                       {R"(/discrete_zone={"extent": "all", "packing": "bcc"})",
+                        R"(/specimen/size=["20 nm", "20 nm", ")" + z + R"("])"});
+  };
+  EXPECT_TRUE(sized("0.6 nm").scene);
+  const ReadResult thin = sized("0.3 nm");
+  ASSERT_EQ(thin.errors.size(), 1u);
+  EXPECT_EQ(thin.errors[0].key, "/specimen/size");
+  EXPECT_EQ(thin.errors[0].remedy, "make it longer");
+}
+
+TEST(AtomScenes, LatticesThatThePotentialIsNotMadeForAreDoubted)
+{
+  const auto warnings = [](const std::string &packing) {
+    return read(solid, {R"(/discrete_zone={"extent": "all", "packing": ")" + packing + R"("})"})
+        .warnings;
+  };
+  const auto is_of_packing = [](const core::Diagnostic &w) {
+    return w.key == "/discrete_zone/packing";
+  };
+  const auto of_fcc = warnings("fcc"), of_bcc = warnings("bcc");
+  EXPECT_EQ(std::count_if(of_fcc.begin(), of_fcc.end(), is_of_packing), 1);
+  EXPECT_EQ(std::count_if(of_bcc.begin(), of_bcc.end(), is_of_packing), 0);
+  const ReadResult plane = parse_scene(
+      solid, "scene.json",
+      {R"(/discrete_zone={"extent": "all", "packing": "fcc"})",
+       R"(/atoms={"potential": "plane_crystal", "energy": 5e-19, "distance": 2.5e-10, "mass": 1e-25})"});
+  ASSERT_EQ(plane.errors.size(), 1u);
+  EXPECT_EQ(plane.errors[0].key, "/atoms/potential");
+}
+
+// The taper begins before a cut-off that is shorter than usual.
+TEST(AtomScenes, CutOffsBelowTheUsualTaper)
+{
+  EXPECT_TRUE(read(crystal_scene(), {"/atoms/cutoff=\"680 pm\""}).scene); // 2 sigma
+  const ReadResult wrong = parse_scene(
+      crystal_scene(), "scene.json", {"/atoms/cutoff=\"680 pm\"", "/atoms/taper_begin=\"700 pm\""});
+  ASSERT_EQ(wrong.errors.size(), 1u);
+  EXPECT_EQ(wrong.errors[0].key, "/atoms/cutoff");
+  EXPECT_NE(wrong.errors[0].message.find("from 7e-10 m to 6.8e-10 m"), std::string::npos)
+      << wrong.errors[0].message;
+}
+
 TEST(AtomScenes, UnitsOfAtoms)
 {
   const std::string text = crystal_scene();
