@@ -117,9 +117,8 @@ void Contacts<dim>::tell(const std::vector<std::size_t> &of)
     if (!guests_->keeps(i, j) || find(t.name))
       continue;
     core::require(i >= 0 && j >= 0, "a contact is told of before its particles have come");
-    Contact<dim> c{t.name, {}, false, 0, 0, 0, 0};
-    c.face.i = i;
-    c.face.j = j;
+    const Vector<dim> none = Vector<dim>::Zero();
+    Contact<dim> c{t.name, {i, j, none, none, none, 0, 0, 0, 0}, false, 0, 0, 0, 0};
     c.cut = t.cut;
     ContactFlags::set(c, t.flags, t.overlap);
     auto place = t.numbers.begin();

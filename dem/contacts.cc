@@ -78,7 +78,9 @@ Contact<dim> Contacts<dim>::make(const Bond<dim> &face, bool from_face) const
 {
   const auto [first, second] = std::minmax({ids_[face.i], ids_[face.j]});
   Contact<dim> c{{first, second, 0}, face, from_face, face.distance, 0, 0, 0};
-  c.share_i = face.lever_i.dot(face.normal) / face.distance;
+  // Of both reaches, not of the distance: that of a softened face is shorter.
+  const double reach_i = face.lever_i.dot(face.normal), reach_j = -face.lever_j.dot(face.normal);
+  c.share_i = reach_i / (reach_i + reach_j);
   c.shear_modulus = modulus(c);
   c.friction = materials_.friction(face.i, face.j);
   return c;

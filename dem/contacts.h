@@ -25,7 +25,7 @@ struct Contact
   Bond<dim> face;       // reference geometry of the face, if it had one
   bool from_face;       // was a face of the packing; false: found by the search, or passed on
   double own_distance;  // m, of the face; its present one is another while it bears a bond's load
-  double share_i;       // q_i / r0: the contact point lies at share_i r from i
+  double share_i;       // q_i / (q_i + q_j): the contact point lies at share_i r from i
   double shear_modulus; // Pa, of both sides in series
   double friction;      // Coulomb's coefficient
   // Smooth joint: the contact has the normal of the cut, not that of its face.

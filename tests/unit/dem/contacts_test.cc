@@ -73,6 +73,19 @@ TEST(Contacts, GripsAtTouchAreSaved)
   }
 }
 
+/// Contacts of a face that has softened and slid before it broke are told a shorter distance: the
+/// point between them stays where the face divides it, whichever of the two comes first.
+TEST(Contacts, ShortenedFacesKeepTheirPoint)
+{
+  const Vector<3> n = Vector<3>::Unit(0), across = Vector<3>::Unit(1);
+  const Vector<3> lever_i = 0.6 * n + 0.1 * across, lever_j = lever_i - n;
+  const DemMaterial material;
+  Contacts<3> contacts(material, {}, 2), turned(material, {}, 2);
+  const Bond<3> face{0, 1, n, lever_i, lever_j, 1, 0.9, 0, 0};
+  EXPECT_DOUBLE_EQ(contacts.add(face, true).share_i, 0.6);
+  EXPECT_DOUBLE_EQ(turned.add({1, 0, -n, lever_j, lever_i, 1, 0.9, 0, 0}, true).share_i, 0.4);
+}
+
 TEST(Contacts, ManyAtOnceAreInOrder)
 {
   check_order<2>();
