@@ -4,7 +4,6 @@
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/kept_tables.h"
 #include "src/simulation/phase_list.h"
-#include "src/simulation/static_stretch.h"
 #include "src/simulation/test_machine.h"
 
 #include <fmt/format.h>
@@ -82,8 +81,6 @@ double last_break(const CoupledBody<dim> &body)
 template <int dim>
 struct StaticPhases<dim>::Work
 {
-  using End = typename EquilibriumSolver<dim>::End;
-
   Work(const Scene &scene, CoupledBody<dim> &body, core::Log &log, const core::Ranks &helpers)
       : loading(scene.time.loading), calm(scene.time.calm), log(log), machine(body),
         transit(largest_extent(body) / shear_wave_speed(body)), ratio(body.coupler->step_ratio())
@@ -104,8 +101,6 @@ struct StaticPhases<dim>::Work
   std::optional<Stop> advance(CoupledBody<dim> &body, Clock &clock, double damping,
                               const Look &look);
 
-  void commit(CoupledBody<dim> &body, const Clock &clock, const Eigen::VectorXd &velocities);
-
   double load_of(const CoupledBody<dim> &body, const Clock &clock) const
   {
     return machine.has_load() ? machine.read(body, clock.now.time).load : 0;
@@ -124,7 +119,7 @@ struct StaticPhases<dim>::Work
 
   std::vector<Phase> phases; // complete ones
   long dynamic_since = -1;   // step; before the first phase: none
-  double dynamic_before = 0;     // s of a dynamic phase in other processes, or with other bodies
+  double dynamic_before = 0; // s of a dynamic phase in other processes, or with other bodies
   std::chrono::steady_clock::time_point dynamic_began = std::chrono::steady_clock::now();
   double dynamic_seconds() const
   {
@@ -247,7 +242,6 @@ std::optional<Stop> StaticPhases<dim>::advance(CoupledBody<dim> &body, Clock &cl
                                                const Look &look)
 {
   Work &work = *work_;
-  work.borne = {};
   const auto stop = work.advance(body, clock, damping, look);
   const PhaseEnd reason = work.phases.back().reason;
   // The last step of all is one of the loop, which ends the run.
@@ -278,7 +272,6 @@ void StaticPhases<dim>::pass_step(const CoupledBody<dim> &body, Clock &clock, do
   work_->residual = read_ledger(body, clock.now, damping).residual();
 }
 
-// The energy that the body loses on its way to equilibrium is booked; the loads stand still.
 template <int dim>
 std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clock &clock,
                                                      double damping, const Look &look)
@@ -288,162 +281,34 @@ std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clo
   Phase phase{true, clock.now.step - std::exchange(skipped, 0), clock.now.step};
   const int solves = solver->n_solves(), iterations = solver->n_iterations();
   const long broken_before = n_broken(body);
-  const double released = body.force() ? body.force()->losses().fracture : 0;
-  std::optional<Stop> stop;
-  const auto finish = [&](PhaseEnd reason) {
-    phase.end = clock.now.step;
-    phase.solves = solver->n_solves() - solves;
-    phase.iterations = solver->n_iterations() - iterations;
-    phase.load = load_of(body, clock);
-    phase.broken = n_broken(body) - broken_before;
-    phase.reason = reason;
-    phase.seconds = Seconds(std::chrono::steady_clock::now() - started).count();
-    phases.push_back(phase);
-    dynamic_since = clock.now.step;
-    dynamic_before = 0;
-    dynamic_began = std::chrono::steady_clock::now();
-    broken_then = n_broken(body);
-    held_energy = potential_of(body.coupler->energy(body.bodies(), clock.now));
-    const std::string by = phase.solves > 0 ? std::string(" by ") + solver->preconditioner() : "";
-    log.info("static phase to {:.6g} s: {} ({} solves{}, {} iterations, {} faces broken)",
-             clock.now.time, text_of(reason), phase.solves, by, phase.iterations, phase.broken);
-  };
-  const auto failed = [&](End end) {
-    log.warning("at {:.4g} s {}: the run goes on by steps", clock.now.time,
-                end == End::indefinite ? "the body no longer carries its load"
-                                       : "no equilibrium was found");
-    finish(end == End::indefinite ? PhaseEnd::no_resistance : PhaseEnd::out_of_balance);
-  };
-
   if (loading == Loading::sequential && body.force()) // a body built anew does not know
     body.force()->break_one_by_one();
-  solver->renew();
-  // A body that goes on from here in another process has no forces yet.
-  double before = goes_on ? residual : read_ledger(body, clock.now, damping).residual();
-  const auto velocities = solver->system().velocities();
-  Eigen::VectorXd moved;
-  // To hand on to where the stretch ends.
-  constexpr double near = 1e-6;
-  const End balanced = solver->find_equilibrium(clock.now.time, moved, near);
-  if (balanced != End::converged) {
-    solver->system().put_back(velocities);
-    auto bodies = body.bodies();
-    body.coupler->compute_forces(bodies, clock.now);
-    failed(balanced);
-    return stop;
-  }
-  // How far at once: less where no equilibrium was found so far away, or none that is stable.
-  long reach = clock.n_steps;
-  int n_halvings = 0, n_strayed = 0;
-  double regime = body.regime_change;
-  constexpr int most_halvings = 5, most_strayed = 10;
-  bool settles = true;
-  // Where the kinematics of the overlap have changed the body is no longer in balance.
-  const auto balance_again = [&] {
-    regime = body.regime_change;
-    before = read_ledger(body, clock.now, damping).residual();
-    settles = true;
-    solver->renew();
-    return solver->find_equilibrium(clock.now.time, moved, near);
-  };
-  while (true) {
-    StaticStretch<dim> stretch(body, *solver, clock, reach);
-    End end = stretch.find_response();
-    const auto stay = [&] { commit(body, clock, stretch.velocities(clock.now.time)); };
-    if (settles) {
-      settles = false;
-      stay();
-      body.settled += before - read_ledger(body, clock.now, damping).residual();
-      if (n_broken(body) > broken_before) {
-        finish(PhaseEnd::above_strength);
-        return stop;
-      }
-      if ((stop = look())) {
-        finish(PhaseEnd::stopped);
-        return stop;
-      }
-      if (body.regime_change != regime) {
-        if (end = balance_again(); end == End::converged)
-          continue;
-        failed(end);
-        return stop;
-      }
-    }
-    if (end == End::converged)
-      end = stretch.find_end();
-    if (end != End::converged && n_halvings < most_halvings && stretch.n_steps() >= 4 * ratio) {
-      ++n_halvings;
-      stretch.go_back();
-      reach = clock.now.step + stretch.n_steps() / (2 * ratio) * ratio;
-      continue;
-    }
-    if (end != End::converged) {
-      stretch.go_back();
-      stay();
-      failed(end);
-      return stop;
-    }
-    const long last = clock.now.step + stretch.n_steps();
-    const auto commit_here = [&](const Eigen::VectorXd &v) {
-      if (clock.now.step == last) { // before bonds break and the load drops
-        solver->system().forces(clock.now.time);
-        borne = {clock.now.time, machine.read(body, clock.now.time), n_broken(body)};
-      }
-      commit(body, clock, v);
-    };
-    const bool may_halve = n_strayed < most_strayed && stretch.n_steps() >= 4 * ratio;
-    if ((stop = stretch.walk(clock, commit_here, look, may_halve))) {
-      finish(PhaseEnd::stopped);
-      return stop;
-    }
-    if (stretch.leads_astray()) {
-      ++n_strayed;
-      reach = clock.now.step + stretch.n_steps() / (2 * ratio) * ratio;
-      continue;
-    }
-    if (n_broken(body) > broken_before) {
-      constexpr double nothing = 1e-6;
-      const auto losses = body.force()->losses();
-      const bool was_soft =
-          body.force()->softens() && losses.fracture - released <= nothing * losses.cohesive;
-      finish(was_soft ? PhaseEnd::face_torn : PhaseEnd::bond_breaks);
-      return stop;
-    }
-    if (clock.is_at_end()) {
-      finish(PhaseEnd::end_of_run);
-      return stop;
-    }
-    if ((stop = look())) {
-      finish(PhaseEnd::stopped);
-      return stop;
-    }
-    n_halvings = n_strayed = 0;
-    reach = std::min(clock.n_steps, clock.now.step + 4 * stretch.n_steps());
-    if (body.regime_change != regime)
-      if (const End end = balance_again(); end != End::converged) {
-        failed(end);
-        return stop;
-      }
-  }
-}
 
-// The body stretches at the rate of its loads. That it does so no step has seen: the loads' work is
-// that of bodies without inertia, and the energy of this motion is booked beside it.
-template <int dim>
-void StaticPhases<dim>::Work::commit(CoupledBody<dim> &body, const Clock &clock,
-                                     const Eigen::VectorXd &velocities)
-{
-  auto &system = solver->system();
-  if (ratio > 1)
-    system.forces(clock.now.time); // of the far field, which its impulses are made of
-  system.set_velocities(velocities, clock.now);
-  const double stretching = system.motion_energy(clock.now);
-  body.settled -= stretching - stretching_energy;
-  stretching_energy = stretching;
-  if (body.force())
-    body.force()->resume_at(clock.now.time - clock.now.dt);
-  auto bodies = body.bodies();
-  body.coupler->compute_forces(bodies, clock.now);
+  StaticWalk<dim> walk(body, *solver, clock, machine, damping, look, stretching_energy);
+  // A body that goes on from here in another process has no forces yet.
+  phase.reason = walk.run(goes_on ? std::optional(residual) : std::nullopt);
+  borne = walk.borne();
+  if (phase.reason == PhaseEnd::no_resistance || phase.reason == PhaseEnd::out_of_balance)
+    log.warning("at {:.4g} s {}: the run goes on by steps", clock.now.time,
+                phase.reason == PhaseEnd::no_resistance ? "the body no longer carries its load"
+                                                        : "no equilibrium was found");
+
+  phase.end = clock.now.step;
+  phase.solves = solver->n_solves() - solves;
+  phase.iterations = solver->n_iterations() - iterations;
+  phase.load = load_of(body, clock);
+  phase.broken = n_broken(body) - broken_before;
+  phase.seconds = Seconds(std::chrono::steady_clock::now() - started).count();
+  dynamic_since = clock.now.step;
+  dynamic_before = 0;
+  dynamic_began = std::chrono::steady_clock::now();
+  broken_then = n_broken(body);
+  held_energy = potential_of(body.coupler->energy(body.bodies(), clock.now));
+  const std::string by = phase.solves > 0 ? std::string(" by ") + solver->preconditioner() : "";
+  log.info("static phase to {:.6g} s: {} ({} solves{}, {} iterations, {} faces broken)",
+           clock.now.time, text_of(phase.reason), phase.solves, by, phase.iterations, phase.broken);
+  phases.push_back(phase);
+  return walk.stop();
 }
 
 template <int dim>

@@ -4,20 +4,13 @@
 #include "core/log.h"
 #include "src/output/run_record.h"
 #include "src/simulation/clock.h"
-#include "src/simulation/equilibrium_solver.h"
-#include "src/simulation/load_growth.h"
-#include "src/simulation/recorder.h"
+#include "src/simulation/static_walk.h"
+
+#include <memory>
+#include <vector>
 
 namespace ligament::program
 {
-/// What a body in equilibrium bore at the end of a static phase, before bonds broke there.
-struct Borne
-{
-  double time = 0; // s
-  std::optional<Reading> reading;
-  std::int64_t n_broken = 0; // before
-};
-
 /// A run alternates: dynamic phases, in which the loop takes its steps, until the body is calm; and
 /// static ones, which end at the first step in which a bond bears its strength (theory.md section
 /// 6). Signals and checkpoints wait for the end of a static phase.
@@ -27,7 +20,7 @@ class StaticPhases
 public:
   /// Looks at a state of a static phase, in which forces are those of its step: what ends the run,
   /// or nothing.
-  using Look = std::function<std::optional<Stop>()>;
+  using Look = typename StaticWalk<dim>::Look;
 
   /// The body must outlive it. Nothing where the scene's loading is dynamic. helpers: see
   /// algebra::make_preconditioner().
