@@ -288,8 +288,9 @@ private:
       const auto run = run_.series(columns, unit), reference = reference_.series(columns, unit);
       if (!run || !reference)
         return HistoryError();
-      r_.compared_until = last_common(*run, *reference);
-      return history_error(*run, *reference, *r_.compared_until);
+      const double until = last_common(*run, *reference);
+      r_.compared_until = std::max(until, r_.compared_until.value_or(until));
+      return history_error(*run, *reference, until);
     };
     r_.load_history = error({"load"}, "N");
     r_.displacement_history = error({"displacement"}, "m");

@@ -154,13 +154,15 @@ std::optional<std::size_t> ComparedSide::largest_row(const std::vector<double> &
 {
   const auto time = values("time", "s");
   if (!record || !record->largest_time || !time)
-    return peak_index(load);
-  const double at = *record->largest_time;
-  std::size_t row = 0;
-  for (std::size_t i = 0; i < time->size(); ++i)
-    if (std::abs((*time)[i] - at) < std::abs((*time)[row] - at))
-      row = i;
-  return row;
+    return peak_index(load, values("displacement", "m")
+                                .value_or(values("strain", "1").value_or(std::vector<double>())));
+  // The load is read between rows, too: the next one may lie behind the fall, as does the row of a
+  // break by equilibria.
+  const double at = *record->largest_time * (1 + 1e-12);
+  std::size_t n_rows = 0;
+  while (n_rows < time->size() && (*time)[n_rows] <= at)
+    ++n_rows;
+  return largest_index(load, n_rows);
 }
 
 std::optional<TimeSeries> ComparedSide::series(const std::vector<const char *> &columns,
@@ -214,7 +216,7 @@ std::optional<double> stiffness(const ComparedSide &side, const Measure &m)
   auto x = *side.values(m.x, m.x_unit), y = *side.values(m.y, m.y_unit);
   if (!side.record)
     keep_whole_rows(x, y);
-  const auto row = side.largest_row(y);
+  const auto row = side.record ? side.largest_row(y) : peak_index(y, x);
   return row ? fit_stiffness(x, y, *row) : std::nullopt;
 }
 

@@ -24,7 +24,8 @@ struct ComparedSide
   /// A column in that unit; empty without the column or without a number in it.
   std::optional<std::vector<double>> values(const char *column, const char *unit) const;
 
-  /// Row of the largest of `load` before it falls. A run knows its time.
+  /// Row of the largest of `load` before it falls: of a run, which knows when that is, the largest
+  /// one up to then.
   std::optional<std::size_t> largest_row(const std::vector<double> &load) const;
 
   /// Rows of time at which all columns have numbers, with the sum of these; empty without them.

@@ -9,6 +9,8 @@ namespace
 {
 // Of the load at the end of the fit: how far the line may miss the points, in the mean square.
 constexpr double largest_misfit = 0.02;
+// Of the displacement at the largest load: a specimen shorter than that has been let go.
+constexpr double back_share = 0.5;
 
 double largest_magnitude(const std::vector<double> &values)
 {
@@ -20,18 +22,30 @@ double largest_magnitude(const std::vector<double> &values)
 }
 } // namespace
 
-std::size_t loading_rows(const std::vector<double> &load, std::size_t from)
+bool is_let_go(double extension, double then)
+{
+  return (then < 0 ? -extension : extension) < back_share * std::abs(then);
+}
+
+std::size_t loading_rows(const std::vector<double> &load, const std::vector<double> &extension)
 {
   const double noise = fallen_share * largest_magnitude(load);
-  double largest = 0; // with its sign
+  std::size_t largest = 0; // row
+  const auto first = std::find_if(extension.begin(), extension.end(),
+                                  [](double value) { return std::isfinite(value); });
+  const double origin = first == extension.end() ? 0 : *first; // of a gauge
+  const auto has_fallen = [&](std::size_t i) {
+    const double most = load[largest], along = std::copysign(load[i], load[i] * most);
+    return std::abs(most) > noise && along < fallen_share * std::abs(most) &&
+           (extension.empty() || !is_let_go(extension[i] - origin, extension[largest] - origin));
+  };
   for (std::size_t i = 0; i < load.size(); ++i) {
     if (!std::isfinite(load[i]))
       continue;
-    const double along = std::copysign(load[i], load[i] * largest);
-    if (i >= from && std::abs(largest) > noise && along < fallen_share * std::abs(largest))
+    if (has_fallen(i))
       return i;
-    if (std::abs(load[i]) > std::abs(largest))
-      largest = load[i];
+    if (!(std::abs(load[i]) <= std::abs(load[largest])))
+      largest = i;
   }
   return load.size();
 }

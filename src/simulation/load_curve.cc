@@ -10,7 +10,6 @@ namespace ligament::program
 namespace
 {
 constexpr double noise_share = 1e-6; // of a load that comes later
-constexpr double back_share = 0.5;   // of the strain at the largest load
 } // namespace
 
 bool LoadCurve::takes(const Reading &reading, std::int64_t n_broken)
@@ -21,18 +20,11 @@ bool LoadCurve::takes(const Reading &reading, std::int64_t n_broken)
   const double along = largest < 0 ? -reading.load : reading.load;
   // Before the test begins there is noise alone.
   const bool is_noise = std::abs(largest) <= noise_share * std::abs(reading.load);
-  has_fallen_ =
-      n_broken > 0 && !is_noise && along < fallen_share * std::abs(largest) && !goes_back(reading);
+  has_fallen_ = n_broken > 0 && !is_noise && along < fallen_share * std::abs(largest) &&
+                !is_let_go(reading.strain, strain_[largest_]);
   if (!has_fallen_)
     n_broken_ = n_broken;
   return !has_fallen_;
-}
-
-// Between cycles of a test the machine lets go: that is no fall.
-bool LoadCurve::goes_back(const Reading &reading) const
-{
-  const double then = strain_[largest_];
-  return (then < 0 ? -reading.strain : reading.strain) < back_share * std::abs(then);
 }
 
 void LoadCurve::put(double time, const Reading &reading)

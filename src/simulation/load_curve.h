@@ -35,7 +35,6 @@ public:
 private:
   /// Whether it still counts.
   bool takes(const Reading &reading, std::int64_t n_broken);
-  bool goes_back(const Reading &reading) const;
   void put(double time, const Reading &reading);
 
   std::vector<double> time_, load_, stress_, strain_;

@@ -47,8 +47,27 @@ TEST(Curve, LoadingEndsWhereTheLoadHasFallen)
   const std::vector<double> load = {0, 1e-3, -1e-3, 10, 20, 18, 1.9, 25, -30};
   EXPECT_EQ(loading_rows(load), 6u);
   EXPECT_EQ(*peak_index(load), 4u);
-  EXPECT_EQ(loading_rows(load, 7), 8u);
   EXPECT_EQ(loading_rows({0, 10, 20, 18, 2.1, 25}), 6u); // never below a tenth
+}
+
+// Two cycles below the break: the machine lets go between them, and then the load falls while the
+// specimen is as long as before.
+TEST(Curve, UnloadingIsNoFall)
+{
+  const std::vector<double> load = {0, 10, 0, 12, 0.1, 20, 0, 25},
+                            length = {0, 1, 0, 1.2, 0, 2, 2.1, 3};
+  EXPECT_EQ(loading_rows(load, length), 6u);
+  EXPECT_EQ(*peak_index(load, length), 5u);
+  EXPECT_EQ(loading_rows(load), 2u); // nothing is known of the length
+  EXPECT_EQ(loading_rows(load, {0, 1, NAN, 1.2, 0, 2, 2.1, 3}), 2u);
+  std::vector<double> pressed = load, shorter = length;
+  for (auto *values : {&pressed, &shorter})
+    for (double &value : *values)
+      value = -value;
+  EXPECT_EQ(*peak_index(pressed, shorter), 5u);
+  for (double &value : shorter)
+    value += 7; // a gauge has some zero
+  EXPECT_EQ(*peak_index(pressed, shorter), 5u);
 }
 
 TEST(Curve, StiffnessIsThatOfTheFirstRise)
