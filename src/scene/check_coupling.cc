@@ -47,6 +47,17 @@ void check_coarse_mass(const Scene &scene, Findings &f)
     f.error(key, "\"coarse_mass\" in /coupling together with an absorbing side",
             "absorbing sides are matched to the waves of the true masses",
             "leave out one of the two");
+  const auto is_striker = [](const ToolParameters &tool) { return tool.mass.has_value(); };
+  if ((!scene.initial_motion.empty() ||
+       std::any_of(scene.tools.begin(), scene.tools.end(), is_striker)) &&
+      f.sound({"/initial_motion", "/tools"}))
+    f.error(key,
+            fmt::format("\"coarse_mass\" in /coupling together with {}",
+                        scene.initial_motion.empty() ? "a tool that has a mass"
+                                                     : "an \"initial_motion\""),
+            "the far field would move with another momentum than it has: only static answers do "
+            "not depend on masses",
+            "leave out one of the two");
   const double lowest = scene.zone.spacing / scene.far_field->cell_size;
   if (f.sound({cell_key, spacing_key}) && scene.coupling.coarse_mass < lowest * (1 - 1e-9))
     f.error(key,

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 namespace ligament::program
 {
@@ -53,6 +55,54 @@ void check_choice(const Scene &scene, Findings &f)
                 "they cut boxes and prisms only", "remove them, or give \"notches\"");
 }
 
+/// Calls visit(boundary, vertices) for each side or facet of a body from a file.
+template <typename Visit>
+void for_each_facet(const BodyFile &body, Visit &&visit)
+{
+  for (const core::Polygon &polygon : body.polygons)
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vector<2> &a = polygon[k].place, &b = polygon[(k + 1) % polygon.size()].place;
+      visit(polygon[k].boundary,
+            std::vector<Vector<3>>{Vector<3>(a[0], a[1], 0), Vector<3>(b[0], b[1], 0)});
+    }
+  for (const auto &facet : body.facets) {
+    std::vector<Vector<3>> vertices;
+    for (const auto &edge : facet.edges)
+      vertices.push_back(body.vertices[edge[0]]);
+    visit(facet.boundary, vertices);
+  }
+}
+
+/// A group of a file may have the name of a side of the box where it lies there alone: elsewhere
+/// loads would act on both.
+void check_names_of_file(const Specimen &s, Findings &f)
+{
+  std::set<std::string> told;
+  for_each_facet(*s.body, [&](int boundary, const std::vector<Vector<3>> &vertices) {
+    if (boundary < 0)
+      return;
+    const std::string &name = s.body->names[boundary];
+    const auto side = std::find(box_sides.begin(), box_sides.end(), name);
+    if (side == box_sides.end() || told.count(name))
+      return;
+    const int number = int(side - box_sides.begin()), axis = number / 2;
+    const double place = number % 2 ? s.upper(axis) : s.lower(axis);
+    const bool lies_there = std::all_of(vertices.begin(), vertices.end(), [&](const auto &x) {
+      return std::abs(x[axis] - place) <= 1e-6 * s.size[axis];
+    });
+    if (lies_there)
+      return;
+    told.insert(name);
+    f.error(section + "/file",
+            fmt::format("\"file\" in /specimen has a group \"{}\" that does not lie on that side",
+                        name),
+            fmt::format("what lies on that side of the box around the specimen has this name by "
+                        "itself; of the group something is at ({:.4g}, {:.4g}, {:.4g}) m",
+                        vertices[0][0], vertices[0][1], vertices[0][2]),
+            "give the group another name");
+  });
+}
+
 /// Sides that a scene names itself.
 void check_names(const Scene &scene, Findings &f)
 {
@@ -63,6 +113,8 @@ void check_names(const Scene &scene, Findings &f)
               "give another name, or none");
   };
   const Specimen &s = scene.specimen;
+  if (s.body && f.sound({section + "/file"}))
+    check_names_of_file(s, f);
   for (std::size_t k = 0; k < s.outline.size(); ++k)
     check(s.outline[k].side, fmt::format("{}/outline/{}", section, k));
   for (std::size_t k = 0; k < s.cutouts.size(); ++k) {

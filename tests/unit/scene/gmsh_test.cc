@@ -292,6 +292,29 @@ TEST(Gmsh, SizesOfCellsBesideThoseOfTheFileAreDoubted)
   }
 }
 
+// Groups with names of the box's sides lie there, or are refused: a load would act on both.
+TEST(Gmsh, GroupsNamedLikeSidesOfTheBox)
+{
+  const auto read = [](const std::string &grip, const std::string &ramp) {
+    const File file("named.msh", head_2 +
+                                     replaced(replaced(names, "grip", grip), "ramp end", ramp) +
+                                     nodes_2 + elements_2);
+    return parse_scene(R"({
+      "dimension": 2, "specimen": {"file": "named.msh"},
+      "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.2, "density": 1000},
+      "discrete_zone": "none", "far_field": {"cell_size": 0.5},
+      "loads": [{"boundary": "left", "velocity": [1e-3, 0]}],
+      "time": {"duration": 1}
+    })",
+                       "scene.json");
+  };
+  EXPECT_TRUE(read("left", "ramp end").scene);
+  const ReadResult wrong = read("grip", "top");
+  ASSERT_EQ(wrong.errors.size(), 1u);
+  EXPECT_EQ(wrong.errors[0].key, "/specimen/file");
+  EXPECT_NE(wrong.errors[0].message.find("\"top\""), std::string::npos) << wrong.errors[0].message;
+}
+
 // A hole of the file is one like that of the scene.
 TEST(Gmsh, HolesBetweenTheRectanglesOfAJIntegralAreRefused)
 {
