@@ -4,13 +4,15 @@ on one, on several, on several that are cut anew under way, and goes on from one
 
     scripts/ranks_random.py --seed 1 --number 20
     scripts/ranks_random.py --seed 1 --only 17        # one of them again
+    scripts/ranks_random.py --seed 1 --files          # with packings, bodies and meshes from files
 
 What is drawn at once: packing and its orientation, bodies alone and inside elements (between two sides or
 all around), outlines, cutouts, slots, cracks, holes and notches, criteria, scatter, softening, cracks of limited velocity, flow and creep, loads, motions at the
-beginning, damping, gauges, regimes, steps of the mesh. Scenes that `ligament check -n` refuses are told
+beginning, damping, gauges, regimes, steps of the mesh; with --files two zones in one mesh, too. Scenes that `ligament check -n` refuses are told
 and left out. Exit code 1 where anything differs. PATH or --program says which ligament.
 """
 import argparse
+import itertools
 import json
 import random
 import shutil
@@ -28,6 +30,7 @@ def parse():
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--number", type=int, default=10)
     parser.add_argument("--only", type=int, help="this scene of the seed alone")
+    parser.add_argument("--files", action="store_true", help="each with a packing or a body from a file, or with two zones")
     parser.add_argument("--scratch", type=Path, default=Path("ranks_random"))
     parser.add_argument("--program", default="ligament")
     parser.add_argument("--keep", action="store_true", help="keep the runs of what is equal, too")
@@ -228,6 +231,74 @@ class Draw:
             found["kinetic"] = True
         return found or {"mass": 1e-3}
 
+    def with_files(self, scene, folder):
+        """The scene with a packing file, a body of gmsh (whose cells are the mesh where there is one), or two zones."""
+        kinds = ["packing"]
+        if self.coupled and not self.around:
+            kinds.append("zones")
+        if self.dim == 2 and not self.around and not self.outlined:
+            kinds.append("body")
+        self.kind = self.shapes.choice(kinds)
+        zone, specimen = scene["discrete_zone"], scene["specimen"]
+        if self.kind == "packing":
+            for key in ("seed", "size_ratio", "orientation"):
+                zone.pop(key, None)
+            zone.update({"packing": "file", "packing_file": "packing.csv"})
+            (folder / "packing.csv").write_text(self.packing_rows(zone))
+        elif self.kind == "zones":
+            at = self.dim - 1
+            low, high = zone.pop("region").values()
+            height = self.size[at]
+            self.size[at] = specimen["size"][at] = round(2.2 * height, 3)
+            zone["boxes"] = [{name: corner[:at] + [round(corner[at] + side * 0.55 * height, 3)]
+                              for name, corner in (("lower", low), ("upper", high))} for side in (-1, 1)]
+            for crack in specimen.get("cracks", []):
+                for point in crack["points"]:
+                    point[1 if self.dim == 2 else 2] -= 0.55 * height
+        else:
+            specimen.pop("size")
+            specimen["file"] = "body.msh"
+            for key in ("holes", "notches", "slots", "cutouts"):
+                specimen.pop(key, None)
+            if self.coupled:
+                scene["far_field"]["cells_from_file"] = True
+            (folder / "body.msh").write_text(self.body(zone))
+        return scene
+
+    def packing_rows(self, zone):
+        """A square or cubic grid over the body, shaken."""
+        counts = [max(2, round(s)) for s in self.size]
+        region = zone.get("region", {"lower": [None] * self.dim, "upper": [None] * self.dim})
+        rows = ["x,y,z,r,material", "m,m,m,m,1"]
+        for place in itertools.product(*(range(n) for n in counts)):
+            x = [s * ((k + 0.5) / n - 0.5) + self.shapes.uniform(-0.2, 0.2) for k, n, s in zip(place, counts, self.size)]
+            if all((a is None or v > a - 2) and (b is None or v < b + 2)
+                   for v, a, b in zip(x, region["lower"], region["upper"])):
+                rows.append(",".join(f"{v:.6f}" for v in x + [0] * (3 - self.dim) + [self.shapes.uniform(0.45, 0.55)]) + ",0")
+        return "\n".join(rows) + "\n"
+
+    def body(self, zone):
+        """A rectangle of cells of size 4; the zone ends at edges of them."""
+        h = 4
+        nx, ny = (max(3, round(s / h)) for s in self.size)
+        if self.coupled:
+            zone["region"] = {"lower": [None, -6 * h], "upper": [None, 6 * h]}
+            ny += ny % 2
+        node = lambda a, b: 1 + a + (nx + 1) * b
+        sides = {"bottom": [(node(a, 0), node(a + 1, 0)) for a in range(nx)],
+                 "top": [(node(a, ny), node(a + 1, ny)) for a in range(nx)],
+                 "left": [(node(0, b), node(0, b + 1)) for b in range(ny)],
+                 "right": [(node(nx, b), node(nx, b + 1)) for b in range(ny)]}
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "5"]
+        lines += [f'1 {k + 1} "{name}"' for k, name in enumerate(sides)] + ['2 5 "body"', "$EndPhysicalNames", "$Nodes"]
+        lines.append(str((nx + 1) * (ny + 1)))
+        lines += [f"{node(a, b)} {h * (a - nx / 2)} {h * (b - ny / 2)} 0" for b in range(ny + 1) for a in range(nx + 1)]
+        elements = [f"1 2 {k + 1} {k + 1} {i} {j}" for k, of in enumerate(sides.values()) for i, j in of]
+        elements += [f"3 2 5 5 {node(a, b)} {node(a + 1, b)} {node(a + 1, b + 1)} {node(a, b + 1)}"
+                     for b in range(ny) for a in range(nx)]
+        lines += ["$EndNodes", "$Elements", str(len(elements))] + [f"{k + 1} {e}" for k, e in enumerate(elements)]
+        return "\n".join(lines + ["$EndElements"]) + "\n"
+
     def gauges(self):
         zero = [0] * self.dim
         up = zero[:-1] + [3]
@@ -288,11 +359,13 @@ def main():
         base = args.scratch / f"scene_{args.seed}_{number}"
         shutil.rmtree(base, ignore_errors=True)
         base.mkdir(parents=True)
+        if args.files:
+            scene = draw.with_files(scene, base)
         (base / "scene.json").write_text(json.dumps(scene, indent=1))
         check = subprocess.run([args.program, "check", str(base / "scene.json"), "-n", "2"], capture_output=True,
                                text=True)
         what = f"{scene['dimension']}D {scene['discrete_zone']['packing']}{', coupled' if draw.coupled else ''}, " \
-               f"{scene['material']['fracture']['criterion']}"
+               f"{draw.kind + ', ' if args.files else ''}{scene['material']['fracture']['criterion']}"
         if check.returncode:
             n_refused += 1
             reasons = [line.split("error: ")[-1] for line in check.stderr.splitlines() if "error: " in line]
