@@ -3,6 +3,8 @@
 #include "core/check.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 
 namespace ligament::core
 {
@@ -78,5 +80,6 @@ void Ranks::abort(const std::string &reason, int exit_code) const
 {
   require(!is_one(), "one process has no ranks to end: " + reason);
   all_->abort(reason, exit_code);
+  std::abort(); // of a virtual function GCC does not believe that it never returns
 }
 } // namespace ligament::core
