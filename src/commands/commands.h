@@ -7,7 +7,7 @@
 
 namespace ligament::program
 {
-/// Runs the scene into the output folder (default: <scene's name>-out) and writes the report.
+/// Runs the scene into the output folder (see output_folder()) and writes the report.
 /// 0 done, 3 stopped by a guard. Several ranks compute it together; the first one writes.
 int run_command(const CommandLine &line, const ReadResult &input, const core::Ranks &ranks);
 

@@ -19,6 +19,18 @@ namespace ligament::program
 {
 namespace
 {
+/// CLI11's own check names the largest number there is as the upper bound, with all digits.
+CLI::Validator above_zero()
+{
+  return {[](const std::string &text) {
+            double value = 0;
+            return CLI::detail::lexical_cast(text, value) && value > 0
+                       ? std::string()
+                       : fmt::format("{} is not above 0", text);
+          },
+          ""};
+}
+
 void add_override_option(CLI::App &app, CommandLine &line)
 {
   // One value per --set: what follows belongs to other options.
@@ -35,15 +47,13 @@ void add_wall_time_option(CLI::App &app, CommandLine &line)
   app.add_option("--wall-time", line.wall_time,
                  "ends in time with a checkpoint, s of wall time; `ligament resume` goes on")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 /// For tests of the program itself: help and manual leave it out.
 void add_rebuild_option(CLI::App &app, CommandLine &line)
 {
-  app.add_option("--rebuild-interval", line.rebuild_interval)
-      ->check(CLI::PositiveNumber)
-      ->group("");
+  app.add_option("--rebuild-interval", line.rebuild_interval)->check(above_zero())->group("");
 }
 
 void add_scene_options(CLI::App &app, CommandLine &line)
@@ -156,7 +166,10 @@ void declare(CLI::App &app, CommandLine &line)
       ->type_name("DIR");
 
   CLI::App &verify = *app.add_subcommand("verify", "runs the built-in cases: is this build right?");
-  verify.add_option("case", line.verify_case, "one case; without it: all")->type_name("CASE");
+  verify
+      .add_option("case", line.verify_case,
+                  "one case, or all whose names begin so; without it: the default set")
+      ->type_name("CASE");
   verify.add_flag("--full", line.full, "also the cases that take long");
   verify
       .add_flag("--stability", line.stability,
@@ -166,10 +179,12 @@ void declare(CLI::App &app, CommandLine &line)
       .add_option("--seeds,--seed", line.seeds,
                   "random_scenes: one seed, whose files and runs are kept, or a range; what the "
                   "folder holds of a range is not computed again")
-      ->type_name("N or FIRST:LAST");
+      ->type_name("N or FIRST:LAST")
+      ->excludes("--stability");
   verify
       .add_option("--output,-o", line.output, "random_scenes with --seeds: folder for the results")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->needs("--seeds");
 
   for (CLI::App *command : app.get_subcommands({}))
     command->add_flag("--json", line.json, "ends with one JSON object on the last line");

@@ -53,6 +53,7 @@ std::string json_text(const nlohmann::ordered_json &json, int indent = -1);
 /// status "wrong input", "stopped" or "failed".
 std::string error_json(const std::string &status, const std::string &message);
 
-/// Folder for the outputs of `run`: --output, or the scene's name with "-out".
+/// Folder for the outputs of `run`: --output, or the scene's name with "-out": of a
+/// scene.json that of its folder.
 std::string output_folder(const CommandLine &line);
 } // namespace ligament::program

@@ -351,10 +351,11 @@ std::string reference_markdown()
          "A scene is JSON with `//` and `/* */` comments. Numbers are in SI units; a string gives "
          "another unit:\n"
          "`\"12.5 mm\"`, `\"0.75 MPa*m^0.5\"`, `\"22.2 kJ/m^2\"`, `\"15 deg\"`. Units are products "
-         "of m, g, t, s, min, h, Hz,\n"
-         "N, Pa, bar, J, W, rad, deg and % with the usual prefixes; `*` or a blank multiplies, `/` "
-         "divides by the next\n"
-         "factor only, `^0.5` and `sqrt(..)` are powers. Any key can be given on the command line: "
+         "of m, g, s, Hz, N, Pa, bar,\n"
+         "J, eV, W and rad with the usual prefixes, and of t, min, h, u, angstrom, K, deg, ° and "
+         "%; `*` or a blank multiplies,\n"
+         "`/` divides by the next factor only, `^0.5` and `sqrt(..)` are powers. Any key can be "
+         "given on the command line:\n"
          "`--set /path=value`.\n" +
          core::markdown_tables(table, "The scene as a whole");
 }

@@ -173,11 +173,11 @@ void declare_atoms(Section &s, AtomsParameters &a)
   s.add("potential", a.potential, "zhou: metals after Zhou, Johnson and Wadley (2004); plane_crystal: a 2D crystal half bound by its density; lennard_jones, morse: pairs; setfl, setfl_fs, funcfl: tables of embedded atoms in a file", words(AtomPotential())).required();
   s.add("species", a.species, "of the crystal: Cu, Ag, Au, Ni, Pb, Fe or W (zhou), or a name in the file (setfl, setfl_fs)");
   s.add("file", a.file, "setfl, setfl_fs, funcfl: the table, relative to the scene");
-  s.add("energy", a.energy, "depth of a pair's well (lennard_jones, morse), energy of an atom in the crystal (plane_crystal)").in("J").usually(1e-22, 1e-17, "eV meV").at_least(0);
-  s.add("distance", a.distance, "where the well is (morse, plane_crystal); of lennard_jones sigma, where the energy is 0").in("m").usually(1e-11, 1e-8, "angstrom nm pm").at_least(0);
+  s.add("energy", a.energy, "depth of a pair's well (lennard_jones, morse), scale of an atom's energy in the crystal, which has 1.075 times it (plane_crystal)").in("J").usually(1e-22, 1e-17, "eV meV").at_least(0);
+  s.add("distance", a.distance, "where the well is (morse); of lennard_jones sigma, where the energy is 0; of plane_crystal the spacing but for second neighbours, with them 0.947 times it").in("m").usually(1e-11, 1e-8, "angstrom nm pm").at_least(0);
   s.add("decay", a.decay, "morse: alpha, the width of the well").in("1/m").usually(1e8, 1e12, "1/angstrom 1/nm").at_least(0);
   s.add("mass", a.mass, "of an atom (lennard_jones, morse, plane_crystal)").in("kg").usually(1e-28, 1e-23, "u").at_least(0);
-  s.add("taper_begin", a.taper_begin, "lennard_jones, morse: from here on the pair's energy goes smoothly to 0; 0: 2.2 sigma, 1.6 distances").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
+  s.add("taper_begin", a.taper_begin, "lennard_jones, morse: from here on the pair's energy goes smoothly to 0; 0: 2.2 sigma, 1.6 distances, or 0.88 of a shorter cut-off").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
   s.add("cutoff", a.cutoff, "lennard_jones, morse: where it is 0; 0: 2.5 sigma, 2 distances").in("m").usually(1e-11, 1e-7, "angstrom nm pm").at_least(0);
   s.add("along_x", a.along_x, "direction of the crystal's cube that lies along x, as [1, 1, 0]; not given, with along_y: the cube lies along the axes").usually(-20, 20, "").only_in(3);
   s.add("along_y", a.along_y, "that along y, across the first").usually(-20, 20, "").only_in(3);
@@ -369,7 +369,7 @@ void declare_time(Section &s, TimeParameters &t)
 {
   s.add("duration", t.duration, "simulated time").in("s").usually(1e-12, 1e5, "us ms ns").above(0).required();
   s.add("step_fraction", t.step_fraction, "time step as fraction of the largest stable one").above(0).below(1);
-  s.add("step", t.step, "time step, in place of step_fraction; refused above the stable one").in("s").usually(1e-18, 1e2, "us ns ps").above(0);
+  s.add("step", t.step, "time step, in place of step_fraction; refused above 0.99 of the stable one").in("s").usually(1e-18, 1e2, "us ns ps").above(0);
   s.add("rest_threshold", t.rest_threshold, "strain from which on a wave wakes a region at rest, which takes no steps until then; 0: any motion wakes it, and no result changes").at_least(0).at_most(1e-3);
   s.add("stop_when", t.stop_when, "end: after the duration; specimen_broken: as soon as its load path is gone (theory.md section 5.4)", words(StopWhen()));
   s.add("loading", t.loading, "dynamic: by time steps all the way; static: by equilibria up to the load at which the next bond breaks, with time steps from there until the body is calm again; sequential: by equilibria alone, bond by bond, without dynamics", words(Loading()));

@@ -192,6 +192,7 @@ dem::FaceStrength face_strength_of(const Scene &scene, const MaterialParameters 
                                            (1 + std::sin(strength.friction_angle)));
     strength.cohesion = cohesion / strength.value;
     strength.cut_off = cut_off / strength.value;
+    figures["strength" + name] = {strength.value, "Pa"};
   }
   if (p.weibull)
     strength.scatter = {p.weibull->modulus, p.weibull->reference_area.value_or(0), p.weibull->seed};

@@ -1,4 +1,4 @@
-// How a machine moves so that what it measures follows what is wanted: theory.md section 7.2.
+// How a machine moves so that what it measures follows what is wanted: theory.md section 8.2.
 #pragma once
 
 #include "core/state.h"

@@ -1,5 +1,6 @@
 // The program that computes verification cases: started by `ligament verify` with the same arguments.
 // Those who only run scenes need not build it.
+#include "core/check.h"
 #include "core/flush_denormals.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
@@ -39,6 +40,10 @@ std::vector<Case> select(const CommandLine &line)
 {
   if (line.stability)
     return select_stability(line.full);
+  const std::string of_seeds = "random_scenes";
+  core::require(line.seeds.empty() || line.verify_case.empty() || line.verify_case == of_seeds,
+                fmt::format("--seeds belongs to the case {}, not to {}: leave one of them out",
+                            of_seeds, line.verify_case));
   if (!line.seeds.empty())
     return {select_random_scenes(line.seeds, line.output)};
   return select_cases(line.verify_case, line.full);
