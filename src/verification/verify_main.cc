@@ -1,5 +1,5 @@
-// The program that computes verification cases: started by `ligament verify` with the same arguments.
-// Those who only run scenes need not build it.
+// The program that computes verification cases: started by `ligament verify` with the same
+// arguments. Those who only run scenes need not build it.
 #include "core/check.h"
 #include "core/flush_denormals.h"
 #include "src/launcher/program.h"
@@ -41,9 +41,10 @@ std::vector<Case> select(const CommandLine &line)
   if (line.stability)
     return select_stability(line.full);
   const std::string of_seeds = "random_scenes";
-  core::require(line.seeds.empty() || line.verify_case.empty() || line.verify_case == of_seeds,
-                fmt::format("--seeds belongs to the case {}, not to {}: leave one of them out",
-                            of_seeds, line.verify_case));
+  ligament::core::require(
+      line.seeds.empty() || line.verify_case.empty() || line.verify_case == of_seeds,
+      fmt::format("--seeds belongs to the case {}, not to {}: leave one of them out", of_seeds,
+                  line.verify_case));
   if (!line.seeds.empty())
     return {select_random_scenes(line.seeds, line.output)};
   return select_cases(line.verify_case, line.full);
@@ -93,8 +94,7 @@ int verify(const CommandLine &line)
   const std::string verdict = n_failed == 0 ? fmt::format("all {} figures hold", n)
                                             : fmt::format("{} of {} figures fail", n_failed, n);
   fmt::print("{}\n", verdict);
-  if (line.json)
-  {
+  if (line.json) {
     json["status"] = n_failed == 0 ? "done" : "stopped";
     fmt::print("{}\n", json.dump());
   }
@@ -106,5 +106,6 @@ int verify(const CommandLine &line)
 int main(int argc, char **argv)
 {
   ligament::core::flush_denormals();
-  return run_program(argc, argv, [](const CommandLine &line, int, char **) { return verify(line); });
+  return run_program(argc, argv,
+                     [](const CommandLine &line, int, char **) { return verify(line); });
 }
