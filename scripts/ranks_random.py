@@ -243,7 +243,11 @@ class Draw:
         if self.kind == "packing":
             for key in ("seed", "size_ratio", "orientation"):
                 zone.pop(key, None)
-            zone.update({"packing": "file", "packing_file": "packing.csv"})
+            for key in ("holes", "notches", "slots", "cutouts"):  # a grid has points in them
+                specimen.pop(key, None)
+            # That of the densest lattice with cells of volume 1.
+            zone.update({"packing": "file", "packing_file": "packing.csv",
+                         "spacing": 1.0746 if self.dim == 2 else 1.1225})
             (folder / "packing.csv").write_text(self.packing_rows(zone))
         elif self.kind == "zones":
             at = self.dim - 1
@@ -252,6 +256,8 @@ class Draw:
             self.size[at] = specimen["size"][at] = round(2.2 * height, 3)
             zone["boxes"] = [{name: corner[:at] + [round(corner[at] + side * 0.55 * height, 3)]
                               for name, corner in (("lower", low), ("upper", high))} for side in (-1, 1)]
+            for key in ("holes", "notches", "slots", "cutouts"):  # they would lie in the mesh between both
+                specimen.pop(key, None)
             for crack in specimen.get("cracks", []):
                 for point in crack["points"]:
                     point[1 if self.dim == 2 else 2] -= 0.55 * height

@@ -179,9 +179,9 @@ bool check_boxes(const Scene &scene, Layout &layout, Findings &f)
         refuse(c, "is outside the specimen",
                fmt::format("move it into the specimen, which goes from {} m to {} m",
                            layout.specimen.lower[c], layout.specimen.upper[c]));
-      else if (std::min(box.upper[c], layout.specimen.upper[c]) -
-                   std::max(box.lower[c], layout.specimen.lower[c]) <=
-               needed)
+      else if (n_overlaps > 0 && std::min(box.upper[c], layout.specimen.upper[c]) -
+                                         std::max(box.lower[c], layout.specimen.lower[c]) <=
+                                     needed)
         refuse(c, "is too thin for its overlaps and 8 spacings between",
                fmt::format("give more than {:.4g} m, or a smaller cell_size or overlap_cells",
                            needed));
