@@ -244,11 +244,11 @@ TEST(ReadScene, BoxesGoThroughThinSpecimens)
   const std::string boxes =
       R"(/discrete_zone/boxes=[{"lower": [null, "-30 mm"], "upper": [null, 0]},
                                                      {"lower": [null, 0], "upper": [null, "30 mm"]}])";
-  const ReadResult thin =
-      read_scene(plate, {"/specimen/cracks=[]", R"(/specimen/size/0="3 mm")",
-                         R"(/discrete_zone/spacing="0.5 mm")", R"(/far_field/cell_size="2 mm")",
-                         "/discrete_zone/region/lower=[null, null]",
-                         "/discrete_zone/region/upper=[null, null]", boxes});
+  const ReadResult thin = read_scene(
+      plate, {"/specimen/cracks=[]", "/specimen/holes=[]", "/specimen/notches=[]",
+              R"(/specimen/size/0="3 mm")", R"(/discrete_zone/spacing="0.5 mm")",
+              R"(/far_field/cell_size="2 mm")", "/discrete_zone/region/lower=[null, null]",
+              "/discrete_zone/region/upper=[null, null]", boxes});
   EXPECT_TRUE(thin.scene) << all(thin);
 }
 
