@@ -133,7 +133,8 @@ double Crystal<dim>::find_lattice_parameter(const Potential &potential, int reac
   const Species &s = potential.species(parameters_.species);
   const double nearest = half_bonds_[0].norm();
   double from = potential.cutoff() / (reach * nearest), to = 0.99 * potential.cutoff() / nearest;
-  if (s.lattice_parameter > 0 && s.lattice == name_of(parameters_.kind)) {
+  const bool is_known = s.lattice_parameter > 0 && s.lattice == name_of(parameters_.kind);
+  if (is_known) {
     from = std::max(from, 0.85 * s.lattice_parameter);
     to = std::min(to, 1.15 * s.lattice_parameter);
   }
@@ -148,11 +149,11 @@ double Crystal<dim>::find_lattice_parameter(const Potential &potential, int reac
       best = k;
     }
   }
-  if (lowest < 0 && best == 0)
-    return 0; // the least energy lies below
+  if (lowest < 0 && best == 0 && !is_known)
+    return 0;
   double lower = place(best - 1), upper = place(best + 1);
   const auto slope = [&](double a) { return energy_of(a, potential).slope; };
-  core::require(lowest < 0 && best < n && slope(lower) < 0 && slope(upper) > 0,
+  core::require(lowest < 0 && best > 0 && best < n && slope(lower) < 0 && slope(upper) > 0,
                 fmt::format("the potential of {} has no {} crystal without stress: no spacing "
                             "between {:.3g} and {:.3g} m has the least energy; choose another "
                             "lattice",

@@ -90,6 +90,7 @@ private:
   void find_bonds(double reach);
   /// Energy per atom and a times its derivative by a, of the lattice with parameter a.
   Jet energy_of(double a, const Potential &potential) const;
+  /// From bonds of up to `reach` spacings; 0 where the least energy lies at smaller ones.
   double find_lattice_parameter(const Potential &potential, int reach) const;
   CrystalParameters<dim> parameters_;
   Potential potential_;

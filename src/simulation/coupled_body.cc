@@ -365,7 +365,8 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
           "load {} acts on {:.4g} m^2 where its side has {:.4g} m^2: cells reach beyond its "
           "ends; give smaller ones along it (/far_field/outline_cell_size)",
           l, area, whole);
-    // A force on atoms is met all the same, see loads_of_zone().
+    // Where atoms bear of a force it is met all the same, see loads_of_zone().
+    const bool is_fitted = scene.atoms && body.zone && body.loaded_faces[l] > 0;
     if (scene.atoms && area == 0)
       throw core::KeyedError(
           key, "the load does not find its part of the side",
@@ -374,7 +375,7 @@ void check_loaded_parts(const Scene &scene, const CoupledBody<dim> &body, core::
                       area, whole),
           fmt::format("make it wider than {:.4g} m, or move it off holes and notches",
                       2 * body.spacing));
-    if (area == 0 || (is_force && !scene.atoms && std::abs(area / whole - 1) > slack))
+    if (area == 0 || (is_force && !is_fitted && std::abs(area / whole - 1) > slack))
       throw core::KeyedError(
           key, "the load does not find its part of the side",
           fmt::format("a hole or notch cuts it: {:.4g} m^2 of {:.4g} m^2 are left", area, whole),

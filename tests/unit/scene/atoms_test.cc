@@ -5,6 +5,7 @@
 #include "src/scene/atoms.h"
 #include "src/scene/read_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -75,34 +76,26 @@ TEST(AtomScenes, PeriodicSidesAreWholePeriodsOfTheLattice)
   EXPECT_EQ(scene.specimen.size[0], 20e-9);
 }
 
-// What reaches to such a side moves with it.
+// What reaches to such a side moves with it; sides are known by name alone when the period is
+// found.
 TEST(AtomScenes, LoadsFollowSidesThatAreMoved)
 {
-  const Scene scene =
-      *read(crystal_scene(),
-            {R"(/specimen/periodic=["y"])",
-             R"(/discrete_zone={"extent": "all", "packing": "hexagonal"})", "/far_field=none",
-             R"(/loads=[{"boundary": "right", "traction": ["1 MPa", null], "from": "-30 nm",
-                         "to": "30 nm"}])"})
-           .scene;
-  const double size = scene.specimen.size[1];
-  EXPECT_GT(std::abs(size - 60e-9), 1e-12);
-  EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
-}
-
-// Sides are known by name alone when the period is found.
-TEST(AtomScenes, LoadsFollowSidesToBothEnds)
-{
-  const Scene scene =
-      *read(crystal_scene(),
-            {R"(/specimen/periodic=["x"])", R"(/specimen/size=["41 nm", "30 nm"])",
-             R"(/discrete_zone={"extent": "all", "packing": "hexagonal"})", "/far_field=none",
-             R"(/loads=[{"boundary": "top", "traction": [null, "1 MPa"], "from": "-20.5 nm",
-                         "to": "20.5 nm"}])"})
-           .scene;
-  const double size = scene.specimen.size[0];
-  EXPECT_GT(std::abs(size - 41e-9), 1e-12);
-  EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
+  const auto check = [](int axis, const std::string &side, const std::string &traction) {
+    const Scene scene =
+        *read(crystal_scene(),
+              {fmt::format(R"(/specimen/periodic=["{}"])", "xy"[axis]),
+               R"(/specimen/size=["41 nm", "60 nm"])",
+               R"(/discrete_zone={"extent": "all", "packing": "hexagonal"})", "/far_field=none",
+               fmt::format(R"(/loads=[{{"boundary": "{}", "traction": {}, "from": "-{} nm",
+                                        "to": "{} nm"}}])",
+                           side, traction, axis ? "30" : "20.5", axis ? "30" : "20.5")})
+             .scene;
+    const double size = scene.specimen.size[axis];
+    EXPECT_GT(std::abs(size - (axis ? 60e-9 : 41e-9)), 1e-12);
+    EXPECT_NEAR(*scene.loads[0].to - *scene.loads[0].from, size, 1e-15);
+  };
+  check(1, "right", R"(["1 MPa", null])");
+  check(0, "top", R"([null, "1 MPa"])");
 }
 
 // [13 12 0] is longer than 24 primitive vectors; across it the lattice repeats itself, too.
