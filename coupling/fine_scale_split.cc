@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "core/exact_sum.h"
+#include "coupling/operators/blended_cells.h"
 #include "coupling/operators/fine_damper.h"
 #include "coupling/operators/gap_filter.h"
 

@@ -3,17 +3,14 @@
 #include "core/check.h"
 #include "core/part.h"
 #include "coupling/algebra/nodal_matrix.h"
+#include "coupling/operators/blended_cells.h"
 #include "coupling/operators/dead_load.h"
+#include "coupling/operators/free_normals.h"
 #include "coupling/operators/member_terms.h"
-#include "fem/cell_map.h"
-#include "fem/cell_modes.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
-#include <cmath>
-#include <unordered_map>
 
 namespace ligament::coupling
 {
@@ -25,28 +22,6 @@ using core::require;
 constexpr const char *loaded_side =
     "the overlap reaches a loaded or held side of the specimen, where it can't end yet; keep the "
     "discrete zone away from that side";
-
-// Gauss points and weights on [0, 1]; four points integrate the cubic weight times the quadratic
-// strain products exactly where s is linear.
-constexpr double gauss_point[4] = {0.069431844202973712, 0.33000947820757187, 0.66999052179242813,
-                                   0.93056815579702629};
-constexpr double gauss_weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-                                    0.17392742256872693};
-
-template <int dim, typename Visit>
-void for_each_gauss_point(const Vector<dim> &lower, const Vector<dim> &size, Visit &&visit)
-{
-  constexpr int n = dim == 2 ? 16 : 64;
-  for (int q = 0; q < n; ++q) {
-    Vector<dim> x;
-    double weight = 1;
-    for (int c = 0, rest = q; c < dim; ++c, rest /= 4) {
-      x[c] = lower[c] + size[c] * gauss_point[rest % 4];
-      weight *= size[c] * gauss_weight[rest % 4];
-    }
-    visit(x, weight);
-  }
-}
 
 /// Smallest eigenvalue of a cell's consistent mass over its row sums.
 template <int dim>
@@ -67,22 +42,6 @@ double consistent_bound(const fem::CondensedCell<dim> &shape)
   const Vec<nc> scale = mass.rowwise().sum().cwiseSqrt().cwiseInverse();
   const Matrix scaled = scale.asDiagonal() * mass * scale.asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[0];
-}
-
-/// The far field's own, by the nodes that carry the cell.
-template <int dim>
-fem::CellMatrix<dim> whole_cell_stiffness(const fem::CondensedCell<dim> &shape,
-                                          const Vector<dim> &size, const fem::Body<dim> &body)
-{
-  const auto k = fem::cell_stiffness<dim>(size, body);
-  if (!shape.hangs())
-    return k;
-  fem::CellMatrix<dim> shares;
-  for (int a = 0; a < fem::n_cell_nodes<dim>; ++a)
-    for (int b = 0; b < fem::n_cell_nodes<dim>; ++b)
-      shares.template block<dim, dim>(dim * a, dim * b) =
-          shape.shares(a, b) * Eigen::Matrix<double, dim, dim>::Identity();
-  return shares.transpose() * k * shares;
 }
 
 template <int dim>
@@ -137,16 +96,8 @@ void Assembly<dim>::add_cells()
   constexpr int nc = fem::n_cell_nodes<dim>;
   for (const auto &cell : overlap_.cells) {
     const double bound = consistent_bound<dim>(cell.shape);
-    const Vector<dim> &lower = overlap_.mesh.cell_lower[cell.cell];
-    const Vector<dim> &size = overlap_.mesh.cell_size[cell.cell];
     const fem::CellMatrix<dim> k = blended_cell_stiffness(overlap_, cell, body_);
-    Eigen::Matrix<double, nc, nc> consistent;
-    consistent.setZero();
-    for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-      w *= (cell.layer == 0 ? 1 - overlap_.weight(x) : 1) * body_.thickness * body_.density;
-      const auto value = overlap_.shape_values(cell, x);
-      consistent += w * value * value.transpose();
-    });
+    const auto consistent = blended_cell_mass(overlap_, cell, body_);
     const double mu = cell.consistent_share;
     for (int a = 0; a < nc; ++a) {
       const double row_sum = consistent.row(a).sum();
@@ -254,201 +205,7 @@ void Assembly<dim>::add_term(const particles::QuadraticTerm<dim> &term)
   stiffness.add(nodes_, (rows.transpose() * term.stiffness.asDiagonal() * rows).eval(), -share);
 }
 
-template <int dim>
-void add_normal(std::vector<Vector<dim>> &normals, const Vector<dim> &normal)
-{
-  for (const auto &n : normals)
-    if ((n - normal).norm() < 1e-6)
-      return;
-  normals.push_back(normal);
-}
-
-/// Whether the mesh ends there because particles alone go on: as deep as the overlap is long.
-template <int dim>
-bool looks_into_zone(const Overlap<dim> &overlap, const fem::CellFace<dim> &face,
-                     const core::FaceCorners<dim> &corners)
-{
-  if (face.boundary != inner_surface<dim>)
-    return false;
-  constexpr double round_off = 1e-6;
-  return overlap.distance_to_edge(core::face_centroid<dim>(corners)) >
-         overlap.parameters.length * (1 - round_off);
-}
-
-// A node feels a free surface when a particle at that surface, or a neighbour of one, hands it
-// forces, or when it lies on the surface itself: on a side of the box, one with a name or one
-// without. Where no particle lies in the outermost cells the mesh alone tells.
-template <int dim>
-std::vector<std::vector<Vector<dim>>> find_free_normals(const Overlap<dim> &overlap,
-                                                        const particles::Particles<dim> &particles,
-                                                        const particles::ParticleForce<dim> &force)
-{
-  using Face = particles::FaceView<dim>;
-  const std::vector<int> members = overlap.member_particles();
-  std::vector<int> near_members = members; // and their neighbours
-  const auto add_neighbour = [&](const particles::Neighbour &n) { near_members.push_back(n.j); };
-  force.for_each_neighbour(particles, add_neighbour, &members);
-  std::sort(near_members.begin(), near_members.end());
-  near_members.erase(std::unique(near_members.begin(), near_members.end()), near_members.end());
-
-  std::unordered_map<int, std::vector<Vector<dim>>> on_surface;
-  const auto add_surface = [&](const Face &face) {
-    if (face.j < 0)
-      add_normal<dim>(on_surface[face.i], face.normal);
-  };
-  force.for_each_face(particles, add_surface, &near_members);
-  auto felt = on_surface;
-  const auto feel = [&](const Face &face) {
-    if (const auto found = on_surface.find(face.j); found != on_surface.end())
-      for (const auto &normal : found->second)
-        add_normal<dim>(felt[face.i], normal);
-  };
-  force.for_each_face(particles, feel, &members);
-  std::vector<std::vector<Vector<dim>>> normals(overlap.n_nodes());
-  for (const auto &m : overlap.members)
-    for (const auto &normal : felt[m.particle]) {
-      require((normal.cwiseAbs().array() > 1 - 1e-9).any(),
-              "the overlap ends at a curved or inclined free surface, which is not supported yet; "
-              "keep holes and notches away from it");
-      for (const int node : m.nodes)
-        add_normal<dim>(normals[node], normal);
-    }
-  std::vector<int> near(overlap.mesh.n_nodes(), -1);
-  for (int i = 0; i < overlap.n_nodes(); ++i)
-    near[overlap.near_nodes[i]] = i;
-  for (const auto &face : overlap.mesh.boundary_faces) {
-    const auto &nodes = overlap.mesh.cells[face.cell];
-    const auto local = fem::face_nodes<dim>(face.face);
-    if (std::none_of(local.begin(), local.end(), [&](int a) { return near[nodes[a]] >= 0; }))
-      continue;
-    const auto corners = fem::cell_corners(overlap.mesh, face.cell);
-    if (looks_into_zone(overlap, face, fem::face_corners<dim>(corners, face.face)))
-      continue;
-    const Vector<dim> normal = fem::face_normal<dim>(corners, face.face);
-    for (const int a : local)
-      if (const int node = near[nodes[a]]; node >= 0)
-        add_normal<dim>(normals[node], normal);
-  }
-  return normals;
-}
-
-/// What the cell's own modes take of its stiffness where the mesh is alone: behind the pads' depth
-/// no particle moves but with it (theory.md eq. (C21)). Their mean over that part is taken off
-/// them, so that uniform strain is as without them.
-template <int dim>
-fem::CellMatrix<dim> relief_by_modes(const Overlap<dim> &overlap,
-                                     const typename Overlap<dim>::Cell &cell,
-                                     const fem::Body<dim> &body)
-{
-  constexpr int n = dim * fem::n_cell_nodes<dim>, n_modes = fem::n_cell_modes<dim>;
-  const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
-  const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
-  const auto for_each_lonely_point = [&](auto &&visit) {
-    for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-      const Vector<dim> s = 2 * (x - lower).cwiseQuotient(size) - Vector<dim>::Ones();
-      if (overlap.distance_to_edge(x) < overlap.depth)
-        visit(x, fem::mode_strains<dim>(s), w * (1 - overlap.weight(x)) * body.thickness);
-    });
-  };
-  double volume = 0, energy = 0; // energy of all modes, their means included
-  Eigen::Matrix<double, n_strains<dim>, n_modes> mean = decltype(mean)::Zero();
-  for_each_lonely_point([&](const Vector<dim> &, const auto &modes, double w) {
-    volume += w;
-    mean += w * modes;
-    energy += w * (modes.transpose() * body.stiffness * modes).trace();
-  });
-  if (volume == 0)
-    return fem::CellMatrix<dim>::Zero();
-  mean /= volume;
-  Eigen::Matrix<double, n_modes, n> coupled = decltype(coupled)::Zero();
-  Eigen::Matrix<double, n_modes, n_modes> own = decltype(own)::Zero();
-  for_each_lonely_point([&](const Vector<dim> &x, const auto &modes, double w) {
-    const Eigen::Matrix<double, n_strains<dim>, n_modes> g = modes - mean;
-    const auto b = fem::strain_matrix<dim>(overlap.shape_gradients(cell, x));
-    coupled += w * g.transpose() * body.stiffness * b;
-    own += w * g.transpose() * body.stiffness * g;
-  });
-  // In a thin part some modes are constant and do nothing, where a corner has one point alone all.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n_modes, n_modes>> solver(own);
-  const double least = 1e-10 * energy;
-  fem::CellMatrix<dim> relief = fem::CellMatrix<dim>::Zero();
-  for (int m = 0; m < n_modes; ++m)
-    if (solver.eigenvalues()[m] > least) {
-      const Eigen::Matrix<double, n, 1> row = coupled.transpose() * solver.eigenvectors().col(m);
-      relief += row * row.transpose() / solver.eigenvalues()[m];
-    }
-  return relief;
-}
 } // namespace
-
-template <int dim>
-fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
-                                            const typename Overlap<dim>::Cell &cell,
-                                            const fem::Body<dim> &body)
-{
-  const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
-  const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
-  if (cell.layer > 0)
-    return whole_cell_stiffness(cell.shape, size, body);
-  const bool is_stressed = !body.stress.isZero(0);
-  fem::CellMatrix<dim> k;
-  k.setZero();
-  for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-    w *= (1 - overlap.weight(x)) * body.thickness;
-    const auto gradients = overlap.shape_gradients(cell, x);
-    const auto b = fem::strain_matrix<dim>(gradients);
-    k += w * b.transpose() * body.stiffness * b;
-    if (is_stressed)
-      k += fem::stress_stiffness<dim>(gradients, body.stress, w);
-  });
-  return k - relief_by_modes(overlap, cell, body);
-}
-
-template <int dim>
-fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
-                                     const typename Overlap<dim>::Cell &cell,
-                                     const fem::Body<dim> &body)
-{
-  fem::CellMean<dim> mean;
-  for_each_gauss_point<dim>(overlap.mesh.cell_lower[cell.cell], overlap.mesh.cell_size[cell.cell],
-                            [&](const Vector<dim> &x, double w) {
-                              const double share = cell.layer > 0 ? 1 : 1 - overlap.weight(x);
-                              mean.add(overlap.shape_gradients(cell, x),
-                                       share * w * body.thickness);
-                            });
-  mean.close();
-  return mean;
-}
-
-template <int dim>
-Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<dim> &overlap,
-                                                  const fem::Body<dim> &from,
-                                                  const fem::Body<dim> &to)
-{
-  NodalMatrix<dim> change(overlap.n_nodes());
-  for (const auto &cell : overlap.cells) {
-    const Vector<dim> &lower = overlap.mesh.cell_lower[cell.cell];
-    const Vector<dim> &size = overlap.mesh.cell_size[cell.cell];
-    fem::CellMatrix<dim> k;
-    k.setZero();
-    if (cell.layer > 0)
-      k = whole_cell_stiffness(cell.shape, size, to) - whole_cell_stiffness(cell.shape, size, from);
-    else {
-      for_each_gauss_point<dim>(lower, size, [&](const Vector<dim> &x, double w) {
-        if (overlap.distance_to_edge(x) >= overlap.depth)
-          return;
-        w *= (1 - overlap.weight(x)) * to.thickness;
-        const auto gradients = overlap.shape_gradients(cell, x);
-        const auto b = fem::strain_matrix<dim>(gradients);
-        k += w * b.transpose() * (to.stiffness - from.stiffness) * b;
-        k += fem::stress_stiffness<dim>(gradients, Strain<dim>(to.stress - from.stress), w);
-      });
-      k -= relief_by_modes(overlap, cell, to) - relief_by_modes(overlap, cell, from);
-    }
-    change.add({cell.nodes.begin(), cell.nodes.end()}, k);
-  }
-  return change.to_sparse();
-}
 
 template <int dim>
 Eigen::Matrix<double, dim, dim> unit_strain(int k)
@@ -564,18 +321,6 @@ template BlendedOperators<3> make_blended_operators(const Overlap<3> &,
                                                     const particles::Particles<3> &,
                                                     const particles::ParticleForce<3> &,
                                                     const fem::Body<3> &, double);
-template Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<2> &, const fem::Body<2> &,
-                                                           const fem::Body<2> &);
-template Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<3> &, const fem::Body<3> &,
-                                                           const fem::Body<3> &);
-template fem::CellMatrix<2> blended_cell_stiffness(const Overlap<2> &, const Overlap<2>::Cell &,
-                                                   const fem::Body<2> &);
-template fem::CellMatrix<3> blended_cell_stiffness(const Overlap<3> &, const Overlap<3>::Cell &,
-                                                   const fem::Body<3> &);
-template fem::CellMean<2> blended_cell_mean(const Overlap<2> &, const Overlap<2>::Cell &,
-                                            const fem::Body<2> &);
-template fem::CellMean<3> blended_cell_mean(const Overlap<3> &, const Overlap<3>::Cell &,
-                                            const fem::Body<3> &);
 template Eigen::Matrix<double, 2, 2> unit_strain<2>(int);
 template Eigen::Matrix<double, 3, 3> unit_strain<3>(int);
 template Eigen::Matrix<double, 2, 2> unit_gradient<2>(int, int);

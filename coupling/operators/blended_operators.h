@@ -4,7 +4,6 @@
 
 #include "coupling/operators/interpolated_motion.h"
 #include "fem/fem_solver.h"
-#include "fem/strained_cell.h"
 
 #include <Eigen/SparseCore>
 
@@ -32,7 +31,7 @@ struct BlendedOperators
   /// g = Phi^T f(X): what these forces leave at the near nodes, N (theory.md eq. (C26)); empty: no
   /// bond bears any.
   Nodal<dim> dead_load;
-  /// Per near node the outward normals of the free surfaces that its residual feels.
+  /// Of find_free_normals.
   std::vector<std::vector<Vector<dim>>> free_normals;
 };
 
@@ -42,25 +41,6 @@ BlendedOperators<dim> make_blended_operators(const Overlap<dim> &overlap,
                                              const particles::Particles<dim> &particles,
                                              const particles::ParticleForce<dim> &force,
                                              const fem::Body<dim> &body, double coarse_mass = 1);
-
-/// Stiffness in N/m of a near cell with its share of the energy: 1 - a in the overlap, else whole.
-template <int dim>
-fem::CellMatrix<dim> blended_cell_stiffness(const Overlap<dim> &overlap,
-                                            const typename Overlap<dim>::Cell &cell,
-                                            const fem::Body<dim> &body);
-
-/// Mean deformation of a near cell, weighted as its energy.
-template <int dim>
-fem::CellMean<dim> blended_cell_mean(const Overlap<dim> &overlap,
-                                     const typename Overlap<dim>::Cell &cell,
-                                     const fem::Body<dim> &body);
-
-/// Change of the coarse stiffness in N/m where the near cells are alone, in the transition and
-/// beyond the particles that have a motion of their own, when one body takes the place of another.
-template <int dim>
-Eigen::SparseMatrix<double> change_of_cells_alone(const Overlap<dim> &overlap,
-                                                  const fem::Body<dim> &from,
-                                                  const fem::Body<dim> &to);
 
 /// The cells' part alone: stiffness weighted by 1 - a, without the subtracted terms, and mass,
 /// without the particles' share. Residual, mass bound and normals stay empty. Throws

@@ -1,5 +1,6 @@
 #include "coupling/operators/coarse_energy.h"
 
+#include "coupling/operators/blended_cells.h"
 #include "particles/orientation.h"
 
 namespace ligament::coupling

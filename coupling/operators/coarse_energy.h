@@ -3,8 +3,9 @@
 #pragma once
 
 #include "coupling/algebra/block_matrix.h"
-#include "coupling/operators/blended_operators.h"
+#include "coupling/operators/interpolated_motion.h"
 #include "coupling/operators/rigid_frames.h"
+#include "fem/strained_cell.h"
 
 #include <memory>
 
