@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 namespace ligament::core
 {
@@ -179,33 +180,48 @@ State parse(std::string_view file, StateFileSum &sum)
 }
 } // namespace
 
-StateFileSum write_state_file(const std::string &path, const State &state)
+namespace
+{
+/// Hands over what a file of the state says, but for its sum, in slices; answers the file's sum.
+StateFileSum for_each_slice(const State &state, const std::function<void(std::string_view)> &visit)
 {
   std::vector<std::string> keys;
   for (const auto &[name, table] : state)
     keys.push_back(pack_keys(table.keys(), table.n_keys()));
-  OutputFile file(path);
   StateFileSum sum;
   // Slice by slice, which is in the cache still when its sum is formed.
   constexpr std::size_t slice = std::size_t(1) << 19;
-  const auto write = [&](std::string_view bytes) {
+  const auto add = [&](std::string_view bytes) {
     sum.bytes += std::int64_t(bytes.size());
     for (; !bytes.empty(); bytes.remove_prefix(std::min(slice, bytes.size()))) {
       const std::string_view part = bytes.substr(0, slice);
-      file.write(part);
+      visit(part);
       sum.checksum = std::int64_t(checksum(part, sum.checksum));
     }
   };
-  write(header_of(state, keys));
+  add(header_of(state, keys));
   auto packed = keys.begin();
   for (const auto &[name, table] : state) {
-    write(*packed++);
-    write(bytes_of(table.words()));
+    add(*packed++);
+    add(bytes_of(table.words()));
   }
-  file.write(bytes_of(std::uint64_t(sum.checksum)));
   sum.bytes += word;
+  return sum;
+}
+} // namespace
+
+StateFileSum write_state_file(const std::string &path, const State &state)
+{
+  OutputFile file(path);
+  const StateFileSum sum = for_each_slice(state, [&](std::string_view part) { file.write(part); });
+  file.write(bytes_of(std::uint64_t(sum.checksum)));
   file.commit();
   return sum;
+}
+
+StateFileSum state_file_sum(const State &state)
+{
+  return for_each_slice(state, [](std::string_view) {});
 }
 
 State read_state_file(const std::string &path, const std::optional<StateFileSum> &expected)

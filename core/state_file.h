@@ -24,6 +24,9 @@ struct StateFileSum
 /// Replaced at once, synchronised with the disk. Throws EnvironmentError when the disk refuses.
 StateFileSum write_state_file(const std::string &path, const State &state);
 
+/// That of the file which this state makes.
+StateFileSum state_file_sum(const State &state);
+
 /// Verifies all of it before any of it is used. Throws InputError with the path and what is wrong
 /// for a file that is missing, cut, damaged, of another format, or not the expected one.
 State read_state_file(const std::string &path, const std::optional<StateFileSum> &expected = {});

@@ -65,7 +65,7 @@ Json json_of(const CommandLine &line, const Scene &scene, const SizeEstimate &si
   json["memory_bytes"] = memory_of(scene, size);
   json["available_memory_bytes"] = available_memory();
   for (const char *name : {"predicted_seconds", "seconds_per_step", "output_seconds",
-                           "setup_seconds", "predicted_saving"})
+                           "setup_seconds", "predicted_saving", "advice"})
     json[name] = nullptr;
   json["built"] = false;
   json["not_checked"] = not_checked(line);

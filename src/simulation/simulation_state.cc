@@ -44,6 +44,12 @@ void Simulation<dim>::go_on_from(Checkpoint &checkpoint)
   started_ = manifest.started;
   if (checkpoint.reference_lost.empty())
     reference_sum_ = manifest.reference;
+  else if (scene_.zone.packing == PackingKind::file)
+    core::require(core::state_file_sum(reference_.tables()) == manifest.reference,
+                  "what the set-up had found is lost: " + checkpoint.reference_lost +
+                      "; the run's packing.csv does not tell which rows of the packing file its "
+                      "particles were, so that their motion cannot be given back; put the file "
+                      "back, or repeat the run");
   log_.info("goes on from checkpoint {}, step {} of {}, {:.4g} s", manifest.number, manifest.step,
             clock_.n_steps, manifest.time);
   log_.set_warnings(manifest.warnings);

@@ -420,6 +420,33 @@ TEST_F(Resume, ASetUpThatFailsLeavesTheRunAsItIs)
   EXPECT_EQ(log.find(end), log.rfind(end)) << "of the part that was taken off";
 }
 
+/// A run's packing.csv has the rows that were used, under other numbers.
+TEST_F(Resume, RowsOfAFileThatAreLostAreNotGuessed)
+{
+  const std::string bare = " --set '/tools=[]' --set '/gauges=[]' --set /time/duration=",
+                    of_file = " --set /discrete_zone/packing=file --set "
+                              "/discrete_zone/packing_file=more.csv";
+  ASSERT_EQ(
+      run_ligament("run torn.json -o drawn --set /discrete_zone/packing=random" + bare + "1").code,
+      0);
+  const std::string drawn = file_text("drawn/packing.csv");
+  const auto behind_units = drawn.find('\n', drawn.find('\n') + 1) + 1;
+  std::ofstream("more.csv") << drawn.substr(0, behind_units) << "500,500,0.5\n"
+                            << drawn.substr(behind_units);
+  const Outcome run = run_ligament("run torn.json -o of_more" + of_file + bare + "20");
+  ASSERT_EQ(run.code, 0) << run.errors;
+  fs::copy("of_more/checkpoints/reference.bin", "reference.bin",
+           fs::copy_options::overwrite_existing);
+  std::ofstream("of_more/checkpoints/reference.bin") << "nothing";
+  const std::string resume = "resume of_more --set /time/duration=21";
+  const Outcome lost = run_ligament(resume);
+  EXPECT_EQ(lost.code, 2) << lost.errors;
+  EXPECT_TRUE(has(lost.errors, "which rows of the packing file")) << lost.errors;
+  fs::copy("reference.bin", "of_more/checkpoints/reference.bin",
+           fs::copy_options::overwrite_existing);
+  EXPECT_EQ(run_ligament(resume).code, 0);
+}
+
 /// What bodies and loops may be made of, in overrides of the scene.
 const std::vector<std::pair<std::string, std::string>> other_scenes = {
     {"random", " --set /discrete_zone/packing=random --set /discrete_zone/relaxation_sweeps=4 "},

@@ -111,6 +111,7 @@ TEST(StateFile, BringsBackEveryBit)
 TEST(StateFile, SumsTellStatesApart)
 {
   const StateFileSum sum = write_state_file("state.bin", sample());
+  EXPECT_TRUE(sum == state_file_sum(sample()));
   State other = sample();
   other.erase("run");
   save_value(other, "run", "energy", std::nextafter(0.1, 1));
