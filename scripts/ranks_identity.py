@@ -14,6 +14,7 @@ import argparse
 import json
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import time
@@ -76,8 +77,47 @@ def run(args, scene, folder, ranks):
     return time.monotonic() - began, code
 
 
+def tables_of(path):
+    """Keys and words of the tables of a file of states (core/state_file.h), by their names."""
+    data = path.read_bytes()
+    place = 32  # behind magic, version, bytes of the file and of its header
+
+    def number():
+        nonlocal place
+        place += 8
+        return struct.unpack_from("<Q", data, place - 8)[0]
+
+    def name():
+        nonlocal place
+        n = number()
+        place += n
+        return data[place - n:place].decode()
+
+    content = struct.unpack_from("<Q", data, 24)[0]
+    tables = {}
+    for _ in range(number()):
+        table, n_keys, rows, columns, key_bytes = name(), number(), number(), number(), number()
+        names = [name() for _ in range(columns)]
+        n = key_bytes + 8 * rows * columns
+        tables[table] = (n_keys, rows, names, data[content:content + n])
+        content += n
+    if content != len(data) - 8:
+        raise ValueError(f"{path}: not a file of states")
+    return tables
+
+
+def last_state(run):
+    """Tables of the newest checkpoint, but for what they say of blocks at rest, which each rank cuts
+    otherwise. A run that a guard ended has no state of its end."""
+    states = [path for path in (run / "checkpoints").glob("*/body.bin") if path.parent.suffix != ".tmp"]
+    if not states:
+        return None
+    tables = tables_of(max(states))
+    return {name: table for name, table in tables.items() if name not in ("blocks", "rest", "split_rest")}
+
+
 def results(folder):
-    """Files by their names in the run; the newest state is whole but for what rests."""
+    """Files by their names in the run."""
     names = [name for name in TABLES if (folder / name).exists()]
     names += [str(path.relative_to(folder)) for path in sorted(folder.glob("snapshot_*.bin"))]
     for part in ("fields", "pictures"):
@@ -103,6 +143,13 @@ def differences(one, many):
             found.append(name)
     first, second = (json.loads((folder / "run.json").read_text()) for folder in (one, many))
     found += [key for key in RECORDED if said(first, key) != said(second, key)]
+    if first.get("status") == "done":
+        states = [last_state(folder) for folder in (one, many)]
+        if None in states:
+            found.append("no last state")
+        else:
+            found += [f"last state, {name}" for name in set(states[0]) | set(states[1])
+                      if states[0].get(name) != states[1].get(name)]
     return sorted(found)
 
 

@@ -21,7 +21,9 @@ using namespace ligament::program;
 std::vector<Result> run_case(const Case &c)
 {
   try {
-    return c.run();
+    const std::vector<Result> results = c.run();
+    ligament::core::require(!results.empty(), "it has no figures");
+    return results;
   } catch (const std::exception &error) {
     fmt::print("  {}: {}\n", c.name, error.what());
     return {{c.name, std::numeric_limits<double>::quiet_NaN(), 0, {}}};

@@ -215,6 +215,8 @@ TEST_F(Phases, BondByBondAllIsStatic)
       break;
     }
     EXPECT_EQ(list[k]["end"], list[k + 1]["begin"]) << k;
+    EXPECT_EQ(list[k]["steps"], 0) << k;
+    EXPECT_EQ(list[k]["broken"], 1) << k;
   }
 }
 } // namespace

@@ -1,4 +1,4 @@
-// The program from outside: exit codes, fields of --json, older runs are kept, examples check.
+// The program from outside: exit codes, fields of --json, older runs are kept.
 #include "tests/support/small_plate.h"
 
 #include <nlohmann/json.hpp>
@@ -349,23 +349,5 @@ TEST(Program, ARunsPackingCanBeReadAgain)
   EXPECT_EQ(ligament("check " + scene + file + wrong_spacing).code, 2);
   std::ofstream("random/packing.csv") << "x,y,r\nm,m,m\n0,0,none\n";
   EXPECT_EQ(ligament("check " + scene + file).code, 2);
-}
-
-TEST(Examples, AllCheck)
-{
-  int n = 0;
-  for (const auto &entry : std::filesystem::directory_iterator(LIGAMENT_SOURCE_DIR "/examples")) {
-    const std::string scene = entry.path().string() + "/scene.json";
-    if (!std::filesystem::exists(scene))
-      continue;
-    SCOPED_TRACE(scene);
-    ++n;
-    const auto outcome = ligament("check " + scene + " --json");
-    EXPECT_EQ(outcome.code, 0);
-    EXPECT_TRUE(outcome.json()["errors"].empty()) << outcome.last_line;
-    EXPECT_TRUE(std::filesystem::exists(entry.path() / "README.md"));
-    EXPECT_TRUE(std::filesystem::exists(entry.path() / "picture.png"));
-  }
-  EXPECT_GE(n, 4);
 }
 } // namespace

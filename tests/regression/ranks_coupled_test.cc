@@ -194,6 +194,8 @@ TEST_F(RanksCoupled, AStripThatBends)
 TEST_F(RanksCoupled, AStripThatTurns)
 {
   expect_the_same_on({2}, turning_strip(), 0);
+  const std::string regimes = file_json("on_1/run.json")["regime"];
+  EXPECT_NE(regimes.find(" from "), std::string::npos) << regimes;
 }
 TEST_F(RanksCoupled, CheckKnowsPartsAndGhosts)
 {

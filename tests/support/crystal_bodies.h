@@ -1,6 +1,7 @@
 // Crystals in a closed ring of overlap, and what is left of forces in them.
 #pragma once
 
+#include "core/extremes.h"
 #include "tests/support/coupled_bodies.h"
 #include "tests/support/crystal_force.h"
 
@@ -191,7 +192,7 @@ double gradient_residual(CoupledBodies<dim> &body)
     h(k / dim, k % dim) = 1;
     move_by_gradient<dim>(body, h);
     const coupling::Nodal<dim> change = overlap_forces(body) - first;
-    largest = std::max(largest, change.rowwise().norm().maxCoeff());
+    keep_largest(largest, change.rowwise().norm().maxCoeff());
   }
   return largest / force_scale(body);
 }
@@ -207,7 +208,7 @@ double free_force(CoupledBodies<dim> &body)
   for (int i = 0; i < body.zone->state.size(); ++i) {
     const int m = overlap.member_of_particle[i];
     if (m < 0 || !overlap.members[m].pad)
-      largest = std::max(largest, get(body.zone->state.force, i).norm());
+      keep_largest(largest, get(body.zone->state.force, i).norm());
   }
   return largest / body.far->body().stiffness(0, 0);
 }

@@ -2,6 +2,7 @@
 // tests use, and the faults that they plant in it.
 #pragma once
 
+#include "core/extremes.h"
 #include "particles/particle_force.h"
 #include "tests/support/embedding_potential.h"
 
@@ -123,7 +124,7 @@ public:
         if (!moved)
           step /= 2;
       }
-      largest = std::max(largest, best);
+      keep_largest(largest, best);
     }
     return 2 / std::sqrt(largest / p.mass[bulk_]);
   }

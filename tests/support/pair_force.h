@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/check.h"
+#include "core/extremes.h"
 #include "core/load.h"
 #include "packings/packing.h"
 #include "particles/particle_force.h"
@@ -100,7 +101,7 @@ public:
     double largest = 0;
     for (int c = 0; c < 2; ++c)
       for (int i = 0; i < p.size(); ++i)
-        largest = std::max(largest, rows[c][i] * p.inverse_mass(i));
+        keep_largest(largest, rows[c][i] * p.inverse_mass(i));
     return 2 / std::sqrt(largest);
   }
 

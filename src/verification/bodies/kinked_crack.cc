@@ -1,5 +1,7 @@
 #include "src/verification/bodies/kinked_crack.h"
 
+#include "core/extremes.h"
+
 #include <Eigen/Dense>
 
 #include <array>
@@ -203,7 +205,7 @@ double largest_stress_intensity(KinkedCrack crack)
   double largest = 0;
   for (double degrees = 45; degrees <= 85; degrees += 5) {
     crack.kink = degrees * M_PI / 180;
-    largest = std::max(largest, stress_intensity(crack));
+    keep_largest(largest, stress_intensity(crack));
   }
   return largest;
 }

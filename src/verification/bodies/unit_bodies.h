@@ -2,6 +2,7 @@
 // Young's modulus and the density.
 #pragma once
 
+#include "core/extremes.h"
 #include "src/simulation/coupled_body.h"
 
 namespace ligament::program
@@ -29,11 +30,4 @@ struct UnitBody
 
   double c11() const { return body.force()->elastic_constants().stiffness(0, 0); }
 };
-
-/// Worst of the values; not a number as soon as one is.
-inline void keep_worst(double &worst, double value)
-{
-  if (!(value <= worst))
-    worst = value;
-}
 } // namespace ligament::program

@@ -15,7 +15,7 @@ double largest_displacement(const CoupledBody<dim> &body)
   for (const auto *displacement : {&body.zone->state.displacement, &body.far->displacement})
     for (const auto &component : *displacement)
       for (const double u : component)
-        keep_worst(largest, std::abs(u) / body.spacing);
+        keep_largest(largest, std::abs(u) / body.spacing);
   return largest;
 }
 

@@ -1,5 +1,6 @@
 // A crack in iron cleaves, coupled, with zones of two sizes, against the same body of atoms
 // alone.
+#include "core/extremes.h"
 #include "src/verification/cases/atoms.h"
 #include "src/verification/instruments/pulled_crystal.h"
 
@@ -52,7 +53,7 @@ double off_plane(const PulledCrystal &c)
 {
   double off = c.places.empty() ? std::nan("") : 0;
   for (const auto &place : c.places)
-    off = std::max(off, std::abs(place[1]) * 1e9);
+    keep_largest(off, std::abs(place[1]) * 1e9);
   return off;
 }
 

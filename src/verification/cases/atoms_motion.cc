@@ -90,10 +90,10 @@ std::vector<Result> turned(const std::string &name, const Scene &scene)
   double nodes = momentum.rowwise().norm().maxCoeff() / body.dt, atoms = 0;
   for (int i = 0; i < mesh.n_nodes(); ++i)
     if (!body.far->is_released_node(i))
-      keep_worst(nodes, get(body.far->velocity, i).norm() * body.far->lumped_mass()[i] / body.dt);
+      keep_largest(nodes, get(body.far->velocity, i).norm() * body.far->lumped_mass()[i] / body.dt);
   for (int i = 0; i < zone.size(); ++i)
     if (const int m = overlap.member_of_particle[i]; m < 0 || !overlap.members[m].pad)
-      keep_worst(atoms, get(zone.velocity, i).norm() * zone.mass[i] / body.dt);
+      keep_largest(atoms, get(zone.velocity, i).norm() * zone.mass[i] / body.dt);
   double volume = 0;
   for (int i = 0; i < zone.size(); ++i)
     volume += zone.volume[i];

@@ -41,11 +41,11 @@ Residual residual(CoupledBody<dim> &body)
   body.coupler->restrict_forces(zone, nodal);
   Residual largest;
   for (const int node : body.coupler->overlap()->near_nodes)
-    keep_worst(largest.nodes, get(nodal, node).norm());
+    keep_largest(largest.nodes, get(nodal, node).norm());
   const double reach = body.force()->range();
   for (int i = 0; i < zone.size(); ++i)
     if (body.coupler->overlap()->distance_to_edge(get(zone.reference, i)) > reach)
-      keep_worst(largest.atoms, get(zone.force, i).norm());
+      keep_largest(largest.atoms, get(zone.force, i).norm());
   return largest;
 }
 
@@ -130,7 +130,7 @@ std::vector<Result> under_strain(const std::string &name, const AtomBody &b)
     double share = 0;
     for (const Matrix<dim> &h : gradients<dim>(size)) {
       move_by_gradient(body, h);
-      keep_worst(share, residual(body).nodes / (law->stress(h).norm() * scale));
+      keep_largest(share, residual(body).nodes / (law->stress(h).norm() * scale));
     }
     return share;
   };

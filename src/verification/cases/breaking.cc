@@ -41,7 +41,7 @@ double worst_residual(const Scene &scene, double duration, long &n_broken)
   double worst = 0;
   while (run.time() < duration) {
     run.step();
-    keep_worst(worst, run.unbooked());
+    keep_largest(worst, run.unbooked());
   }
   n_broken += long(run.body().force()->broken_bonds().size());
   return worst / run.work();
@@ -61,7 +61,7 @@ std::vector<Result> energy_residual(int n, bool coupled)
       scene.coupling.gap_filter = 4;
       scene.coupling.step_ratio = 1 + k % 3;
     }
-    keep_worst(worst, worst_residual(scene, coupled ? 2400 : 900, n_broken));
+    keep_largest(worst, worst_residual(scene, coupled ? 2400 : 900, n_broken));
   }
   const std::string name = coupled ? "energy_residual_coupled" : "energy_residual";
   return {{name + "/residual_over_work", worst, 1e-4, 1e-5},

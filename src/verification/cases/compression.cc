@@ -1,5 +1,6 @@
 // Uniaxial compression without a crack: no tension anywhere, and nothing breaks, at the coupled
 // edge of the packing either.
+#include "core/extremes.h"
 #include "dem/many_body_force.h"
 #include "src/simulation/damping.h"
 #include "src/verification/bodies/unit_bodies.h"
@@ -79,12 +80,12 @@ void impose(Scene scene, const Material &material, Excess &worst)
   auto bodies = body.bodies();
   body.coupler->take_velocities(bodies); // takes over the near nodes' displacements as well
   const auto &force = dynamic_cast<const dem::ManyBodyForce<dim> &>(*body.force());
-  keep_worst(worst.tension, force.max_tension(state, all) / size);
+  keep_largest(worst.tension, force.max_tension(state, all) / size);
   Components<n_strains<dim>> stress;
   force.stresses(state, stress);
   for (int i = 0; i < state.size(); ++i) {
     const Strain<dim> rest = get(stress, i) + size * Strain<dim>::Unit(dim - 1);
-    keep_worst(worst.stress, rest.cwiseAbs().maxCoeff() / size);
+    keep_largest(worst.stress, rest.cwiseAbs().maxCoeff() / size);
   }
 }
 
@@ -179,7 +180,7 @@ void press(const Point &size, double zone_half, int overlap_cells, const Materia
   double mean = 0;
   for (const double s : stress[dim - 1])
     mean -= s / double(stress[dim - 1].size());
-  worst.stress = std::min(worst.stress, mean);
+  keep_smallest(worst.stress, mean);
 }
 
 std::vector<Result> report(const std::string &name, const Run &worst)

@@ -82,7 +82,7 @@ void damped(const std::string &name, Scene scene, std::vector<Result> &results)
   const auto energy = run_noise(unit.body, strain, 20000, 1, 0).leap_frog;
   double rise = -1;
   for (std::size_t k = 1; k < energy.size(); ++k)
-    keep_worst(rise, (energy[k] - energy[k - 1]) / energy[0]);
+    keep_largest(rise, (energy[k] - energy[k - 1]) / energy[0]);
   results.push_back({name + "/rise", rise, 1e-12, 0});
   results.push_back({name + "/left", energy.back() / energy[0], 1, {}});
 }

@@ -1,4 +1,5 @@
 // The stable step of the coupled body against that of the plain discrete model.
+#include "core/extremes.h"
 #include "src/verification/bodies/box_zones.h"
 #include "src/verification/bodies/grading.h"
 #include "src/verification/bodies/unit_bodies.h"
@@ -27,15 +28,15 @@ void measure(const Scene &coupled, Measured &worst)
   UnitBody<dim> plain_body(plain), coupled_body(coupled);
   LinearMotion<dim> plain_motion(plain_body.body), motion(coupled_body.body);
   const double frequency = motion.largest_frequency();
-  worst.ratio = std::min(worst.ratio, plain_motion.largest_frequency() / frequency);
-  worst.margin = std::min(worst.margin, 2 / frequency / coupled_body.body.dt_zone);
+  keep_smallest(worst.ratio, plain_motion.largest_frequency() / frequency);
+  keep_smallest(worst.margin, 2 / frequency / coupled_body.body.dt_zone);
 
   const Eigen::VectorXd x = 1e-14 * motion.noise();
   const Eigen::VectorXd y = motion.accelerations(x, false);
   const Eigen::VectorXd z = motion.accelerations(y, false);
   // (y, A y) = (A x, A A x) and (x, A A y): A moved from one side to the other twice.
   const double left = motion.inner(y, z), right = motion.inner(x, motion.accelerations(z, false));
-  keep_worst(worst.asymmetry, std::abs(left / right - 1));
+  keep_largest(worst.asymmetry, std::abs(left / right - 1));
 }
 
 void report(const std::string &name, const Measured &worst, std::vector<Result> &results)

@@ -102,7 +102,7 @@ double largest_rise(const std::vector<double> &series)
 {
   double rise = -1;
   for (std::size_t k = 1; k < series.size(); ++k)
-    keep_worst(rise, (series[k] - series[k - 1]) / series[0]);
+    keep_largest(rise, (series[k] - series[k - 1]) / series[0]);
   return rise;
 }
 

@@ -1,5 +1,6 @@
 #include "src/verification/cases/face_life.h"
 
+#include "core/extremes.h"
 #include "src/verification/instruments/breaking_run.h"
 
 #include <fmt/format.h>
@@ -69,9 +70,9 @@ std::array<double, 2> press_and_pull(const Body &body)
   while (run.time() < 3 * ramp && force.losses().fracture == 0) {
     run.step();
     const double stress = run.load(1, 1) / area;
-    most = std::max(most, stress);
-    pressed = std::max(pressed, -stress);
-    unbooked = std::max(unbooked, run.unbooked());
+    keep_largest(most, stress);
+    keep_largest(pressed, -stress);
+    keep_largest(unbooked, run.unbooked());
   }
   return {most / adhesion, unbooked / (0.5 * pressed * pressed * area * size[1])};
 }
@@ -92,7 +93,7 @@ std::vector<Result> bonded_again()
     if (is_even)
       results.push_back({name + "/strength", std::abs(strength - 1), 0.05, 0.02});
     else // faces are bonded under unequal tractions, and keep these: how unequal no theory says
-      results.push_back({name + "/strength", std::abs(strength - 1), stated, {}});
+      results.push_back({name + "/strength", std::abs(strength - 1), 0.5, {}}); // 1: no bonds
     results.push_back({name + "/residual", unbooked, 1e-4, 1e-6});
   }
   return results;
@@ -122,7 +123,7 @@ std::array<double, 2> run_along(double limit, PackingKind packing)
   double first = 0, last = 0, unbooked = 0;
   while (run.time() < duration && last == 0) {
     run.step();
-    unbooked = std::max(unbooked, run.unbooked());
+    keep_largest(unbooked, run.unbooked());
     for (const auto &b : broken) {
       if (b.position[0] > from && first == 0)
         first = b.time;
@@ -151,6 +152,9 @@ std::vector<Result> limited_cracks()
         results.push_back({fmt::format("{}at_{}", begin, limit), speed / limit, stated, {}});
       else
         results.push_back({fmt::format("{}at_{}", begin, limit), speed / limit, 1, 1.});
+      // By a fifth less than along the zigzag of a row, sqrt(3)/2: the limit is not what slows it.
+      results.push_back({fmt::format("{}least_at_{}", begin, limit), speed / limit, 0.7,
+                         std::nullopt, Result::Bound::at_least});
       // Else the limit would not be what holds the crack.
       results.push_back({fmt::format("{}without_over_{}", begin, limit), free / limit, 1,
                          std::nullopt, Result::Bound::at_least});

@@ -62,9 +62,9 @@ double missing(const packings::Packing<dim> &packing, const dem::Plasticity &law
     body.drift(dt);
     body.compute_forces(time += dt);
     if (step % 100 == 0)
-      keep_worst(worst, std::abs(body.kinetic_energy(dt) + body.potential_energy() +
-                                 force.plastic_dissipation() - start) /
-                            start);
+      keep_largest(worst, std::abs(body.kinetic_energy(dt) + body.potential_energy() +
+                                   force.plastic_dissipation() - start) /
+                              start);
   }
   // A body that keeps to elasticity says nothing.
   const double taken = force.plastic_dissipation() / start;

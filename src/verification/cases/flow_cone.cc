@@ -135,7 +135,7 @@ std::vector<Result> apex()
     double worst = 0;
     for (int side = 0; side < 6; ++side) {
       const double force = run.body().force()->reaction(side)[side / 2];
-      keep_worst(worst, std::abs(std::abs(force) / (body.size * body.size) / largest - 1));
+      keep_largest(worst, std::abs(std::abs(force) / (body.size * body.size) / largest - 1));
     }
     results.push_back({"law_flow_apex/" + body.name, worst, 5e-3, 1e-3});
   }

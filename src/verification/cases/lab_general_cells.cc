@@ -1,6 +1,7 @@
 // Meshes of general cells alone: a hole with cells around it against Kirsch, and what bending loses
 // on cells out of shape.
 #include "src/verification/cases/lab_general_cells.h"
+#include "core/extremes.h"
 
 #include "algebra/conjugate_gradients.h"
 #include "fem/cell_map.h"
@@ -136,7 +137,7 @@ HoleErrors hole_errors(int along_side)
           (8 * (exact(x + step) - exact(x - step)) - (exact(x + 2 * step) - exact(x - 2 * step))) /
           (12 * 1e-4);
     }
-    e.stress = std::max(e.stress, (stress_of(h) - stress_of(expected)).norm() / 3);
+    keep_largest(e.stress, (stress_of(h) - stress_of(expected)).norm() / 3);
   }
   return e;
 }
@@ -171,7 +172,7 @@ double bending_error(int across, double share, unsigned seed)
   const auto far = solve(mesh, 0, exact);
   double error = 0;
   for (int i = 0; i < mesh.n_nodes(); ++i)
-    error = std::max(error, (get(far.displacement, i) - exact(mesh.nodes[i])).norm());
+    keep_largest(error, (get(far.displacement, i) - exact(mesh.nodes[i])).norm());
   return error / 8;
 }
 

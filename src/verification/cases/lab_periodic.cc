@@ -53,11 +53,11 @@ Errors measure(Scene scene)
                expected = 0.5 * e.cwiseProduct(stress).sum() * volume;
   Errors worst;
   const auto check = [&](double energy, const std::function<Vector<dim>(int)> &reaction) {
-    keep_worst(worst.energy, std::abs(energy / expected - 1));
+    keep_largest(worst.energy, std::abs(energy / expected - 1));
     for (int a = 0; a < dim; ++a) {
       const double area = volume / (body.upper - body.lower)[a];
-      keep_worst(worst.reaction,
-                 (reaction(a) - stress.col(a) * area).norm() / area / stress.norm());
+      keep_largest(worst.reaction,
+                   (reaction(a) - stress.col(a) * area).norm() / area / stress.norm());
     }
   };
   if (body.zone) {
@@ -66,7 +66,7 @@ Errors measure(Scene scene)
       set(state.displacement, i, Vector<dim>(e * get(state.reference, i)));
     body.zone->compute_forces(0);
     for (int i = 0; i < state.size(); ++i)
-      keep_worst(worst.force, get(state.force, i).norm() / stress.norm());
+      keep_largest(worst.force, get(state.force, i).norm() / stress.norm());
     check(body.zone->potential_energy(), [&](int a) { return body.force()->reaction(a); });
   } else {
     auto &far = *body.far;
@@ -74,7 +74,7 @@ Errors measure(Scene scene)
       set(far.displacement, i, Vector<dim>(e * far.mesh().nodes[i]));
     far.compute_forces(0);
     for (int i = 0; i < far.mesh().n_nodes(); ++i)
-      keep_worst(worst.force, get(far.force, i).norm() / stress.norm());
+      keep_largest(worst.force, get(far.force, i).norm() / stress.norm());
     check(far.potential_energy(), [&](int a) { return far.reaction(a); });
   }
   return worst;

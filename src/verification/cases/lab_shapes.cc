@@ -55,10 +55,10 @@ void impose(const Scene &scene, Worst &worst)
     return size_of_strain * Vector<2>(0.8 * x[0] + 0.2 * x[1], 0.2 * x[0] - 0.5 * x[1]);
   };
   UnitBody<2> unit(scene);
-  keep_worst(worst.residual, unit.body.figures.at("patch_residual").value);
+  keep_largest(worst.residual, unit.body.figures.at("patch_residual").value);
   const double imposed = settle_with_sides(
       unit.body, [](int side) { return side != inner_surface<2>; }, field);
-  keep_worst(worst.error, largest_distance(unit.body, field) / imposed);
+  keep_largest(worst.error, largest_distance(unit.body, field) / imposed);
 }
 
 /// An L with the zone around its inner corner and to the end of its foot: overlaps end at sides
@@ -81,13 +81,13 @@ void pull(Scene scene, Worst &worst)
   const auto names = side_names_of(scene.specimen, 2);
   scene.loads.back().boundary = int(std::find(names.begin(), names.end(), "shelf") - names.begin());
   UnitBody<2> unit(scene);
-  keep_worst(worst.residual, unit.body.figures.at("patch_residual").value);
+  keep_largest(worst.residual, unit.body.figures.at("patch_residual").value);
   LinearMotion<2> motion(unit.body);
   const Strain<2> strain = unit.body.far->body().stiffness.inverse() * stress;
   Eigen::Matrix2d gradient;
   gradient << strain[0], strain[2] / 2, strain[2] / 2, strain[1];
   const Eigen::VectorXd error = motion.solve() - motion.affine(gradient);
-  keep_worst(worst.error, motion.largest_strain(error) / gradient.norm());
+  keep_largest(worst.error, motion.largest_strain(error) / gradient.norm());
 }
 
 /// Hexagonal packings at 0 and 17 degrees, and a random one.

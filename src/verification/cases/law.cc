@@ -1,5 +1,6 @@
 #include "src/verification/cases/law.h"
 
+#include "core/extremes.h"
 #include "dem/many_body_force.h"
 #include "packings/lattice_packing.h"
 #include "packings/random_packing.h"
@@ -109,7 +110,7 @@ double error_of_strength(const packings::Packing<dim> &packing, const Named &law
     for (int i = 0; i < p.size(); ++i)
       set(p.displacement, i, Vector<dim>(strain * get(packing.centre, i)));
     const double measured = 1 / force.weakest_bond(p, inside).utilisation;
-    worst = std::max(worst, std::abs(measured / expected[load] - 1));
+    keep_largest(worst, std::abs(measured / expected[load] - 1));
   }
   return worst;
 }
@@ -153,9 +154,9 @@ std::vector<Result> homogeneous_strengths()
   for (const Named &law : tensor_criteria()) {
     double worst = 0;
     for (const auto &[name, packing] : plane)
-      worst = std::max(worst, error_of_strength<2>(packing, law));
+      keep_largest(worst, error_of_strength<2>(packing, law));
     for (const auto &[name, packing] : space)
-      worst = std::max(worst, error_of_strength<3>(packing, law));
+      keep_largest(worst, error_of_strength<3>(packing, law));
     results.push_back({"law_strengths/" + law.name, worst, 0.01, 1e-6});
   }
   return results;
@@ -192,7 +193,7 @@ double direction(Criterion criterion, int seed)
     run.step();
     const auto &force = *run.body().force();
     const double load = (force.reaction(1)[1] - force.reaction(0)[1]) / 2;
-    peak = std::max(peak, load);
+    keep_largest(peak, load);
     broken = !force.broken_bonds().empty() && load < peak / 3;
   }
   const double tip = 8 * std::cos(M_PI / 6);

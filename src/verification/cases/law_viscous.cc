@@ -107,9 +107,9 @@ std::array<double, 2> strain_steadily(const Body &body)
       left += b.share * b.relaxation_time * -std::expm1(-now.time / b.relaxation_time);
     const double expected = rate * (bulk * now.time + 4. / 3 * shear * left);
     const double full = rate * (bulk + 4. / 3 * shear) * duration;
-    keep_worst(stress_error, std::abs(end_stress(scene, unit) - expected) / full);
+    keep_largest(stress_error, std::abs(end_stress(scene, unit) - expected) / full);
     const auto ledger = read_ledger(unit.body, now, 0);
-    keep_worst(residual, std::abs(ledger.residual() - start) / (full * rate * duration));
+    keep_largest(residual, std::abs(ledger.residual() - start) / (full * rate * duration));
   }
   return {stress_error, residual};
 }
@@ -139,7 +139,7 @@ double creep(const Body &body)
       zone.state.displacement[0][i] = share * strain * zone.state.reference[0][i];
     zone.compute_forces(time);
     if (time > 0)
-      keep_worst(worst, std::abs(end_stress(scene, unit) / (longitudinal * strain) - 1));
+      keep_largest(worst, std::abs(end_stress(scene, unit) / (longitudinal * strain) - 1));
   }
   return worst;
 }
@@ -190,7 +190,7 @@ double creep_of_branch(const Body &body)
       strain += state.reference[0][i] * state.displacement[0][i] / square;
     const double expected =
         traction / last * (1 - (1 - last / first) * std::exp(-now.time / retardation));
-    keep_worst(worst, std::abs(strain - expected) / (traction / last));
+    keep_largest(worst, std::abs(strain - expected) / (traction / last));
   }
   return worst;
 }
@@ -225,7 +225,7 @@ std::vector<Result> relaxation()
     double residual = 0;
     const auto error = [&](const Body &b) {
       const auto [stress, unbooked] = of_dimension(b, strain_steadily<2>, strain_steadily<3>);
-      keep_worst(residual, unbooked);
+      keep_largest(residual, unbooked);
       return stress;
     };
     add_error("law_relaxation/" + body.name + "/stress", body, 1e-4, error, results);

@@ -71,8 +71,8 @@ void pull(Scene scene, Deviation &worst)
     const double ratio = -lateral_strain(body.zone->state, c) / strain;
     const double nu = plane_strain ? ratio / (1 + ratio) : ratio;
     const double e = plane_strain ? modulus * (1 - nu * nu) : modulus;
-    keep_worst(worst.youngs_modulus, std::abs(e - 1));
-    keep_worst(worst.poissons_ratio, std::abs(nu - scene.material.poissons_ratio));
+    keep_largest(worst.youngs_modulus, std::abs(e - 1));
+    keep_largest(worst.poissons_ratio, std::abs(nu - scene.material.poissons_ratio));
   }
 
   // The same state written down: every particle must be in equilibrium.
@@ -87,8 +87,8 @@ void pull(Scene scene, Deviation &worst)
     shift[c] = -ratio * strain * scene.specimen.size[c] / 2;
   motion.accelerations(motion.affine(gradient, shift), true);
   for (int i = 0; i < zone.size(); ++i) {
-    keep_worst(worst.residual, get(zone.force, i).norm() / (unit.c11() * strain));
-    keep_worst(worst.residual, get(zone.torque, i).norm() / (unit.c11() * strain));
+    keep_largest(worst.residual, get(zone.force, i).norm() / (unit.c11() * strain));
+    keep_largest(worst.residual, get(zone.torque, i).norm() / (unit.c11() * strain));
   }
 }
 

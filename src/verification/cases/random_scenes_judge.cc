@@ -1,5 +1,6 @@
 #include "src/verification/cases/random_scenes_judge.h"
 
+#include "core/extremes.h"
 #include "src/scene/geometry.h"
 #include "src/scene/read_scene.h"
 
@@ -139,15 +140,15 @@ double history_error(const SceneRun &run, const SceneRun &reference, double end)
   const auto largest = [&](const std::vector<double> &values) {
     double most = 0;
     for (std::size_t k = 0; k < n; ++k)
-      most = std::max(most, std::abs(values[k]));
+      keep_largest(most, std::abs(values[k]));
     return most;
   };
   const auto compare = [&](const char *name, const char *unit, const char *scale_name) {
     const auto a = run.history.column(name, unit), b = reference.history.column(name, unit);
     const double scale = largest(reference.history.column(scale_name, unit));
-    for (std::size_t k = 0; k < n && scale > 0; ++k)
+    for (std::size_t k = 0; k < n && scale != 0; ++k)
       // Sideways loads change their sign in the mirror.
-      worst = std::max(worst, std::abs(std::abs(a[k]) - std::abs(b[k])) / scale);
+      keep_largest(worst, std::abs(std::abs(a[k]) - std::abs(b[k])) / scale);
   };
   compare("load", "N", "load");
   for (const char *energy : {"kinetic_discrete", "potential_discrete", "kinetic_far",

@@ -47,11 +47,11 @@ void rotate(const std::string &packing, std::vector<Result> &results)
       unit.body.zone->compute_forces(0);
       double volume = 0;
       for (int i = 0; i < zone.size(); ++i) {
-        keep_worst(force, get(zone.force, i).norm() / unit.c11());
-        keep_worst(force, get(zone.torque, i).norm() / unit.c11());
+        keep_largest(force, get(zone.force, i).norm() / unit.c11());
+        keep_largest(force, get(zone.torque, i).norm() / unit.c11());
         volume += zone.volume[i];
       }
-      keep_worst(energy, unit.body.zone->potential_energy() / (unit.c11() * volume));
+      keep_largest(energy, unit.body.zone->potential_energy() / (unit.c11() * volume));
     }
   const std::string name =
       "rotation/" + packing + (packing == "random" ? dim == 2 ? "_2d" : "_3d" : "");

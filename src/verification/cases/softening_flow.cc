@@ -83,11 +83,11 @@ Errors pull_apart(const Scene &scene, double stroke, double duration, const Stre
     now.time = double(now.step) * now.dt;
     unit.body.coupler->compute_forces(halves, now);
     const double stress = unit.body.force()->reaction(3)[1] / area;
-    keep_worst(worst.stress,
-               std::abs(stress - stress_at(stroke * now.time / duration, now.time)) / strength);
-    keep_worst(worst.residual,
-               std::abs(read_ledger(unit.body, now, damping.energy()).residual() - start) /
-                   (energy * area));
+    keep_largest(worst.stress,
+                 std::abs(stress - stress_at(stroke * now.time / duration, now.time)) / strength);
+    keep_largest(worst.residual,
+                 std::abs(read_ledger(unit.body, now, damping.energy()).residual() - start) /
+                     (energy * area));
   }
   worst.work = std::abs(unit.body.force()->losses().cohesive / (energy * area) - 1);
   return worst;

@@ -122,8 +122,8 @@ void strike(const std::string &name, const Scene &scene, std::vector<Result> &re
     const auto ledger = read_ledger(body, step, 0);
     if (step.step == 0)
       start = ledger.residual();
-    keep_worst(work, std::abs(ledger.external_work));
-    keep_worst(residual, std::abs(ledger.residual() - start));
+    keep_largest(work, std::abs(ledger.external_work));
+    keep_largest(residual, std::abs(ledger.residual() - start));
     body.coupler->kick(bodies, step);
     body.coupler->drift(bodies, step);
     ++step.step;

@@ -92,7 +92,7 @@ void measure_stiffness(const Scene &scene, double &symmetry, double &difference)
   };
   const Eigen::VectorXd x = noise(), y = noise();
   const Eigen::VectorXd kx = system.stiffness_times(x), ky = system.stiffness_times(y);
-  keep_worst(symmetry, std::abs(y.dot(kx) - x.dot(ky)) / (x.norm() * ky.norm()));
+  keep_largest(symmetry, std::abs(y.dot(kx) - x.dot(ky)) / (x.norm() * ky.norm()));
   constexpr double step = 1e-6;
   const auto start = system.place();
   system.displace(y, step);
@@ -100,7 +100,7 @@ void measure_stiffness(const Scene &scene, double &symmetry, double &difference)
   system.put_back(start);
   system.displace(y, -step);
   const Eigen::VectorXd down = system.forces(0);
-  keep_worst(difference, ((down - up) / (2 * step) - ky).norm() / ky.norm());
+  keep_largest(difference, ((down - up) / (2 * step) - ky).norm() / ky.norm());
 }
 
 std::vector<Result> stiffness()
@@ -155,7 +155,8 @@ std::vector<Result> patch()
     double worst = 0;
     for (const Body &body : bodies(dim))
       if (body.scene.coupling.scheme == coupling::Scheme::fine_scale_split)
-        keep_worst(worst, dim == 2 ? patch_residual<2>(body.scene) : patch_residual<3>(body.scene));
+        keep_largest(worst,
+                     dim == 2 ? patch_residual<2>(body.scene) : patch_residual<3>(body.scene));
     results.push_back({fmt::format("static_patch/{}d_out_of_balance", dim), worst, 1e-12, 1e-14});
   }
   return results;

@@ -1,4 +1,5 @@
 // Toughness of plates that break: K at the peak load over the K_Ic of the scene, on any packing.
+#include "core/extremes.h"
 #include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
@@ -105,7 +106,7 @@ double peak_load(packings::Packing<2> packing, const dem::DemMaterial &glass,
     plate.drift(dt);
     plate.compute_forces(time);
     const double load = (force.reaction(1)[1] - force.reaction(0)[1]) / 2;
-    peak = std::max(peak, load);
+    keep_largest(peak, load);
     if (load < peak / 2 && !force.broken_bonds().empty())
       return peak;
   }

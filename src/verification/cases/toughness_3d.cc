@@ -1,4 +1,5 @@
 // Toughness in 3D: bars with an edge crack of six spacings against their plane-strain twins.
+#include "core/extremes.h"
 #include "dem/grips.h"
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
@@ -81,7 +82,7 @@ double relative_toughness(const Bar &bar, packings::Packing<dim> packing, double
     body.drift(dt);
     body.compute_forces(time);
     const double load = (force.reaction(1)[1] - force.reaction(0)[1]) / 2;
-    peak = std::max(peak, load);
+    keep_largest(peak, load);
     if (load < 0.6 * peak && !force.broken_bonds().empty())
       return peak / section * shape / toughness;
   }

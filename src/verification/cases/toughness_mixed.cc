@@ -1,4 +1,5 @@
 // Mixed mode: the peak load of plates with an inclined crack, on any packing the same.
+#include "core/extremes.h"
 #include "src/simulation/overlap_guard.h"
 #include "src/verification/cases.h"
 #include "src/verification/instruments/breaking_run.h"
@@ -93,7 +94,7 @@ Peak break_plate(const InclinedPlate &plate)
     for (const int end : {0, 1})
       load +=
           (end == 0 ? -0.5 : 0.5) * (body.force()->reaction(end)[1] + body.far->reaction(end)[1]);
-    peak = std::max(peak, load);
+    keep_largest(peak, load);
     if (load < peak / 2 && !body.force()->broken_bonds().empty()) {
       const double stress = peak / (width * body.thickness);
       return {stress, stress * estimate(half_length(body.cut_faces)) / toughness};
@@ -109,8 +110,8 @@ std::vector<Result> spread(const std::string &name, const std::vector<InclinedPl
   double sum = 0, squares = 0, over_estimate = 0; // not a number as soon as one plate's is not
   for (const InclinedPlate &plate : plates) {
     const Peak peak = break_plate(plate);
-    least = std::min(least, peak.stress);
-    largest = std::max(largest, peak.stress);
+    keep_smallest(least, peak.stress);
+    keep_largest(largest, peak.stress);
     sum += peak.stress;
     squares += peak.stress * peak.stress;
     over_estimate += peak.over_estimate / n;

@@ -1,6 +1,7 @@
 #include "src/verification/cases/wave_passage.h"
 
 #include "core/check.h"
+#include "core/extremes.h"
 #include "dem/many_body_force.h"
 
 #include <algorithm>
@@ -122,8 +123,8 @@ struct Speeds
   }
   void take(double speed)
   {
-    slowest = std::min(slowest, speed);
-    fastest = std::max(fastest, speed);
+    keep_smallest(slowest, speed);
+    keep_largest(fastest, speed);
   }
 };
 

@@ -1,5 +1,6 @@
 #include "src/verification/instruments/crack_disc.h"
 
+#include "core/extremes.h"
 #include "md/crystal_packing.h"
 
 #include <algorithm>
@@ -85,7 +86,7 @@ void CrackDisc::relax()
         power += f * v;
         speed += v * v;
         pull += f * f;
-        largest = std::max(largest, std::abs(f));
+        keep_largest(largest, std::abs(f));
       }
     if (largest < tolerance)
       return;
@@ -97,7 +98,7 @@ void CrackDisc::relax()
       for (const int i : free_) {
         double &v = atoms_.velocity[c][i];
         v = keep * v + (turn + dt / mass) * atoms_.force[c][i];
-        fastest = std::max(fastest, std::abs(v));
+        keep_largest(fastest, std::abs(v));
       }
     const double way = std::min(dt, reach / std::max(fastest, 1e-300));
     for (int c = 0; c < 3; ++c)

@@ -3,6 +3,7 @@
 #include "algebra/conjugate_gradients.h"
 #include "algebra/preconditioner.h"
 #include "core/check.h"
+#include "core/extremes.h"
 #include "fem/cell_map.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ double settle_with_sides(CoupledBody<2> &body, const std::function<bool(int boun
     if (is_held[block * (n + i)]) {
       const Vector<2> u = field(body.far->mesh().nodes[i]);
       imposed.segment<2>(block * (n + i)) = u;
-      largest = std::max(largest, u.norm());
+      keep_largest(largest, u.norm());
     }
   core::require(largest > 0, "nothing of the body is held");
   system.displace(imposed);

@@ -1,6 +1,7 @@
 #include "src/verification/instruments/linear_motion.h"
 
 #include "core/check.h"
+#include "core/extremes.h"
 #include "coupling/fine_scale_split.h"
 #include "src/simulation/equilibrium_solver.h"
 #include "src/verification/bodies/body_state.h"
@@ -233,9 +234,7 @@ double LinearMotion<dim>::largest_strain(const Eigen::VectorXd &x, const Place &
       return;
     const Vector<dim> rest =
         relative - (rigid_motions<dim>(to) - rigid_motions<dim>(from)) * motion;
-    const double strain = rest.norm() / (to - from).norm();
-    if (!(strain <= largest))
-      largest = strain;
+    keep_largest(largest, rest.norm() / (to - from).norm());
   };
   if (body_.zone)
     body_.force()->for_each_face(body_.zone->state, [&](const particles::FaceView<dim> &face) {

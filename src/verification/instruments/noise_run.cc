@@ -1,6 +1,7 @@
 #include "src/verification/instruments/noise_run.h"
 
 #include "core/check.h"
+#include "core/extremes.h"
 #include "src/verification/instruments/linear_motion.h"
 
 #include <Eigen/Dense>
@@ -123,7 +124,7 @@ Course course_of(const std::vector<double> &series, int interval)
   const double scatter = std::max(0., yy - y * y / n_blocks - slope * slope * xx);
   Course course = {std::abs(slope) * scale, std::sqrt(scatter / (n_blocks - 2) / xx) * scale, 0};
   for (const double e : series)
-    course.fluctuation = std::max(course.fluctuation, std::abs(e / mean - 1));
+    keep_largest(course.fluctuation, std::abs(e / mean - 1));
   return course;
 }
 

@@ -1,5 +1,6 @@
 // Dashpots of single masses against the closed form of their step.
 #include "core/dashpots.h"
+#include "core/extremes.h"
 
 #include <gtest/gtest.h>
 
@@ -117,7 +118,7 @@ double error_of_load(Chain chain, int ways)
     u += Chain::dt * (t < start ? std::pow(std::sin(M_PI / 2 * t / start), 2) : 1);
     chain.step(u);
     if (t > (ways - 1) * 2 * Chain::n + start)
-      error = std::max(error, std::abs(chain.load - 1));
+      keep_largest(error, std::abs(chain.load - 1));
   }
   return error;
 }
@@ -168,7 +169,7 @@ TEST(Dashpots, NeverGiveEnergy)
             dt, [](int) { return 1.; }, force, velocity);
         work += force[1][0] * dt * (before + velocity[1][0]) / 2;
         EXPECT_NEAR(dashpots.energy(), work - velocity[1][0] * velocity[1][0] / 2, 1e-11);
-        least = std::min(least, dashpots.energy());
+        keep_smallest(least, dashpots.energy());
       }
       EXPECT_EQ(least, 0);
     }

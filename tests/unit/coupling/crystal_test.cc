@@ -1,4 +1,5 @@
 // A force with a range whose bonds bear forces in the reference, coupled to the mesh: a crystal.
+#include "core/extremes.h"
 #include "tests/support/crystal_strip.h"
 #include "tests/support/energy_slope.h"
 #include "tests/support/noise.h"
@@ -94,7 +95,7 @@ void expect_rest_when_turned(double strain)
   double free = 0; // on atoms outside the overlap that see all neighbours
   for (int i = 0; i < body.zone->state.size(); ++i)
     if (body.split->overlap()->member_of_particle[i] < 0)
-      free = std::max(free, get(body.zone->state.force, i).norm());
+      keep_largest(free, get(body.zone->state.force, i).norm());
   EXPECT_LT(free, 1e-12 * c11);
   EXPECT_LT(std::abs(potential(body, {})), 1e-12 * c11 * p.size.prod());
   std::printf("%dD turned, strain %.2f: force %.1e, free atoms %.1e, energy %.1e\n", dim, strain,
@@ -178,7 +179,7 @@ double largest_torn_share(CrystalFaults faults)
     const auto n = std::count_if(term.members.begin(), term.members.end(),
                                  [&](int i) { return overlap.member_of_particle[i] >= 0; });
     if (n > 0 && n < long(term.members.size()))
-      largest = std::max(largest, 1 - overlap.weight(term.location));
+      keep_largest(largest, 1 - overlap.weight(term.location));
   });
   return largest;
 }

@@ -1,5 +1,6 @@
 // The heat bath of the overlap: its stationary covariance, what it does to a harmonic crystal, and
 // that it is part of a run's state.
+#include "core/extremes.h"
 #include "coupling/heated_particles.h"
 #include "tests/support/crystal_strip.h"
 
@@ -217,7 +218,7 @@ TEST(Heat, AHarmonicCrystalHasItsTemperature)
     advance(body, time);
     if (k % 50 == 0) {
       body.split->compute_forces(bodies, time);
-      largest = std::max(largest, std::abs(total(body, time) - first));
+      keep_largest(largest, std::abs(total(body, time) - first));
     }
     if (k < n_first)
       continue;

@@ -1,4 +1,5 @@
 // The overlap at large rotation and finite strain: one energy, whose derivative are the forces.
+#include "core/extremes.h"
 #include "particles/orientation.h"
 #include "tests/support/energy_slope.h"
 #include "tests/support/stiffening_law.h"
@@ -194,7 +195,7 @@ double wandering_of_waves(int step_ratio)
       const double sum = e.kinetic_discrete + e.kinetic_far + e.potential_discrete +
                          e.potential_far + e.blended + e.impulses;
       start = step.step == 0 ? sum : start;
-      wandering = std::max(wandering, std::abs(sum / start - 1));
+      keep_largest(wandering, std::abs(sum / start - 1));
     }
     body.split->kick(bodies, step);
     body.split->drift(bodies, step);

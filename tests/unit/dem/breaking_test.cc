@@ -1,5 +1,6 @@
 // A break changes forces near it only: they are the mean of those of the whole body before it and
 // after it, whatever acts beside bonds.
+#include "core/extremes.h"
 #include "tests/unit/dem/body.h"
 
 #include <gtest/gtest.h>
@@ -105,13 +106,13 @@ struct Body
     double largest = 0, change = 0;
     const auto compare = [&](double m, double b, double a) {
       largest = std::max({largest, std::abs(a), std::abs(b)});
-      change = std::max(change, std::abs(a - b));
+      keep_largest(change, std::abs(a - b));
       return std::abs(m - (a + b) / 2);
     };
     double worst = 0;
     for (int i = 0; i < packing.size(); ++i) {
       for (int c = 0; c < dim; ++c)
-        worst = std::max(worst, compare(mean.force[c][i], before.force[c][i], after.force[c][i]));
+        keep_largest(worst, compare(mean.force[c][i], before.force[c][i], after.force[c][i]));
       for (int c = 0; c < n_spins<dim>; ++c)
         worst =
             std::max(worst, compare(mean.torque[c][i], before.torque[c][i], after.torque[c][i]));

@@ -1,6 +1,7 @@
 // Faces that soften in bodies that flow, between materials, across joined sides, at strengths that
 // scatter: gradient at frozen strains and openings, balance, work per area, numbering, turning,
 // states.
+#include "core/extremes.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 #include "tests/unit/dem/run.h"
@@ -181,7 +182,7 @@ TYPED_TEST(CohesiveFlow, ForceIsMinusTheGradientAtFrozenStrainsAndOpenings)
     double opening = 0;
     bool between = false;
     for (const auto &[name, face] : force.cohesive().all()) {
-      opening = std::max(opening, face.opening.damage);
+      keep_largest(opening, face.opening.damage);
       between = between || face.bond.joins_materials;
     }
     ASSERT_GT(opening, 0.03);
@@ -190,7 +191,7 @@ TYPED_TEST(CohesiveFlow, ForceIsMinusTheGradientAtFrozenStrainsAndOpenings)
     force.compute(p, 12); // of the same time: nothing opens further
     double scale = 0;
     for (int i = 0; i < p.size(); ++i)
-      scale = std::max(scale, get(p.force, i).norm());
+      keep_largest(scale, get(p.force, i).norm());
     const auto derivative = [&](double h, auto &&change) {
       double sum = 0;
       for (const auto &[step, weight] :
@@ -348,7 +349,7 @@ std::array<double, 3> tear_column(const Materials &materials, const FractureLaw 
   double largest = 0;
   while (run.force->broken_bonds().empty() && run.time < 2 * duration) {
     run.step(1 / period);
-    largest = std::max(largest, std::abs(residual()));
+    keep_largest(largest, std::abs(residual()));
   }
   EXPECT_EQ(run.force->broken_bonds().size(), 1u);
   const double area = packing.faces[0].area;
@@ -428,7 +429,7 @@ TYPED_TEST(CohesiveFlow, ScatterOfStrengthsLeavesTheEnergy)
     law.strength.scatter = {3, 0, seed};
     law.energy = energy;
     const double factor = law.strength.scatter.factor(0, 1, 1);
-    weakest = std::min(weakest, factor), strongest = std::max(strongest, factor);
+    keep_smallest(weakest, factor), strongest = std::max(strongest, factor);
     const auto [work, released, missing] =
         tear_column<dim>(material, law, 2 * energy / (factor * strength));
     EXPECT_NEAR(work / energy, 1, 2e-3) << factor;

@@ -1,4 +1,5 @@
 // Faces that soften: work per area, gradient at frozen openings, balance, numbering.
+#include "core/extremes.h"
 #include "dem/laws/cohesive.h"
 #include "tests/oracle/cohesive_beam.h"
 #include "tests/unit/dem/cases.h"
@@ -50,7 +51,7 @@ TYPED_TEST(Cohesive, ColumnTakesItsEnergyAndNoMore)
         double largest = 0;
         while (run.force->broken_bonds().empty() && run.time < 2 * duration) {
           run.step(1 / period);
-          largest = std::max(largest, std::abs(run.residual()));
+          keep_largest(largest, std::abs(run.residual()));
         }
         ASSERT_EQ(run.force->broken_bonds().size(), 1u);
         const double whole = law.energy * area;
@@ -115,7 +116,7 @@ TYPED_TEST(Cohesive, ForceIsMinusTheGradientAtFrozenOpenings)
   ASSERT_GT(force.cohesive().all().size(), 4u);
   double opening = 0;
   for (const auto &[name, face] : force.cohesive().all())
-    opening = std::max(opening, face.opening.damage);
+    keep_largest(opening, face.opening.damage);
   ASSERT_GT(opening, 0.05);
   auto p = body.p;
   const double time = 12;
@@ -134,7 +135,7 @@ TYPED_TEST(Cohesive, ForceIsMinusTheGradientAtFrozenOpenings)
   };
   double scale = 0;
   for (int i = 0; i < p.size(); ++i)
-    scale = std::max(scale, get(p.force, i).norm());
+    keep_largest(scale, get(p.force, i).norm());
   for (int i = 0; i < p.size(); i += 2) {
     for (int c = 0; c < dim; ++c)
       EXPECT_NEAR(p.force[c][i], -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
@@ -234,7 +235,7 @@ TYPED_TEST(Cohesive, BalanceOverManyOpeningsAndClosings)
   bool was_open = false;
   for (int s = 0; s < 20000; ++s) {
     run.step(0.01 / period);
-    largest = std::max(largest, std::abs(run.residual()));
+    keep_largest(largest, std::abs(run.residual()));
     ASSERT_TRUE(run.force->broken_bonds().empty());
     for (const auto &[name, face] : run.force->cohesive().all()) {
       const double open = face.bond.normal.dot(face.opening.jump);
@@ -242,7 +243,7 @@ TYPED_TEST(Cohesive, BalanceOverManyOpeningsAndClosings)
       closings += was_open && open <= 0;
       was_open = open > 0;
     }
-    deepest = std::min(deepest, run.force->cohesive_work());
+    keep_smallest(deepest, run.force->cohesive_work());
   }
   EXPECT_GT(closings, 5);
   EXPECT_GT(widest, 0.2);
@@ -386,7 +387,7 @@ double work_per_area(double degrees)
       const auto &bond = run.force->broken_bonds()[seen];
       area += bond.area * std::abs(bond.normal[1]);
       taken += bond.energy;
-      largest = std::max(largest, std::abs(run.residual()));
+      keep_largest(largest, std::abs(run.residual()));
     }
   }
   EXPECT_GT(area, 0.6 * (width - notch));
@@ -434,7 +435,7 @@ double strength_of_section(double depth)
   while (run.time < duration && (peak == 0 || load > 0.8 * peak || run.time < 0.2 * duration)) {
     run.step(0.3 / depth);
     load = run.force->reaction(0)[1] + run.force->reaction(2)[1];
-    peak = std::max(peak, load);
+    keep_largest(peak, load);
   }
   return 1.5 * peak * span / std::pow(depth - notch, 2) / strength;
 }

@@ -1,4 +1,5 @@
 // Contacts that the search finds: their distance and face follow the sizes of the particles.
+#include "core/extremes.h"
 #include "dem/contact_search.h"
 
 #include "tests/unit/dem/body.h"
@@ -102,9 +103,9 @@ void check_blocks_meet(packings::LatticeKind kind)
     const double y = p.reference[1][i] + p.displacement[1][i];
     if (p.reference[1][i] > 0.82) {
       momentum += p.mass[i] * p.velocity[1][i];
-      lowest = std::min(lowest, y);
+      keep_smallest(lowest, y);
     } else
-      highest = std::max(highest, y);
+      keep_largest(highest, y);
   }
   // Else the one would have all of its momentum still.
   EXPECT_GT(momentum, -0.6 * mass * speed);

@@ -1,5 +1,6 @@
 // Faces that let go in time: the force over it, work, gradient, balance, states, numbering, and how
 // fast a crack runs.
+#include "core/extremes.h"
 #include "tests/unit/dem/cases.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
@@ -44,12 +45,12 @@ TYPED_TEST(Falling, ForceFallsInTimeAndNothingIsLeft)
     double begun = -1, first = 0, residual = 0, off = 0;
     while (run.force->broken_bonds().empty() && run.time < 1) {
       run.step(1000. * 3);
-      residual = std::max(residual, std::abs(run.residual()));
+      keep_largest(residual, std::abs(run.residual()));
       for (const auto &[name, face] : run.force->cohesive().all()) {
         if (begun < 0)
           begun = run.time, first = face.force.norm();
         const double wanted = first * (1 - (run.time - begun) / whole_time);
-        off = std::max(off, std::abs(face.force.norm() - std::max(wanted, 0.)));
+        keep_largest(off, std::abs(face.force.norm() - std::max(wanted, 0.)));
       }
     }
     const double whole = strength * strength / youngs_modulus * area * d;
@@ -138,7 +139,7 @@ TYPED_TEST(Falling, ForceIsMinusTheGradientAtFrozenOpenings)
   };
   double scale = 0;
   for (int i = 0; i < p.size(); ++i)
-    scale = std::max(scale, get(p.force, i).norm());
+    keep_largest(scale, get(p.force, i).norm());
   for (int i = 0; i < p.size(); i += 2)
     for (int c = 0; c < dim; ++c)
       EXPECT_NEAR(p.force[c][i], -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
@@ -219,7 +220,7 @@ struct Strip
     Ran ran{0, 0, {}, {}};
     while (run.time < 0.02) {
       run.step(300);
-      ran.residual = std::max(ran.residual, std::abs(run.residual()));
+      keep_largest(ran.residual, std::abs(run.residual()));
       for (const auto &[name, face] : run.force->cohesive().all())
         ran.fell.emplace(name, face);
       double front = -1;

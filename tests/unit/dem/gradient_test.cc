@@ -1,4 +1,5 @@
 // The force is minus the gradient of the energy, walls and tractions included.
+#include "core/extremes.h"
 #include "packings/random_packing.h"
 #include "tests/unit/dem/body.h"
 
@@ -113,7 +114,7 @@ TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)
     };
     double scale = 0;
     for (int i = 0; i < p.size(); ++i)
-      scale = std::max(scale, get(p.force, i).norm());
+      keep_largest(scale, get(p.force, i).norm());
     for (int i = 0; i < p.size(); i += 3) {
       for (int c = 0; c < dim; ++c)
         EXPECT_NEAR(p.force[c][i],

@@ -1,6 +1,7 @@
 // Flow and relaxation at faces between materials of different elastic constants: forces are the
 // gradient, own stresses that of the energy by the strains; uniform strains cost nothing; stresses
 // come down to the yield surface; balances close, breaking included; layers in closed form.
+#include "core/extremes.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 
@@ -89,7 +90,7 @@ TYPED_TEST(InelasticInterface, ForcesAreTheGradientAtFrozenStrains)
       force.compute(p, 1.);
       double scale = 0;
       for (int i = 0; i < p.size(); ++i)
-        scale = std::max(scale, get(p.force, i).norm());
+        keep_largest(scale, get(p.force, i).norm());
       for (int i = 0; i < p.size(); i += 1 + p.size() / 20) {
         for (int c = 0; c < dim; ++c)
           EXPECT_NEAR(p.force[c][i], -derivative(1e-3 * packing.spacing, [&](double s) {
@@ -139,8 +140,8 @@ TYPED_TEST(InelasticInterface, OwnStressesAreThoseOfTheEnergy)
               force.strains().set_strain(i, changed);
               return force.potential_energy(p);
             }) / (sides * p.volume[i]);
-            error = std::max(error, std::abs(stress[c] - expected));
-            largest = std::max(largest, std::abs(stress[c]));
+            keep_largest(error, std::abs(stress[c] - expected));
+            keep_largest(largest, std::abs(stress[c]));
           }
           force.strains().set_strain(i, e);
         }
@@ -199,7 +200,7 @@ TYPED_TEST(InelasticInterface, ComesDownToTheYieldSurface)
             std::get<VonMisesFlow>(materials.of(i).plasticity).yield;
         const double size = std::sqrt(1.5 * (s.template head<3>().squaredNorm() +
                                              2 * s.tail(s.size() - 3).squaredNorm()));
-        most = std::max(most, size / yield.at(h) - 1);
+        keep_largest(most, size / yield.at(h) - 1);
       }
       return most;
     };

@@ -1,5 +1,6 @@
 // Strains of the particles' own: kernels against the oracle on every kind of body, forces are the
 // gradient at frozen strains, affine ones cost nothing, one call flows once, the balance closes.
+#include "core/extremes.h"
 #include "tests/oracle/inelastic_oracle.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
@@ -57,8 +58,8 @@ void expect_like_oracle(const Packing<dim> &packing, const Plasticity &law, Plan
       without << get(q.force, i), get(q.torque, i) / packing.spacing;
       Eigen::VectorXd change = expected[i] - bare[i];
       change.tail(n_spins<dim>) /= packing.spacing;
-      largest = std::max(largest, now.norm());
-      error = std::max(error, (now - without - change).norm());
+      keep_largest(largest, now.norm());
+      keep_largest(error, (now - without - change).norm());
       n_flowed += oracle.history[i] > 0;
       EXPECT_NEAR(force.strains().history(i), oracle.history[i], 1e-11);
       const auto e = force.strains().tensor(i);
@@ -135,7 +136,7 @@ TYPED_TEST(Inelastic, ForcesAreTheGradientAtFrozenStrains)
       };
       double scale = 0;
       for (int i = 0; i < p.size(); ++i)
-        scale = std::max(scale, get(p.force, i).norm());
+        keep_largest(scale, get(p.force, i).norm());
       for (int i = 0; i < p.size(); i += 1 + p.size() / 20) {
         for (int c = 0; c < dim; ++c)
           EXPECT_NEAR(p.force[c][i],

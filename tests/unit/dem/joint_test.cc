@@ -1,4 +1,5 @@
 // Joints of initial cuts: they press along the cut's normal, slide without interlocking, rub.
+#include "core/extremes.h"
 #include "packings/random_packing.h"
 #include "tests/unit/dem/cases.h"
 
@@ -106,7 +107,7 @@ struct CutBody
     double scale = 0;
     for (int i = 0; i < p.size(); ++i) {
       const Vector<dim> f = get(p.force, i);
-      scale = std::max(scale, f.norm());
+      keep_largest(scale, f.norm());
       net += f;
       moment +=
           get(p.torque, i) + cross(Vector<dim>(get(p.reference, i) + get(p.displacement, i)), f);
@@ -215,7 +216,7 @@ TYPED_TEST(Joint, ForceIsMinusTheGradientOfTheEnergy)
   const auto torque = p.torque;
   double scale = 0;
   for (int i = 0; i < p.size(); ++i)
-    scale = std::max(scale, get(force, i).norm());
+    keep_largest(scale, get(force, i).norm());
   int n_tested = 0;
   for (const auto &face : body.packing.faces) {
     if (!face.cracked || ++n_tested > 5)
@@ -266,18 +267,18 @@ TYPED_TEST(Joint, SlidFarTurnsFreelyAndBalances)
     const auto torque = body.p.torque;
     double scale = 0;
     for (int i = 0; i < body.p.size(); ++i)
-      scale = std::max(scale, get(force, i).norm());
+      keep_largest(scale, get(force, i).norm());
     ASSERT_GT(stored, 0);
     body.turn_rigidly(w);
     EXPECT_NEAR(body.force.potential_energy(body.p), stored, 1e-9 * stored);
     double worst = 0, worst_torque = 0;
     for (int i = 0; i < body.p.size(); ++i) {
       const Vector<dim> f = get(force, i);
-      worst = std::max(worst, (get(body.p.force, i) - f - turn.change(f)).norm());
+      keep_largest(worst, (get(body.p.force, i) - f - turn.change(f)).norm());
       Spin<dim> t = get(torque, i);
       if constexpr (dim == 3)
         t += turn.change(t);
-      worst_torque = std::max(worst_torque, (get(body.p.torque, i) - t).norm());
+      keep_largest(worst_torque, (get(body.p.torque, i) - t).norm());
     }
     EXPECT_LT(worst, 1e-9 * scale);
     EXPECT_LT(worst_torque, 1e-9 * scale * body.packing.spacing);
@@ -364,7 +365,7 @@ TYPED_TEST(Joint, PieceThatTurnsMeetsTheFlankByItsSurfaceFromThenOn)
     const auto largest = [&] {
       double most = 0;
       for (int i = 0; i < body.p.size(); ++i)
-        most = std::max(most, get(body.p.force, i).norm());
+        keep_largest(most, get(body.p.force, i).norm());
       return most;
     };
     body.place_turned(0, 8);
@@ -377,9 +378,9 @@ TYPED_TEST(Joint, PieceThatTurnsMeetsTheFlankByItsSurfaceFromThenOn)
       for (int i = 0; i < body.p.size(); ++i)
         for (int j = 0; j < body.p.size(); ++j)
           if (body.is_above(i) && !body.is_above(j))
-            least = std::min(least, (get(body.p.reference, i) + get(body.p.displacement, i) -
-                                     get(body.p.reference, j) - get(body.p.displacement, j))
-                                        .norm());
+            keep_smallest(least, (get(body.p.reference, i) + get(body.p.displacement, i) -
+                                  get(body.p.reference, j) - get(body.p.displacement, j))
+                                     .norm());
       return least / body.packing.spacing;
     };
     while (gap() > 2) {

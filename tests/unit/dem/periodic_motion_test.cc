@@ -1,4 +1,5 @@
 // Bodies whose sides are joined in motion: momentum, energy, breaking across the sides, resuming.
+#include "core/extremes.h"
 #include "packings/random_packing.h"
 #include "tests/unit/dem/body.h"
 #include "tests/unit/dem/cases.h"
@@ -70,7 +71,7 @@ TEST(PeriodicRandom, MomentumStaysAndTheWorkOfTheJumpIsTheEnergy)
     body.solver->drift(body.dt);
     body.solver->compute_forces(++body.step * body.dt);
     energy = body.solver->kinetic_energy(body.dt) + body.solver->potential_energy();
-    worst = std::max(worst, std::abs(energy - body.law->external_work()));
+    keep_largest(worst, std::abs(energy - body.law->external_work()));
     body.solver->kick(body.dt);
   }
   EXPECT_GT(energy, 0);
@@ -132,8 +133,8 @@ TEST(PeriodicSquare, ImagesThatComeNearAreFound)
     force.compute(p, 0.02 * s);
   double lowest = 0, highest = 0;
   for (int i = 0; i < p.size(); ++i) {
-    lowest = std::min(lowest, p.force[1][i]);
-    highest = std::max(highest, p.force[1][i]);
+    keep_smallest(lowest, p.force[1][i]);
+    keep_largest(highest, p.force[1][i]);
   }
   EXPECT_GT(highest, 0); // on those above the slit's image
   EXPECT_LT(lowest, 0);

@@ -1,5 +1,6 @@
 // Contacts that become bonds again: nothing jumps, forces are a gradient, energies add up over many
 // cycles, adhesion ends at its strength, states go on to the bit, numbering changes nothing.
+#include "core/extremes.h"
 #include "tests/unit/dem/cases.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
@@ -81,7 +82,7 @@ double difference(const Particles<dim> &a, const Particles<dim> &b, double lever
 {
   double largest = 0, error = 0;
   for (int i = 0; i < a.size(); ++i) {
-    largest = std::max(largest, get(a.force, i).norm());
+    keep_largest(largest, get(a.force, i).norm());
     error = std::max({error, (get(a.force, i) - get(b.force, i)).norm(),
                       (get(a.torque, i) - get(b.torque, i)).norm() / lever});
   }
@@ -163,7 +164,7 @@ TYPED_TEST(Rebonded, ForceIsMinusTheGradient)
     double scale = 0;
     Vector<dim> net = Vector<dim>::Zero();
     for (int i = 0; i < p.size(); ++i) {
-      scale = std::max(scale, get(p.force, i).norm());
+      keep_largest(scale, get(p.force, i).norm());
       net += get(p.force, i);
     }
     EXPECT_LT(net.norm(), 1e-13 * scale);
@@ -296,7 +297,7 @@ TYPED_TEST(Rebonded, NumberingChangesNothing)
       EXPECT_EQ(name, (other++)->first);
     double scale = 0;
     for (int i = 0; i < n; ++i)
-      scale = std::max(scale, get(a.p.force, i).norm());
+      keep_largest(scale, get(a.p.force, i).norm());
     for (int i = 0; i < n; ++i)
       EXPECT_LT((get(a.p.force, i) - get(b.p.force, place(i))).norm(), 1e-11 * scale);
     EXPECT_NEAR(a.force->rebonding_energy(), b.force->rebonding_energy(),
@@ -349,10 +350,10 @@ TYPED_TEST(Rebonded, AdhesionEndsAtItsStrength)
       const int before = run.force->rebonded().n_bonds();
       run.step(damping);
       const double stress = run.force->reaction(1)[1] / area;
-      pressed = std::min(pressed, stress), most = std::max(most, stress);
+      keep_smallest(pressed, stress), keep_largest(most, stress);
       if (run.force->rebonded().n_bonds() > before)
         when_bonded = stress;
-      residual = std::max(residual, std::abs(run.residual()));
+      keep_largest(residual, std::abs(run.residual()));
     }
     EXPECT_GT(run.force->fracture_energy(), 0);
     // What the damping holds of two particles, and a step changes.
@@ -391,8 +392,8 @@ void expect_balance(int n_cycles, const std::vector<double> &poissons_ratios)
       const int now = run.force->rebonded().n_bonds();
       n_bonded += now > last, n_torn += now < last;
       last = now;
-      worst = std::max(worst, std::abs(run.residual()));
-      thrown = std::max(thrown, run.mechanical());
+      keep_largest(worst, std::abs(run.residual()));
+      keep_largest(thrown, run.mechanical());
       if (n_torn <= n_cycles / 10)
         early = worst;
     }
@@ -537,7 +538,7 @@ TYPED_TEST(Rebonded, BondsWhatASearchFound)
     force.compute(p, ++step);
     double scale = 0;
     for (int i = 0; i < p.size(); ++i)
-      scale = std::max(scale, get(still.force, i).norm());
+      keep_largest(scale, get(still.force, i).norm());
     ASSERT_GT(scale, 0);
     for (int i = 0; i < p.size(); ++i) {
       const Vector<dim> f = get(still.force, i);

@@ -1,5 +1,6 @@
 // Bounds of the kernels: no bond that exceeds the strength is missed, in random states of any
 // packing.
+#include "core/extremes.h"
 #include "dem/principal_tension.h"
 #include "packings/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
@@ -267,7 +268,7 @@ void expect_utilisation_of_watched_faces(const Packing<dim> &packing,
   double most = 0;
   for (int i = 0; i < packing.size(); i += 3) {
     watch[i] = Watch::watched;
-    most = std::max(most, tension[i] / strength);
+    keep_largest(most, tension[i] / strength);
     const auto found = force.utilisation(p, watch);
     ASSERT_NEAR(found.share, most >= noted ? most : 0, 1e-12) << i;
   }

@@ -1,6 +1,7 @@
 // The kernel of irregular bonds agrees with the plain oracle on random packings, with every
 // instruction set of the machine; a removed bond leaves no trace.
 #include "core/dispatch.h"
+#include "core/extremes.h"
 #include "packings/random_packing.h"
 #include "tests/oracle/many_body_oracle.h"
 #include "tests/unit/dem/cases.h"
@@ -49,8 +50,8 @@ struct SliceKernel : ::testing::Test
     double scale = 0, error = 0;
     for (std::size_t c = 0; c < a.size(); ++c)
       for (std::size_t i = 0; i < a[c].size(); ++i) {
-        scale = std::max(scale, std::abs(b[c][i]));
-        error = std::max(error, std::abs(a[c][i] - b[c][i]));
+        keep_largest(scale, std::abs(b[c][i]));
+        keep_largest(error, std::abs(a[c][i] - b[c][i]));
       }
     EXPECT_LT(error, 1e-13 * scale);
   }

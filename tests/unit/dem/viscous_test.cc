@@ -1,5 +1,6 @@
 // Viscosity of particles: kernels against the oracle, with plastic flow and without; prescribed
 // courses against closed forms; the leap-frog's balance; looks; turned bodies.
+#include "core/extremes.h"
 #include "tests/oracle/inelastic_oracle.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
@@ -60,16 +61,16 @@ void expect_like_oracle(const Packing<dim> &packing, const Plasticity &law,
       without << get(q.force, i), get(q.torque, i) / packing.spacing;
       Eigen::VectorXd change = expected[i] - bare[i];
       change.tail(n_spins<dim>) /= packing.spacing;
-      largest = std::max(largest, now.norm());
-      error = std::max(error, (now - without - change).norm());
+      keep_largest(largest, now.norm());
+      keep_largest(error, (now - without - change).norm());
       const auto e = force.strains().tensor(i);
       for (int a = 0; a < dim; ++a)
         for (int b = a; b < dim; ++b)
           strain_error =
               std::max(strain_error, std::abs(e[tensor_place<dim>(a, b)] - oracle.strain[i](a, b)));
       if (dim == 2)
-        strain_error = std::max(strain_error, std::abs(e[2] - oracle.strain[i](2, 2)));
-      strain = std::max(strain, oracle.strain[i].norm());
+        keep_largest(strain_error, std::abs(e[2] - oracle.strain[i](2, 2)));
+      keep_largest(strain, oracle.strain[i].norm());
     }
   }
   EXPECT_GT(strain, 1e-3);

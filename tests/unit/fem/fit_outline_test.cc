@@ -1,5 +1,6 @@
 // Meshes that follow an outline: area, sides, angles, and what is refused.
 #include "core/check.h"
+#include "core/extremes.h"
 #include "core/outline.h"
 #include "fem/cell_map.h"
 #include "fem/cell_quality.h"
@@ -48,7 +49,7 @@ double least_quality(const Mesh<dim> &mesh)
 {
   double least = 1;
   for (int c = 0; c < mesh.n_cells(); ++c)
-    least = std::min(least, scaled_jacobian<dim>(cell_corners(mesh, c)));
+    keep_smallest(least, scaled_jacobian<dim>(cell_corners(mesh, c)));
   return least;
 }
 

@@ -1,5 +1,6 @@
 // One cell of any convex shape: its map, shares, stiffness, quality, and finding it in a mesh.
 #include "core/check.h"
+#include "core/extremes.h"
 #include "tests/support/distorted_meshes.h"
 #include "tests/unit/fem/meshes.h"
 
@@ -257,7 +258,7 @@ TEST(GeneralCell, has_a_quality)
   double least_cosine = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
-      least_cosine = std::min(least_cosine, -std::abs(edges.col(i).dot(edges.col(j))));
+      keep_smallest(least_cosine, -std::abs(edges.col(i).dot(edges.col(j))));
   EXPECT_NEAR(worst_angle<3>(slanted), std::acos(least_cosine) * 180 / M_PI, 1e-12);
 }
 

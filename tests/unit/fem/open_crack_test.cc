@@ -1,6 +1,7 @@
 // Cracks as doubled nodes: what comes apart, what holds, what is refused.
 #include "algebra/conjugate_gradients.h"
 #include "core/check.h"
+#include "core/extremes.h"
 #include "fem/fem_solver.h"
 #include "fem/open_crack.h"
 #include "tests/support/distorted_meshes.h"
@@ -42,7 +43,7 @@ double largest_force(const Mesh<2> &mesh, Motion &&motion)
   double largest = 0;
   for (const auto &f : solver.force)
     for (const double x : f)
-      largest = std::max(largest, std::abs(x));
+      keep_largest(largest, std::abs(x));
   return largest;
 }
 
@@ -111,7 +112,7 @@ TEST(OpenCrack, PartsAPlateThatItCrosses)
     for (const auto &cell : mesh.cells) {
       int least = piece[cell[0]];
       for (const int node : cell)
-        least = std::min(least, piece[node]);
+        keep_smallest(least, piece[node]);
       for (const int node : cell)
         piece[node] = least;
     }

@@ -1,5 +1,6 @@
 // The vector kernel against the plain oracle with every instruction set of the machine.
 #include "core/dispatch.h"
+#include "core/extremes.h"
 #include "tests/unit/md/bodies.h"
 
 #include <hwy/highway.h>
@@ -27,7 +28,7 @@ struct AtomKernelTest : ::testing::Test
     double scale = body.stiffness() * body.crystal.spacing();
     for (const auto &component : expected.force) // atoms on top of each other push hard
       for (const double f : component)
-        scale = std::max(scale, std::abs(f));
+        keep_largest(scale, std::abs(f));
     for (const std::int64_t target : {HWY_SCALAR, HWY_EMU128, HWY_AVX2, HWY_AVX3}) {
       hwy::SetSupportedTargetsForTest(0);
       if (!(hwy::SupportedTargets() & target))

@@ -1,6 +1,7 @@
 // Lattices and specimens of the packing tests, and the closure of cells.
 #pragma once
 
+#include "core/extremes.h"
 #include "packings/lattice_packing.h"
 
 #include <gtest/gtest.h>
@@ -86,8 +87,8 @@ double closure_error(const Packing<dim> &packing, const std::vector<char> &check
   double error = 0;
   for (int i = 0; i < n; ++i)
     if (check.empty() || check[i]) {
-      error = std::max(error, surface[i].norm() * d / packing.volume[i]);
-      error = std::max(error, (moment[i] / packing.volume[i] - Matrix<dim>::Identity()).norm());
+      keep_largest(error, surface[i].norm() * d / packing.volume[i]);
+      keep_largest(error, (moment[i] / packing.volume[i] - Matrix<dim>::Identity()).norm());
     }
   return error;
 }

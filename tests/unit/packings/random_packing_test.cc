@@ -1,4 +1,5 @@
 // Random packings: closed cells, the true volume, the same particles whatever is packed, healing.
+#include "core/extremes.h"
 #include "packings/packing_file.h"
 #include "packings/power_diagram.h"
 #include "packings/random_packing.h"
@@ -180,7 +181,7 @@ TEST(RandomPacking, LostCellsAreHealed)
   // distance from the smaller one.
   double least = 1;
   for (const auto &face : result.packing.faces)
-    least = std::min(least, std::min(face.q_i, face.q_j) / (face.q_i + face.q_j));
+    keep_smallest(least, std::min(face.q_i, face.q_j) / (face.q_i + face.q_j));
   EXPECT_NEAR(least, 0.25, 1e-12);
 }
 

@@ -1,4 +1,5 @@
 #include "core/check.h"
+#include "core/extremes.h"
 #include "core/outline.h"
 #include "core/part.h"
 #include "packings/random_packing.h"
@@ -241,7 +242,7 @@ TEST(Solid, DistanceAndContentsAgreeWithSamples)
                       b = flat.vertices()[facet.edges[0][1]] - y;
       winding += std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b)) / (2 * M_PI);
       const double s = std::clamp(-a.dot(b - a) / (b - a).squaredNorm(), 0., 1.);
-      least = std::min(least, (a + s * (b - a)).norm());
+      keep_smallest(least, (a + s * (b - a)).norm());
     }
     const bool is_in = winding > 0.5;
     inside += is_in;

@@ -2,6 +2,7 @@
 // written down plainly, how outputs call them, and that a coupled body keeps its energy. The stress
 // that nodes of a mesh beside atoms have.
 #include "core/check.h"
+#include "core/extremes.h"
 #include "core/files.h"
 #include "md/table_file.h"
 #include "src/output/table.h"
@@ -203,8 +204,8 @@ std::array<double, 2> run(double step_fraction)
              far = history.column("kinetic_far", "J");
   std::array<double, 2> largest = {};
   for (std::size_t k = 0; k < residual.size(); ++k) {
-    largest[0] = std::max(largest[0], std::abs(residual[k]));
-    largest[1] = std::max(largest[1], discrete[k] + far[k]);
+    keep_largest(largest[0], std::abs(residual[k]));
+    keep_largest(largest[1], discrete[k] + far[k]);
   }
   return largest;
 }

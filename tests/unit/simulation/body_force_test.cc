@@ -1,4 +1,5 @@
 // Forces on every mass, and bodies that begin in motion.
+#include "core/extremes.h"
 #include "src/simulation/energy_ledger.h"
 #include "src/simulation/initial_motion.h"
 #include "src/simulation/test_machine.h"
@@ -61,7 +62,7 @@ TEST(BodyForce, AllFallAlike)
     double residual = 0, work = 0;
     run(small.body, n, [&](const coupling::StepTime &step) {
       const auto ledger = read_ledger(small.body, step, 0);
-      residual = std::max(residual, std::abs(ledger.residual()));
+      keep_largest(residual, std::abs(ledger.residual()));
       work = ledger.external_work;
     });
     const double dt = small.body.dt, fall = n * (n + 1) / 2. * dt * dt;

@@ -1,5 +1,6 @@
 // The energy balance of a vibrating body closes: free, and with every kind of damping, in all three
 // kinds of bodies.
+#include "core/extremes.h"
 #include "dem/many_body_force.h"
 #include "src/simulation/damping.h"
 #include "src/simulation/energy_ledger.h"
@@ -43,7 +44,7 @@ Balance follow(const Scene &scene, SmallBody &small, double duration)
         balance.start = ledger.potential();
         first = ledger.residual();
       }
-      balance.error = std::max(balance.error, std::abs(ledger.residual() - first) / balance.start);
+      keep_largest(balance.error, std::abs(ledger.residual() - first) / balance.start);
       balance.left = (ledger.kinetic() + ledger.potential()) / balance.start;
       balance.damping = ledger.damping / balance.start;
       balance.residual_of_work = (ledger.residual() - first) / ledger.external_work;
@@ -222,8 +223,8 @@ double motion_left(SmallBody &small)
     body.coupler->compute_forces(bodies, step);
     if (step.step % body.coupler->step_ratio() == 0) {
       const auto ledger = read_ledger(body, step, 0);
-      least = std::min(least, ledger.kinetic());
-      most = std::max(most, ledger.kinetic());
+      keep_smallest(least, ledger.kinetic());
+      keep_largest(most, ledger.kinetic());
       potential = ledger.potential();
     }
     body.coupler->kick(bodies, step);

@@ -1,5 +1,6 @@
 // Pressures that follow the surface: a body pressed from all sides is in balance however it lies,
 // and the work is that of the volume that the pressure gives way to.
+#include "core/extremes.h"
 #include "src/simulation/make_loads.h"
 #include "tests/support/small_plate.h"
 
@@ -63,7 +64,7 @@ Resultant resultant(CoupledBody<2> &body)
       sum.force += sign * force;
       sum.moment += sign * (place[0] * force[1] - place[1] * force[0]);
       if (time > 0)
-        sum.largest = std::max(sum.largest, force.norm());
+        keep_largest(sum.largest, force.norm());
     };
     if (body.zone) {
       const auto &p = body.zone->state;

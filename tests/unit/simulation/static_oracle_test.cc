@@ -1,4 +1,5 @@
 // Equilibria beside what else finds them: damped steps until nothing moves any more.
+#include "core/extremes.h"
 #include "src/simulation/damping.h"
 #include "tests/support/static_body.h"
 
@@ -16,8 +17,8 @@ double largest_difference(const CoupledBody<dim> &a, const CoupledBody<dim> &b)
   const auto look = [&](const Components<dim> &x, const Components<dim> &y) {
     for (int c = 0; c < dim; ++c)
       for (std::size_t i = 0; i < x[c].size(); ++i) {
-        difference = std::max(difference, std::abs(x[c][i] - y[c][i]));
-        largest = std::max(largest, std::abs(y[c][i]));
+        keep_largest(difference, std::abs(x[c][i] - y[c][i]));
+        keep_largest(largest, std::abs(y[c][i]));
       }
   };
   if (a.zone)

@@ -1,5 +1,6 @@
 // Equilibria of bodies some of whose faces have begun to soften: their stiffness, and how they are
 // found.
+#include "core/extremes.h"
 #include "src/simulation/damping.h"
 #include "tests/support/static_body.h"
 
@@ -120,7 +121,7 @@ TEST(StaticSoftening, TrialsAreForgotten)
   double difference = 0;
   for (int c = 0; c < 2; ++c)
     for (std::size_t i = 0; i < force[c].size(); ++i)
-      difference = std::max(difference, std::abs(one.body.zone->state.force[c][i] - force[c][i]));
+      keep_largest(difference, std::abs(one.body.zone->state.force[c][i] - force[c][i]));
   EXPECT_LT(difference, 1e-12 * 1e-3); // of what a face bears
 }
 } // namespace

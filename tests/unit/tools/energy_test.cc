@@ -1,4 +1,5 @@
 // Ledger and momentum of bodies that tools push, hit and leave.
+#include "core/extremes.h"
 #include "tests/support/tool_body.h"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ Course run(ToolBody<dim> &b, double until)
   while (b.now.time < until) {
     b.far_step();
     course.last = b.ledger();
-    course.residual = std::max(course.residual, std::abs(course.last.residual()));
+    keep_largest(course.residual, std::abs(course.last.residual()));
     course.area = std::max(course.area, b.body.tools->read(0).area);
     course.work = std::max(course.work, course.last.external_work);
   }

@@ -1,4 +1,5 @@
 // Depth and way out of points against shapes, from their outlines alone.
+#include "core/extremes.h"
 #include "src/simulation/tools/make_tools.h"
 
 #include <Eigen/Geometry>
@@ -51,7 +52,7 @@ TEST(ToolShape, AWedgeIsAsDeepAsItsNearestEdge)
     const auto touch = tool.shape.touch(x);
     double least = 1e9;
     for (std::size_t e = 0; e < corners.size(); ++e)
-      least = std::min(least, distance(x, corners[e], corners[(e + 1) % corners.size()]));
+      keep_smallest(least, distance(x, corners[e], corners[(e + 1) % corners.size()]));
     if (is_inside(x, corners)) {
       ++n_inside;
       EXPECT_NEAR(touch.depth, least, 1e-14);

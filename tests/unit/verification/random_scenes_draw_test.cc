@@ -1,6 +1,7 @@
 // Drawn scenes follow from their seed alone, are scenes that the program takes, and cover all
 // kinds.
 #include "core/counter_random.h"
+#include "core/extremes.h"
 #include "packings/lattice_packing.h"
 #include "src/scene/read_scene.h"
 #include "src/verification/cases/random_scenes_draw.h"
@@ -130,9 +131,9 @@ double largest_distance(const nlohmann::ordered_json &scene)
       double square = 0;
       for (int c = 0; c < dim; ++c)
         square += std::pow((c == 0 ? -1 : 1) * a[c][i] - b[c][j], 2);
-      least = std::min(least, std::sqrt(square));
+      keep_smallest(least, std::sqrt(square));
     }
-    worst = std::max(worst, least);
+    keep_largest(worst, least);
   }
   return worst;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace ligament::program
@@ -54,10 +55,13 @@ class VerifyCase : public testing::TestWithParam<const char *>
 
 TEST_P(VerifyCase, Holds)
 {
-  for (const auto &c : select_cases(GetParam(), false))
-    for (const auto &result : c.run())
+  for (const auto &c : select_cases(GetParam(), false)) {
+    const auto results = c.run();
+    EXPECT_FALSE(results.empty()) << c.name;
+    for (const auto &result : results)
       EXPECT_TRUE(result.passed())
           << result.name << ": " << result.value << ", must " << result.must;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Default, VerifyCase,
@@ -65,5 +69,22 @@ INSTANTIATE_TEST_SUITE_P(Default, VerifyCase,
                                          "patch_band_3d", "critical_step", "drift", "drift_3d",
                                          "decay", "lab_shapes", "lab_kirsch", "lab_periodic",
                                          "lab_ring_short"));
+
+/// What the trust card shows, but for what docs/verification.md lists as missed, which may not get
+/// worse than it says there.
+TEST(VerifyCase, SlowDefaultSetHolds)
+{
+  const std::map<std::string, double> missed = {{"atoms_strain/lennard_jones/nodes_5", 3.25e-3}};
+  for (const auto &c : select_cases("", false)) {
+    const auto results = c.run();
+    EXPECT_FALSE(results.empty()) << c.name;
+    for (const auto &result : results)
+      if (const auto known = missed.find(result.name); known != missed.end())
+        EXPECT_LE(result.value, known->second) << result.name;
+      else
+        EXPECT_TRUE(result.passed())
+            << result.name << ": " << result.value << ", must " << result.must;
+  }
+}
 } // namespace
 } // namespace ligament::program

@@ -1,0 +1,115 @@
+// What looks at a body in three dimensions: sections, test machine, fields.
+#include "src/simulation/body_fields.h"
+#include "src/simulation/load_path.h"
+#include "src/simulation/test_machine.h"
+#include "tests/support/small_plate.h"
+#include "tests/support/static_body.h"
+
+using namespace ligament;
+using namespace ligament::program;
+using namespace ligament::tests;
+
+namespace
+{
+/// 8 x 60 x 7, coupled, of particles or of elements alone.
+struct Bar
+{
+  core::Log log;
+  core::Timers timers;
+  CoupledBody<3> body;
+
+  explicit Bar(const std::vector<std::string> &overrides)
+      : body(make_body<3>(static_scene<3>(overrides), log, timers))
+  {
+  }
+
+  /// Displacement gradient x, of particles and nodes; forces follow.
+  void deform(const Eigen::Matrix3d &gradient)
+  {
+    const auto move = [&](const auto &place, Components<3> &u, int n) {
+      for (int i = 0; i < n; ++i)
+        set(u, i, Vector<3>(gradient * place(i)));
+    };
+    if (body.zone) {
+      auto &state = body.zone->state;
+      move([&](int i) { return get(state.reference, i); }, state.displacement, state.size());
+    }
+    if (body.far)
+      move([&](int i) { return body.far->mesh().nodes[i]; }, body.far->displacement,
+           body.far->mesh().n_nodes());
+    auto bodies = body.bodies();
+    body.coupler->take_velocities(bodies);
+    body.coupler->compute_forces(bodies, {0, 0, body.dt});
+  }
+};
+
+// Simple cubic packing of spacing 1: each column of particles is a face of area 1.
+TEST(Bar, SectionIsWhatTheCutsLeave)
+{
+  const auto section = [](const std::string &cracks, const std::string &far, int axis) {
+    const Bar bar({"/discrete_zone/packing=\"simple_cubic\"", "/specimen/cracks=" + cracks, far});
+    return smallest_section(bar.body, axis, Carrying::now);
+  };
+  // From x = -4 to 1: three of the eight columns are left; in z all seven.
+  const std::string cut =
+      R"([{"points": [[-5, 0.5, -5], [1, 0.5, -5], [1, 0.5, 5], [-5, 0.5, 5]]}])";
+  const std::string through =
+      R"([{"points": [[-5, 0.5, -5], [5, 0.5, -5], [5, 0.5, 5], [-5, 0.5, 5]]}])";
+  for (const std::string far : {"/coupling/overlap_cells=2", "/far_field=none"}) {
+    SCOPED_TRACE(far);
+    EXPECT_NEAR(section(cut, far, 1), 3 * 7, 1e-9);
+    EXPECT_EQ(section(through, far, 1), 0);
+    EXPECT_GT(section(through, far, 2), 8 * 20); // the halves still reach across
+  }
+}
+
+// Uniaxial stress along y of a bar with E = 1, nu = 0.22 whose other sides are free.
+TEST(Bar, TheTestMachineReadsItsStress)
+{
+  constexpr double strain = 1e-4, nu = 0.22, length = 60, area = 8 * 7;
+  const std::string held_ends =
+      R"(/loads=[{"boundary": "top", "displacement": [null, 0.003, null]},
+                 {"boundary": "bottom", "displacement": [null, -0.003, null]}])";
+  for (const auto &kind : body_kinds) {
+    SCOPED_TRACE(kind.name);
+    Bar bar(kind.overrides + std::vector<std::string>{held_ends});
+    bar.deform(Eigen::Vector3d(-nu * strain, strain, -nu * strain).asDiagonal());
+    const Reading r = TestMachine<3>(bar.body).read(bar.body, 0);
+    EXPECT_NEAR(r.load / (area * strain), 1, 1e-9);
+    EXPECT_NEAR(r.stress / strain, 1, 1e-9);
+    EXPECT_NEAR(r.strain / strain, 1, 1e-12);
+    EXPECT_NEAR(r.displacement / (length * strain), 1, 1e-12);
+  }
+}
+
+// Six components that are all different: xx, yy, zz, xy, yz, xz of the files are those of Hooke's
+// law, of particles and of elements.
+TEST(Bar, FieldsNameTheComponentsOfStress)
+{
+  constexpr double nu = 0.22, shear = 1 / (2 * (1 + nu)), lame = nu / ((1 + nu) * (1 - 2 * nu));
+  Eigen::Matrix3d e;
+  e << 1, 4, 6, 4, 2, 5, 6, 5, 3;
+  e *= 1e-7;
+  const Eigen::Matrix3d s = lame * e.trace() * Eigen::Matrix3d::Identity() + 2 * shear * e;
+  const double expected[] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+  Bar bar({"/coupling/overlap_cells=2"});
+  bar.deform(e);
+  const auto expect_stress = [&](const std::vector<Field> &fields, std::size_t i) {
+    const auto &values = find_field(fields, "stress")->values;
+    for (int k = 0; k < 6; ++k)
+      EXPECT_NEAR(values[6 * i + k] / expected[k], 1, 1e-5) << k;
+  };
+  const ParticleFields particles = particle_fields(bar.body);
+  std::size_t middle = 0;
+  const auto off = [&](std::size_t i) {
+    return Eigen::Map<const Eigen::Vector3d>(&particles.reference[3 * i]).norm();
+  };
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    if (off(i) < off(middle))
+      middle = i;
+  expect_stress(particles.fields, middle);
+  const CellFields cells = cell_fields(bar.body);
+  ASSERT_GT(cells.n_nodes(), 0u);
+  expect_stress(cells.node_fields, 0);
+}
+} // namespace
