@@ -20,31 +20,28 @@ Outcome run_ligament(const std::string &arguments)
 
 TEST(Examples, AllCheck)
 {
-  int n_scenes = 0, n_studies = 0;
+  int n_folders = 0, n_scenes = 0;
   for (const auto &folder : std::filesystem::directory_iterator(examples)) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "README.md")) << folder;
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "picture.png")) << folder;
-    int n = 0;
+    ++n_folders;
     for (const auto &file : std::filesystem::directory_iterator(folder)) {
-      if (file.path().extension() != ".json")
+      // Of studies each case is checked; for a temperature the crystal is run, a minute and more.
+      const std::string text = file_text(file.path());
+      if (file.path().extension() != ".json" || text.find("\"scene\":") != text.npos ||
+          text.find("\"temperature\":") != text.npos)
         continue;
       SCOPED_TRACE(file.path());
-      ++n;
-      const bool is_study = file_text(file.path()).find("\"scene\":") != std::string::npos;
-      ++(is_study ? n_studies : n_scenes);
-      const Outcome outcome =
-          is_study ? run_ligament("sweep " + file.path().string() + " --dry-run --json -o dry_" +
-                                  std::to_string(n_studies))
-                   : run_ligament("check " + file.path().string() + " --json");
+      ++n_scenes;
+      const Outcome outcome = run_ligament("check " + file.path().string() + " --json");
       EXPECT_EQ(outcome.code, 0) << outcome.errors;
-      if (!is_study) {
-        EXPECT_TRUE(outcome.json()["errors"].empty()) << outcome.last_line();
-      }
+      EXPECT_TRUE(outcome.json()["errors"].empty()) << outcome.last_line();
     }
-    EXPECT_GE(n, 1) << folder;
+    if (std::filesystem::exists(folder.path() / "scene.json")) {
+      EXPECT_TRUE(std::filesystem::exists(folder.path() / "picture.png")) << folder;
+    }
   }
-  EXPECT_GE(n_scenes, 32);
-  EXPECT_GE(n_studies, 5);
+  EXPECT_GE(n_folders, 32);
+  EXPECT_GE(n_scenes, n_folders);
 }
 
 /// The plate breaks at the load of Tada's strip, crack across the whole width, and as its pure
