@@ -431,7 +431,7 @@ TEST_F(Resume, RowsOfAFileThatAreLostAreNotGuessed)
       0);
   const std::string drawn = file_text("drawn/packing.csv");
   const auto behind_units = drawn.find('\n', drawn.find('\n') + 1) + 1;
-  std::ofstream("more.csv") << drawn.substr(0, behind_units) << "500,500,0.5\n"
+  std::ofstream("more.csv") << drawn.substr(0, behind_units) << "0,55,0,0.5,0\n"
                             << drawn.substr(behind_units);
   const Outcome run = run_ligament("run torn.json -o of_more" + of_file + bare + "20");
   ASSERT_EQ(run.code, 0) << run.errors;
