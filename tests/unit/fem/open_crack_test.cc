@@ -112,7 +112,7 @@ TEST(OpenCrack, PartsAPlateThatItCrosses)
     for (const auto &cell : mesh.cells) {
       int least = piece[cell[0]];
       for (const int node : cell)
-        keep_smallest(least, piece[node]);
+        least = std::min(least, piece[node]);
       for (const int node : cell)
         piece[node] = least;
     }
