@@ -60,9 +60,9 @@ struct CoupledBody
 };
 
 /// Throws core::InputError where the scene can't be built: reason and remedy in the message. What
-/// `reference` knows is not sought again; what it doesn't is added. Of several ranks, which all
-/// call it, each has its part of the particles: pieces of about equal weight, by weights of the
-/// blocks of particles (particles::make_partition), or by their number.
+/// `reference` knows is not sought again, the rest is added to it; `timers` must outlive the body.
+/// Of several ranks, which all call it, each has its part of the particles: pieces of about equal
+/// weight, by weights of the blocks (particles::make_partition), or by their number of particles.
 template <int dim>
 CoupledBody<dim>
 make_body(const Scene &scene, core::Log &log, core::Timers &timers, Reference &reference,

@@ -144,7 +144,9 @@ TEST(PeriodicScenes, ACoupledBodyTakesAHomogeneousStrainAtRest)
 // The mesh goes on through the joined sides, the crystal inside it ends as it would in a body with sides.
 TEST(PeriodicScenes, ACrystalKeepsOffJoinedSides)
 {
-  const auto body_of = [](const std::vector<std::string> &set) {
+  core::Log log;
+  core::Timers timers; // the couplers keep them
+  const auto body_of = [&](const std::vector<std::string> &set) {
     const auto read = parse_scene(R"({
       "dimension": 2,
       "specimen": {"size": ["37 nm", "36 nm"], "thickness": "0.38 nm"},
@@ -159,8 +161,6 @@ TEST(PeriodicScenes, ACrystalKeepsOffJoinedSides)
                                   "crystal.json", set);
     for (const auto &error : read.errors)
       ADD_FAILURE() << core::to_string(error);
-    core::Log log;
-    core::Timers timers;
     return make_body<2>(*read.scene, log, timers);
   };
   auto joined = body_of({R"(/specimen/periodic=["x"])"}), sided = body_of({});
