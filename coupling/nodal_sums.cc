@@ -64,7 +64,11 @@ template <int dim>
 void NodalSums<dim>::add(const std::vector<LaneArray> &sums, int first,
                          const std::vector<Nodal<dim> *> &to) const
 {
-  const double *from = sums.empty() ? nullptr : sums[0].value + first * dim * stride;
+  static_assert(sizeof(LaneArray) == lane_array_size * sizeof(double));
+  // As one array of doubles: a term of a later component lies behind the first LaneArray's end.
+  const double *from = reinterpret_cast<const double *>(sums.data());
+  if (from)
+    from += first * dim * stride;
   switch (to.size()) {
   case 1:
     return add_components<dim>(from, to);
