@@ -238,8 +238,6 @@ void FemSolver<dim>::book_work()
       c.old_force = c.force;
       c.old_displacement = u;
     }
-  if (!has_previous_forces_)
-    jumps_.forget();
   external_work_ += jumps_.book_work();
   has_previous_forces_ = true;
 }

@@ -104,11 +104,10 @@ template <int dim>
 double SideJumps<dim>::book_work()
 {
   double work = 0;
-  for (int a = 0; a < dim && is_booked_; ++a)
+  for (int a = 0; a < dim; ++a)
     work += (pull_[a] + old_pull_[a]).dot(jump_[a] - old_jump_[a]) / 2;
   old_jump_ = jump_;
   old_pull_ = pull_;
-  is_booked_ = true;
   return work;
 }
 
@@ -117,7 +116,6 @@ void SideJumps<dim>::save(core::State &state) const
 {
   if (jumps_.empty())
     return;
-  core::save_value(state, "far_jumps", "is_booked", std::int64_t(is_booked_));
   for (int a = 0; a < dim; ++a)
     for (int c = 0; c < dim; ++c) {
       const std::string name = std::to_string(a) + "_" + std::to_string(c);
@@ -132,7 +130,6 @@ void SideJumps<dim>::load(const core::State &state)
 {
   if (jumps_.empty())
     return;
-  is_booked_ = core::load_integer(state, "far_jumps", "is_booked") != 0;
   for (int a = 0; a < dim; ++a)
     for (int c = 0; c < dim; ++c) {
       const std::string name = std::to_string(a) + "_" + std::to_string(c);

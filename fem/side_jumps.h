@@ -26,9 +26,9 @@ public:
   /// Of a load, in N; zero of one that is no jump.
   Vector<dim> reaction(int load) const;
 
-  /// Work in J since the last call, trapezoidal rule; 0 with the first one.
+  /// Work in J since the last call, trapezoidal rule; with the first one as if a jump that is there
+  /// at once had come in proportion.
   double book_work();
-  void forget() { is_booked_ = false; }
 
   void save(core::State &state) const;
   void load(const core::State &state);
@@ -42,6 +42,5 @@ private:
   std::vector<std::array<int, 2>> jumps_; // load and its axis
   std::vector<int> beyond_;               // rows of hanging nodes that lie beyond a side
   PerAxis jump_, rate_, pull_, old_jump_, old_pull_;
-  bool is_booked_ = false;
 };
 } // namespace ligament::fem

@@ -102,11 +102,15 @@ void PeriodicJumps<dim>::book_work(const Evaluation<dim> &e)
 {
   if (jumps_.empty())
     return;
+  if (!booked_) { // as if a jump that is there at once had come in proportion
+    booked_ = Booked{{}, std::vector<Vector<dim>>(jumps_.size(), Vector<dim>::Zero())};
+    booked_->jump.fill(Vector<dim>::Zero());
+  }
   Booked now{jump_, {}};
   for (std::size_t k = 0; k < jumps_.size(); ++k) {
     const auto &[l, axis] = jumps_[k];
     now.reaction.push_back(e.reactions[l]);
-    for (int c = 0; c < dim && booked_; ++c)
+    for (int c = 0; c < dim; ++c)
       if (const double moved = jump_[axis][c] - booked_->jump[axis][c]; loads_[l].value[c] && moved != 0)
         work_.add(0.5 * (now.reaction[k][c] + booked_->reaction[k][c]) * moved);
   }

@@ -63,7 +63,8 @@ void RigidTool<dim>::finish(double dt, const Wrench<dim> &zone, const Wrench<dim
     if (far)
       now_.work -= (far->force + now_.far_force).dot(now_.centre - now_.far_centre) / 2;
   }
-  if (is_free() && !is_first)
+  // In the first step too: a drive without a ramp is where it ends from the start.
+  if (is_free())
     now_.work += (spring + now_.spring_force).dot(drive_place_ - now_.drive_place) / 2;
   now_.zone_force = zone.force;
   now_.zone_centre = now_.centre;

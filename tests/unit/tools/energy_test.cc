@@ -210,4 +210,16 @@ TEST(ToolEnergy, ASpringYields)
   }
   EXPECT_NEAR(force / spring, 1, 1e-2);
 }
+
+// Of a drive that is at its end from the start, the spring alone has taken work in the first step.
+TEST(ToolEnergy, ADriveWithoutARampStretchesItsSpring)
+{
+  ToolBody<2> b({"/far_field=none", "/loads=[{\"boundary\": \"bottom\", \"displacement\": [0, 0]}]",
+                 R"(/tools=[{"name": "plate", "shape": "plate", "size": [30, 4], "place": [0, 80],
+        "displacement": [null, -0.2], "mass": 50, "machine_stiffness": 0.1}])"});
+  b.step();
+  const double energy = 0.1 * 0.2 * 0.2 / 2;
+  EXPECT_NEAR(b.ledger().external_work, energy, 1e-6 * energy);
+  EXPECT_NEAR(b.ledger().tools.spring + b.ledger().tools.kinetic, energy, 1e-3 * energy);
+}
 } // namespace
