@@ -26,10 +26,15 @@ double largest(const PartialPoint &value)
   return largest;
 }
 
-/// By what the course of a load multiplies it at most, up to a time in s: the sign does not count.
-double largest_factor(const LoadParameters &load, double end)
+double length(const Point &p)
 {
-  const History &h = load.history;
+  return std::hypot(p[0], p[1], p[2]);
+}
+
+/// By what the course of a load or motion multiplies it at most, up to a time in s: the sign does
+/// not count.
+double largest_factor(const History &h, double end)
+{
   if (h.cycles)
     return std::abs(h.cycles->mean) + std::abs(h.cycles->amplitude);
   if (h.table.empty()) // ramps and pulses rise to 1
@@ -50,21 +55,22 @@ std::string value_text(const std::string &name, const std::string &key, double v
                      factor == 1 ? "" : " at the peak of its history");
 }
 
-/// A side that moves at this share of the wave speed strains what is behind it as much.
-void check_velocity(const LoadParameters &load, const std::string &key, double speed, double factor,
-                    Findings &f)
+/// What moves at this share of the speed of P waves strains what stands still before it as much.
+/// The key's last part is the quantity's name.
+void check_speed(const std::string &section, const std::string &name, double value, double factor,
+                 double wave_speed, Findings &f, const char *unit = "m/s", double arm = 1)
 {
-  const double share = factor * largest(load.velocity) / speed;
-  const std::string message = value_text("velocity", key, largest(load.velocity), "m/s", factor);
+  const double share = factor * value * arm / wave_speed;
+  const std::string message = value_text(name, section, value, unit, factor);
   const std::string reason =
       fmt::format("P waves of this material travel at {:.4g} m/s: the front strains it by {:.2g}",
-                  speed, share);
+                  wave_speed, share);
+  const std::string remedy = "give a slower one, or check its unit and those of /material";
   if (share > 1)
-    f.error(key + "/velocity", message + ", faster than sound", reason,
-            "give a slower one, or check its unit and those of /material");
+    f.error(section + "/" + name, message + ", faster than sound", reason, remedy);
   else if (share > 0.1)
-    f.warning(key + "/velocity", message + ", more than a tenth of the speed of sound", reason,
-              "give a slower one, or check its unit and those of /material");
+    f.warning(section + "/" + name, message + ", more than a tenth of the speed of sound", reason,
+              remedy);
 }
 
 void check_traction(const LoadParameters &load, const std::string &key, double modulus,
@@ -96,6 +102,17 @@ void check_displacement(const Scene &scene, const LoadParameters &load, const st
               "give a smaller one, or check both units");
 }
 
+/// s; infinite where none is given.
+double end_of(const Scene &scene, const Findings &f)
+{
+  return f.sound_and_given({"/time/duration"}) ? scene.time.duration : infinity;
+}
+
+bool has_wave_speed(const Scene &scene, const Findings &f)
+{
+  return f.sound({"/material", "/atoms"}) && scene.material.youngs_modulus > 0;
+}
+
 void check_load_scales(const Scene &scene, Findings &f)
 {
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
@@ -103,14 +120,40 @@ void check_load_scales(const Scene &scene, Findings &f)
     if (!f.sound({key}))
       continue;
     const LoadParameters &load = scene.loads[k];
-    const bool has_end = f.sound_and_given({"/time/duration"});
-    const double factor = largest_factor(load, has_end ? scene.time.duration : infinity);
-    if (f.sound({"/material", "/atoms"}) && scene.material.youngs_modulus > 0) {
-      check_velocity(load, key, wave_speed(scene.material), factor, f);
+    const double factor = largest_factor(load.history, end_of(scene, f));
+    if (has_wave_speed(scene, f)) {
+      check_speed(key, "velocity", largest(load.velocity), factor, wave_speed(scene.material), f);
       check_traction(load, key, scene.material.youngs_modulus, factor, f);
     }
     if (f.sound({"/specimen/size"}))
       check_displacement(scene, load, key, factor, f);
+  }
+}
+
+/// Of tools, and of the body where it begins.
+void check_motion_scales(const Scene &scene, Findings &f)
+{
+  if (!has_wave_speed(scene, f))
+    return;
+  const double speed = wave_speed(scene.material);
+  for (std::size_t k = 0; k < scene.tools.size(); ++k) {
+    const std::string key = fmt::format("/tools/{}", k);
+    if (!f.sound({key}))
+      continue;
+    const ToolParameters &tool = scene.tools[k];
+    check_speed(key, "velocity", largest(tool.velocity),
+                largest_factor(tool.history, end_of(scene, f)), speed, f);
+    check_speed(key, "initial_velocity", length(tool.initial_velocity), 1, speed, f);
+  }
+  for (std::size_t k = 0; k < scene.initial_motion.size(); ++k) {
+    const std::string key = fmt::format("/initial_motion/{}", k);
+    if (!f.sound({key}))
+      continue;
+    const InitialMotion &motion = scene.initial_motion[k];
+    check_speed(key, "velocity", length(motion.velocity), 1, speed, f);
+    if (f.sound({"/specimen/size"})) // at half the body's diagonal from the centre
+      check_speed(key, "spin", length(motion.spin), 1, speed, f, "rad/s",
+                  length(scene.specimen.size) / 2);
   }
 }
 
@@ -154,7 +197,7 @@ double shortest_change(const LoadParameters &load, double end)
     return h.pulse->duration / (h.pulse->shape == PulseShape::ricker ? 8 : 2);
   if (h.table.empty())
     return load.ramp;
-  const double small = 0.1 * largest_factor(load, end);
+  const double small = 0.1 * largest_factor(load.history, end);
   double shortest = std::abs(h.table.front()[1]) > small ? 0 : infinity;
   for (std::size_t k = 1; k < h.table.size(); ++k)
     if (h.table[k - 1][0] < end && std::abs(h.table[k][1] - h.table[k - 1][1]) > small)
@@ -293,6 +336,7 @@ void check_output(const Scene &scene, Findings &f)
 void check_scales(const Scene &scene, Findings &f)
 {
   check_load_scales(scene, f);
+  check_motion_scales(scene, f);
   check_jumping_sides(scene, f);
   check_strength(scene, f);
   check_duration(scene, f);
