@@ -1,6 +1,7 @@
 #include "src/scene/servo_scales.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace ligament::program
 {
@@ -12,7 +13,8 @@ double servo_response(const Scene &scene, const ServoParameters &servo)
   const double c_s =
       std::sqrt(material.youngs_modulus / (2 * (1 + material.poissons_ratio)) / material.density);
   Point size = scene.specimen.size;
-  std::sort(size.begin(), size.begin() + scene.dimension, std::greater<>());
+  // The longest first; in 2D the last is 0.
+  std::partial_sort(size.begin(), size.begin() + 2, size.end(), std::greater<>());
   constexpr double transits = 4;
   // Beams swing more slowly than waves cross them, by about their slenderness.
   return transits * size[0] / c_s * size[0] / size[1];

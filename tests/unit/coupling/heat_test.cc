@@ -97,8 +97,9 @@ TEST(Heat, CovarianceOfTheFineMotionIsStationary)
                 "noise %.1e\n",
                 strength, change_of_covariance(bath, true, true),
                 change_of_covariance(bath, false, true), change_of_covariance(bath, true, false));
-    if (strength > 0.1)
+    if (strength > 0.1) {
       EXPECT_GT(change_of_covariance(bath, false, true), 1e-4) << strength;
+    }
   }
 }
 

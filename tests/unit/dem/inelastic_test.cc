@@ -66,8 +66,9 @@ void expect_like_oracle(const Packing<dim> &packing, const Plasticity &law, Plan
       for (int a = 0; a < dim; ++a)
         for (int b = a; b < dim; ++b)
           EXPECT_NEAR(e[tensor_place<dim>(a, b)], oracle.strain[i](a, b), 1e-11);
-      if (dim == 2)
+      if (dim == 2) {
         EXPECT_NEAR(e[2], oracle.strain[i](2, 2), 1e-11);
+      }
     }
   }
   EXPECT_LT(error, 1e-11 * largest);

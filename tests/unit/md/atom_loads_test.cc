@@ -40,11 +40,6 @@ Load load(int side, Load::Kind kind, int component, double value)
   l.history = core::Ramp{1};
   return l;
 }
-
-double sum(const std::vector<double> &values)
-{
-  return std::accumulate(values.begin(), values.end(), 0.);
-}
 } // namespace
 
 // A side's atoms share its area, whichever they are.
@@ -333,10 +328,11 @@ TEST(CouplingTest, OpenAtomsLackNeighbours)
   for (const int i : all) {
     const Vector<2> x = get(body.atoms.reference, i);
     const double depth = std::min(x.minCoeff(), (body.top - x).minCoeff());
-    if (depth > range)
+    if (depth > range) {
       EXPECT_EQ(edge.count(i), 0u);
-    else if (depth < 0.5 * body.crystal.spacing())
+    } else if (depth < 0.5 * body.crystal.spacing()) {
       EXPECT_EQ(edge.count(i), 1u);
+    }
   }
   force.for_each_neighbour(
       body.atoms, [&](const particles::Neighbour &n) { edge.insert(n.j); }, &open);

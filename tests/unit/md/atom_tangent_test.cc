@@ -93,8 +93,11 @@ TEST(AtomTangentTest, HomogeneousGradientsCostTheModuli)
       expected += 0.5 * a(p, q) * g(p / 3, p % 3) * g(q / 3, q % 3);
   // Term by term with the vector between the members, which periodic atoms do not have.
   double energy = 0;
-  const AtomBody<3> parts{
-      body.crystal.potential(), std::vector<int>(body.atoms.size(), 0), body.packing.period, {}};
+  const AtomBody<3> parts{body.crystal.potential(),
+                          std::vector<int>(body.atoms.size(), 0),
+                          body.packing.period,
+                          {},
+                          {}};
   const AtomTangent<3> tangent(parts, body.atoms);
   std::vector<double> growth(body.atoms.size(), 0.);
   ReferenceBonds<3>(parts, body.atoms).for_each([&](const Bond<3> &b) {

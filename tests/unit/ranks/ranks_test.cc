@@ -79,8 +79,9 @@ TEST(Ranks, MessagesReachTheirRanks)
     }
   ranks().exchange(outgoing, incoming);
   for (int k = 0; k < n; ++k)
-    if (k != r)
+    if (k != r) {
       EXPECT_EQ(in[k], std::vector<double>(1 + 1000 * k, 10 * k + r));
+    }
 }
 
 // MPI counts in ints: what is longer comes in pieces.
@@ -109,8 +110,9 @@ TEST(Ranks, LongMessagesArriveInPieces)
     }
     EXPECT_EQ(at_first, r == 0 ? joined : std::vector<std::int16_t>());
   }
-  if (n > 1)
+  if (n > 1) {
     EXPECT_THROW(test::ranks_in_pieces(0), InputError);
+  }
 }
 
 TEST(Ranks, SumsAreThoseOfAllTerms)
