@@ -163,6 +163,7 @@ public:
   int n_contacts() const { return int(contacts_.all().size()); }
 
   bool can_flow() const override { return strains_.has_plasticity(); }
+  std::vector<int> loose_particles() const override { return strains_.loose(); }
   Utilisation<dim> flow_utilisation(const Particles &particles,
                                     const std::vector<Watch> &watch) const override;
   double flow_share(const Strain<dim> &stress, double out_of_plane) const override

@@ -133,6 +133,8 @@ public:
 
   /// Whether a material may flow.
   virtual bool can_flow() const { return false; }
+  /// Particles that would flow or creep but for too few bonds that hold their strains at rest.
+  virtual std::vector<int> loose_particles() const { return {}; }
   /// The watched particle nearest to the stress under which its material would flow, whether it may
   /// itself or not.
   virtual Utilisation<dim> flow_utilisation(const Particles<dim> &,

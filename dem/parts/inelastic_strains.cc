@@ -124,8 +124,12 @@ InelasticStrains<dim>::InelasticStrains(const packings::Packing<dim> &packing,
   }
   std::vector<int> loose;
   for (int i = 0; i < n; ++i)
-    if (open_[i] >= 0 && !is_held(i, packing.volume[i]))
+    if (open_[i] >= 0 && !is_held(i, packing.volume[i])) {
       loose.push_back(i);
+      const FlowLaw &law = laws_[law_number(i)];
+      if (law.kind != FlowLaw::Kind::elastic || law.viscous)
+        loose_.push_back(i);
+    }
   keep_elastic(loose);
 }
 

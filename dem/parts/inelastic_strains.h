@@ -63,6 +63,8 @@ public:
   /// Of a body in parts: sums go over what is owned.
   void join(const particles::Part &part) { part_ = part; }
 
+  /// Those of the intact body that would flow but for too few bonds that hold their strains.
+  const std::vector<int> &loose() const { return loose_; }
   /// These never flow, whatever their material.
   void keep_elastic(const std::vector<int> &particles);
   /// Of a particle with so many m^3 whose strain is not that of its bonds alone.
@@ -210,6 +212,7 @@ private:
   int most_branches_ = -1;                      // of a viscous material; -1: there is none
   bool has_plasticity_ = false;
   std::vector<std::uint8_t> law_of_; // of the particles; empty: all 0
+  std::vector<int> loose_;
   mutable core::LargeArray numbers_;
   Streams streams_;
   mutable std::vector<std::uint8_t> begun_; // of the blocks

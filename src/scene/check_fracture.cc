@@ -91,7 +91,8 @@ private:
                "give \"strength\", or choose maximum_tension, principal_stress or energy");
     else if (f_.given(key("toughness")) && !f_.given(key("strength")) &&
              f_.sound({"/specimen", key("toughness")}) && scene_.specimen.cracks.empty() &&
-             scene_.specimen.notches.empty() && !scene_.specimen.body && scene_.tools.empty())
+             scene_.specimen.notches.empty() && scene_.specimen.slots.empty() &&
+             !scene_.specimen.body && scene_.tools.empty())
       f_.warning(
           key("toughness"),
           fmt::format("\"toughness\" in {}, but nothing is cracked yet", section_),

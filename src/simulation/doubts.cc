@@ -66,6 +66,28 @@ void doubt_motions(const Scene &scene, const CoupledBody<dim> &body, core::Log &
                   k);
 }
 
+/// The particles of a layer that overhangs the last one of a lattice bear what those below can't:
+/// a few at edges and corners do no harm.
+template <int dim>
+void doubt_flow(const CoupledBody<dim> &body, core::Log &log)
+{
+  if (!body.zone || !body.force())
+    return;
+  const particles::Part &part = body.zone->state.part;
+  std::int64_t n_loose = 0;
+  for (const int i : body.force()->loose_particles())
+    n_loose += part.owns(i);
+  n_loose = body.ranks.sum(n_loose);
+  const std::int64_t n = body.ranks.sum(std::int64_t(particles::count(part.owned)));
+  constexpr double most = 0.01;
+  if (double(n_loose) > most * double(n))
+    log.warning("{} of {} particles neither flow nor creep, as too few bonds hold their strains: "
+                "outer layers of the packing that overhang a side stay elastic, and the body is "
+                "too strong; give it a size that ends half a layer behind its last particles, or "
+                "another packing (\"random\")",
+                n_loose, n);
+}
+
 template <int dim>
 void doubt_end(const Scene &scene, const CoupledBody<dim> &body, core::Log &log)
 {
@@ -90,6 +112,7 @@ void doubt_body(const Scene &scene, const CoupledBody<dim> &body, core::Log &log
   doubt_cracks(scene, body, log);
   doubt_unity(scene, body, log);
   doubt_motions(scene, body, log);
+  doubt_flow(body, log);
   doubt_end(scene, body, log);
 }
 

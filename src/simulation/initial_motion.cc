@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace ligament::program
 {
 namespace
@@ -76,6 +78,14 @@ void move_members(const coupling::Overlap<dim> &overlap, CoupledBody<dim> &body)
   }
 }
 } // namespace
+
+bool begins_with_spin(const Scene &scene)
+{
+  return std::any_of(scene.initial_motion.begin(), scene.initial_motion.end(),
+                     [](const InitialMotion &m) {
+                       return m.spin != Point{0, 0, 0};
+                     });
+}
 
 template <int dim>
 void start_motion(const Scene &scene, CoupledBody<dim> &body)

@@ -11,6 +11,9 @@ namespace ligament::program
 template <int dim>
 void start_motion(const Scene &scene, CoupledBody<dim> &body);
 
+/// Whether anything of the body turns at the beginning.
+bool begins_with_spin(const Scene &scene);
+
 /// Whether a particle or a node lies in the region; of the body, which all of several ranks ask.
 template <int dim>
 bool moves_any(const Region &region, const CoupledBody<dim> &body);

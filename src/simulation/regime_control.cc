@@ -46,14 +46,16 @@ std::string mean_name(int c)
 } // namespace
 
 template <int dim>
-RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm)
+RegimeControl<dim>::RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm,
+                                  bool turns)
     : can_turn_(body.coupler->can_turn()), can_strain_(body.coupler->can_strain()),
       has_law_(body.force() && body.force()->finite_strain_law()),
       automatic_(choice == RegimeChoice::automatic && can_turn_)
 {
   if (!body.far)
     return;
-  if (choice == RegimeChoice::corotated)
+  // By the first look it may have turned so far that its false strains stay as waves.
+  if (choice == RegimeChoice::corotated || (automatic_ && turns))
     set(Regime::corotated, body);
   else if (choice == RegimeChoice::nonlinear)
     set(Regime::nonlinear, body);

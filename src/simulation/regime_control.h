@@ -8,14 +8,17 @@
 namespace ligament::program
 {
 /// Watches the motion of overlap and far field every 50 of its steps (theory.md, "Large rotation
-/// and finite strain"). A scene's fixed regime acts from the start; "automatic" starts linear and
-/// changes where rotations are still so small that the regimes hardly differ. Of a body of warm
-/// atoms it is the mean motion (C33): heat strains single cells by per cents and deforms nothing.
+/// and finite strain"). A scene's fixed regime acts from the start; "automatic" starts linear, or
+/// corotated where the body begins with a spin, and changes where rotations are still so small that
+/// the regimes hardly differ. Of a body of warm atoms it is the mean motion (C33): heat strains
+/// single cells by per cents and deforms nothing.
 template <int dim>
 class RegimeControl
 {
 public:
-  RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm = false);
+  /// `turns`: the body begins with a spin.
+  RegimeControl(RegimeChoice choice, CoupledBody<dim> &body, bool is_warm = false,
+                bool turns = false);
 
   /// Between forces and kick of a step in which the far field acts: may change the regime and
   /// compute the forces again; what the energy changes by is booked in the body. Returns why the

@@ -1,5 +1,6 @@
 // What looks at a body in three dimensions: sections, test machine, fields.
 #include "src/simulation/body_fields.h"
+#include "src/simulation/doubts.h"
 #include "src/simulation/load_path.h"
 #include "src/simulation/test_machine.h"
 #include "tests/support/small_plate.h"
@@ -79,6 +80,36 @@ TEST(Bar, TheTestMachineReadsItsStress)
     EXPECT_NEAR(r.stress / strain, 1, 1e-9);
     EXPECT_NEAR(r.strain / strain, 1, 1e-12);
     EXPECT_NEAR(r.displacement / (length * strain), 1, 1e-12);
+  }
+}
+
+// Both outer layers of face-centred cubic particles overhang a bar that is five spacings deep: each
+// of their cells is held by too few bonds. Six spacings end between two layers. So do the layers of
+// a cubic lattice, four of them.
+TEST(Bar, LayersThatCannotFlowAreDoubted)
+{
+  const auto doubts = [](const std::string &depth, const std::string &packing) {
+    const Scene scene = static_scene<3>(
+        {"/far_field=none", "/specimen/size=[4, 6, " + depth + "]",
+         R"(/discrete_zone={"extent": "all", "spacing": 1, "packing": ")" + packing + "\"}",
+         R"(/material/plasticity={"yield_stress": 1e-3, "hardening": 0.1})"});
+    core::Log log;
+    core::Timers timers;
+    const auto body = make_body<3>(scene, log, timers);
+    core::Log of_doubts;
+    doubt_body(scene, body, of_doubts);
+    return of_doubts.warnings();
+  };
+  for (const auto &[packing, expected] :
+       {std::pair("fcc", "48 of 144 "), {"simple_cubic", "48 of 96 "}})
+  {
+    const auto found = doubts("5", packing);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].rfind(std::string(expected) + "particles neither flow", 0), 0u) << found[0];
+  }
+  for (const auto &[depth, packing] : {std::pair("6", "fcc"), {"6", "simple_cubic"}}) {
+    const auto none = doubts(depth, packing);
+    EXPECT_TRUE(none.empty()) << none[0];
   }
 }
 

@@ -1,5 +1,6 @@
 // The regime follows the motion of the body, and its changes are booked.
 #include "src/simulation/energy_ledger.h"
+#include "src/simulation/initial_motion.h"
 #include "src/simulation/regime_control.h"
 #include "tests/support/small_plate.h"
 
@@ -42,6 +43,20 @@ TEST(RegimeControl, SmallRotationsStayLinear)
   EXPECT_FALSE(plate.look());
   EXPECT_EQ(plate.control.history(), "linear");
   EXPECT_EQ(plate.small.body.regime_change, 0);
+}
+
+// A linear model would feel phi^2/2 until the first look.
+TEST(RegimeControl, ABodyThatBeginsWithASpinIsNeverLinear)
+{
+  Scene scene = small_scene({R"(/initial_motion=[{"velocity": [1e-3, 0]}])"});
+  EXPECT_FALSE(begins_with_spin(scene));
+  scene = small_scene({R"(/initial_motion=[{"velocity": [1e-3, 0]}, {"spin": 1e-3}])"});
+  EXPECT_TRUE(begins_with_spin(scene));
+  SmallBody small(scene);
+  const RegimeControl<2> control(RegimeChoice::automatic, small.body, false, true);
+  EXPECT_EQ(control.history(), "corotated");
+  const RegimeControl<2> fixed(RegimeChoice::linear, small.body, false, true);
+  EXPECT_EQ(fixed.history(), "linear");
 }
 
 TEST(RegimeControl, ChangeOfRegimeIsBooked)
