@@ -67,7 +67,9 @@ def run(args, scene, folder, ranks):
         if record.get("status") in ("done", "stopped"):
             return record.get("wall_seconds", float("nan")), 0 if record["status"] == "done" else 3
         shutil.rmtree(folder)
-    command = [args.program, "run", str(scene), "-o", str(folder)] + duration_of(scene, args.share)
+    # A run that has written a checkpoint writes another one at its end.
+    command = [args.program, "run", str(scene), "-o", str(folder), "--set", "/output/checkpoint_interval=5"]
+    command += duration_of(scene, args.share)
     if ranks > 1:
         command += ["-n", str(ranks)]
     folder.parent.mkdir(parents=True, exist_ok=True)
