@@ -68,7 +68,7 @@ def run(args, scene, folder, ranks):
             return record.get("wall_seconds", float("nan")), 0 if record["status"] == "done" else 3
         shutil.rmtree(folder)
     # A run that has written a checkpoint writes another one at its end.
-    command = [args.program, "run", str(scene), "-o", str(folder), "--set", "/output/checkpoint_interval=5"]
+    command = [args.program, "run", str(scene), "-o", str(folder), "--set", "/output/checkpoint_interval=0.5"]
     command += duration_of(scene, args.share)
     if ranks > 1:
         command += ["-n", str(ranks)]
