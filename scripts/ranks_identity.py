@@ -109,13 +109,14 @@ def tables_of(path):
 
 
 def last_state(run):
-    """Tables of the newest checkpoint, but for what they say of blocks at rest, which each rank cuts
-    otherwise. A run that a guard ended has no state of its end."""
+    """Step and tables of the newest checkpoint, but for what they say of blocks at rest, which each
+    rank cuts otherwise; None: there is none."""
     states = [path for path in (run / "checkpoints").glob("*/body.bin") if path.parent.suffix != ".tmp"]
     if not states:
         return None
     tables = tables_of(max(states))
-    return {name: table for name, table in tables.items() if name not in ("blocks", "rest", "split_rest")}
+    step = json.loads((max(states).parent / "manifest.json").read_text())["step"]
+    return step, {name: table for name, table in tables.items() if name not in ("blocks", "rest", "split_rest")}
 
 
 def results(folder):
@@ -147,12 +148,17 @@ def differences(one, many):
     found += [key for key in RECORDED if said(first, key) != said(second, key)]
     if first.get("status") == "done":
         states = [last_state(folder) for folder in (one, many)]
-        if None in states:
-            found.append("no last state")
-        else:
-            found += [f"last state, {name}" for name in set(states[0]) | set(states[1])
-                      if states[0].get(name) != states[1].get(name)]
+        if None not in states and states[0][0] == states[1][0]:
+            (_, first), (_, second) = states
+            found += [f"last state, {name}" for name in set(first) | set(second) if first.get(name) != second.get(name)]
     return sorted(found)
+
+
+def has_last_state(one, many):
+    """Whether states of the same step were there to compare: runs that a guard or /time/stop_when ends
+    have none of their end (--share lets them end before)."""
+    states = [last_state(folder) for folder in (one, many)]
+    return None not in states and states[0][0] == states[1][0]
 
 
 def main():
@@ -184,11 +190,11 @@ def main():
             record = json.loads((one / "run.json").read_text())
             rows.append((name, n, record.get("particles"), record.get("steps"), record.get("broken_bonds"),
                          f"{seconds:.0f}", f"{seconds_many:.0f}", len(results(one)),
-                         "none" if not differs else ", ".join(differs[:6])))
+                         "yes" if has_last_state(one, many) else "no", "none" if not differs else ", ".join(differs[:6])))
             print(rows[-1], flush=True)
     if rows:
-        print("\n| scene | ranks | particles | steps | broken | one process, s | ranks, s | files | differences |")
-        print("|---|---|---|---|---|---|---|---|---|")
+        print("\n| scene | ranks | particles | steps | broken | one process, s | ranks, s | files | last state | differences |")
+        print("|---|---|---|---|---|---|---|---|---|---|")
         for row in rows:
             print("| " + " | ".join(str(cell) for cell in row) + " |")
     if refused:
