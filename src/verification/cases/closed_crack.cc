@@ -106,7 +106,9 @@ public:
       keep_largest(worst_residual_, wings.residual);
       sum += over_theory(wings);
     }
-    results_.push_back({"closed_crack/" + name, std::abs(sum / n_seeds - 1), 0.15, 0.07});
+    const double mean = sum / n_seeds;
+    results_.push_back({"closed_crack/" + name, std::abs(mean - 1), 0.15, 0.07});
+    results_.push_back({"closed_crack/" + name + "_ratio", mean, infinity, {}}); // on which side
   }
 
   std::vector<Result> results() const
