@@ -103,8 +103,9 @@ void PeriodicJumps<dim>::book_work(const Evaluation<dim> &e)
   if (jumps_.empty())
     return;
   if (!booked_) { // as if a jump that is there at once had come in proportion
-    booked_ = Booked{{}, std::vector<Vector<dim>>(jumps_.size(), Vector<dim>::Zero())};
-    booked_->jump.fill(Vector<dim>::Zero());
+    std::array<Vector<dim>, dim> none;
+    none.fill(Vector<dim>::Zero());
+    booked_ = Booked{none, std::vector<Vector<dim>>(jumps_.size(), none[0])};
   }
   Booked now{jump_, {}};
   for (std::size_t k = 0; k < jumps_.size(); ++k) {
