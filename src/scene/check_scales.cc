@@ -55,8 +55,8 @@ std::string value_text(const std::string &name, const std::string &key, double v
                      factor == 1 ? "" : " at the peak of its history");
 }
 
-/// What moves at this share of the speed of P waves strains what stands still before it as much.
-/// The key's last part is the quantity's name.
+/// What moves at this share of the speed of P waves strains what stands still before it as much. The
+/// value is in `unit`, so many m from the axis where it is a spin.
 void check_speed(const std::string &section, const std::string &name, double value, double factor,
                  double wave_speed, Findings &f, const char *unit = "m/s", double arm = 1)
 {
