@@ -153,10 +153,7 @@ FemSolver<2> sheared(double ramp = 2e-3)
   loads[0].history = core::Ramp{ramp};
   return FemSolver<2>(joined_mesh(p, {0}), body<2>(), loads);
 }
-} // namespace
 
-namespace
-{
 void expect_work_is_energy(double ramp)
 {
   auto solver = sheared(ramp);

@@ -100,13 +100,13 @@ TEST(Bar, LayersThatCannotFlowAreDoubted)
     doubt_body(scene, body, of_doubts);
     return of_doubts.warnings();
   };
-  for (const auto &[packing, expected] :
-       {std::pair("fcc", "48 of 144 "), {"simple_cubic", "48 of 96 "}})
-  {
+  const auto expect_loose = [&](const char *packing, const std::string &share) {
     const auto found = doubts("5", packing);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].rfind(std::string(expected) + "particles neither flow", 0), 0u) << found[0];
-  }
+    EXPECT_EQ(found[0].rfind(share + " particles neither flow", 0), 0u) << found[0];
+  };
+  expect_loose("fcc", "48 of 144");
+  expect_loose("simple_cubic", "48 of 96");
   for (const auto &[depth, packing] : {std::pair("6", "fcc"), {"6", "simple_cubic"}}) {
     const auto none = doubts(depth, packing);
     EXPECT_TRUE(none.empty()) << none[0];
