@@ -234,9 +234,15 @@ template <int dim>
 Eigen::VectorXd EquilibriumSolver<dim>::balance(double time, double &norm)
 {
   Eigen::VectorXd r = system_.forces(time);
-  project_force(r);
+  const double load = system_.load_force(time);
+  largest_load_ = std::max(largest_load_, load);
+  if (free_motions_.cols() > 0) {
+    const Eigen::VectorXd before = r;
+    project_force(r);
+    if (load > 0 && load >= 0.5 * largest_load_) // where it all but vanishes round-off is left
+      unresisted_share_ = std::max(unresisted_share_, (before - r).lpNorm<1>() / load);
+  }
   norm = r.norm();
-  largest_load_ = std::max(largest_load_, system_.load_force(time));
   return r;
 }
 

@@ -68,6 +68,9 @@ public:
   const char *preconditioner() const { return preconditioner_ ? preconditioner_->name() : "none"; }
   /// Motions that no support resists.
   int n_free_motions() const { return int(free_motions_.cols()); }
+  /// The largest share of a load, of those in equilibria so far, that moves the body as a whole
+  /// along these: it is taken out, and equilibria are those of the body that it accelerates.
+  double unresisted_share() const { return unresisted_share_; }
 
   /// What they are made of, for a solver of the same body that is to go on with the same ones;
   /// empty as long as they are not known.
@@ -101,5 +104,6 @@ private:
   Faces touching_; // that it knows
   int n_solves_ = 0, n_iterations_ = 0;
   double largest_load_ = 0;
+  double unresisted_share_ = 0;
 };
 } // namespace ligament::program

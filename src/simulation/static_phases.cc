@@ -293,6 +293,15 @@ std::optional<Stop> StaticPhases<dim>::Work::advance(CoupledBody<dim> &body, Clo
                 phase.reason == PhaseEnd::no_resistance ? "the body no longer carries its load"
                                                         : "no equilibrium was found");
 
+  const bool is_first =
+      std::none_of(phases.begin(), phases.end(), [](const Phase &p) { return p.is_static; });
+  constexpr double least_unresisted = 1e-3; // what pieces of sides of unlike cells may leave
+  if (is_first && solver->unresisted_share() > least_unresisted)
+    log.warning(
+        "nothing resists {:.2g} of the load, which moves the body as a whole: static phases "
+        "leave this motion out; hold a side, or give loads that are in balance",
+        solver->unresisted_share());
+
   phase.end = clock.now.step;
   phase.solves = solver->n_solves() - solves;
   phase.iterations = solver->n_iterations() - iterations;

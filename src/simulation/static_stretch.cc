@@ -262,16 +262,18 @@ std::optional<Stop> StaticStretch<dim>::walk(Clock &clock, const Commit &commit,
       const double off = softens ? 0 : solver_.imbalance(clock.now.time);
       Eigen::VectorXd moved;
       const bool is_near = !may_end_early || off < astray;
+      const bool is_balanced = !softens && off <= off_balance;
       const bool is_found =
-          softens || off > off_balance
-              ? is_near && solver_.find_equilibrium(clock.now.time, moved) == End::converged
-              : true;
-      if (!is_found && !softens && may_end_early) {
+          is_balanced ||
+          (is_near && solver_.find_equilibrium(clock.now.time, moved) == End::converged);
+      if (!is_found) { // no state to commit: the next row is asked from the last one's place
         system.displace(bend_, bent(at) - bent(share));
         move(share, at);
         clock = then;
-        leads_astray_ = true;
-        return {};
+        leads_astray_ = !softens && may_end_early;
+        if (leads_astray_)
+          return {};
+        continue;
       }
     }
     at = share;

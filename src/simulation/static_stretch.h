@@ -36,8 +36,9 @@ public:
   long n_steps() const { return end_ - begin_; }
 
   /// Takes body and clock to the end, or to where something breaks or the kinematics of the overlap
-  /// change before; looks at all states but the last one. Where it may end early it does so before
-  /// a state that lies far off its way: leads_astray() then.
+  /// change before; looks at all states but the last one, and passes over rows in which it finds no
+  /// equilibrium. Where it may end early it does so before a state that lies far off its way:
+  /// leads_astray() then.
   std::optional<Stop> walk(Clock &clock, const Commit &commit, const Look &look,
                            bool may_end_early = false);
   bool leads_astray() const { return leads_astray_; }

@@ -1,5 +1,8 @@
 // Motions of the whole body that no support resists: as many as one counts by hand.
+#include "src/simulation/static_phases.h"
 #include "tests/support/static_body.h"
+
+#include <optional>
 
 using namespace ligament;
 using namespace ligament::program;
@@ -125,5 +128,61 @@ TEST(StaticFreeMotions, OfACoupledBarThatHasBentAndStretched)
   ASSERT_EQ(one.solver.find_response(0.8, 1, moved), EquilibriumSolver<3>::End::converged);
   EXPECT_LE(one.solver.n_iterations() - before, 60);
   ASSERT_EQ(one.solver.find_equilibrium(1, moved), EquilibriumSolver<3>::End::converged);
+  EXPECT_LT(one.solver.unresisted_share(), 1e-4);
+}
+
+/// What an equilibrium under these loads leaves out of them.
+template <int dim>
+double unresisted(const std::vector<Load> &list, const std::vector<std::string> &kind)
+{
+  StaticBody<dim> body(kind + std::vector{loads(list)});
+  Eigen::VectorXd moved;
+  EXPECT_EQ(body.solver.find_equilibrium(1, moved), EquilibriumSolver<dim>::End::converged);
+  return body.solver.unresisted_share();
+}
+
+TEST(StaticFreeMotions, LoadsOutOfBalanceAreNoticed)
+{
+  for (const auto &kind : kinds) {
+    SCOPED_TRACE(kind.empty() ? "coupled" : kind[0]);
+    // Traction at one end alone moves the body as a whole, and of 3 against 1 half of the sum does.
+    EXPECT_NEAR(unresisted<2>({{"top", "traction", {no, "1e-4"}}}, kind), 1, 0.02);
+    EXPECT_NEAR(
+        unresisted<2>({{"top", "traction", {no, "3e-4"}}, {"bottom", "traction", {no, "-1e-4"}}},
+                      kind),
+        0.5, 0.01);
+    EXPECT_LT(unresisted<2>(
+                  {{"top", "traction", {no, "1e-4"}}, {"bottom", "traction", {no, "-1e-4"}}}, kind),
+              1e-8);
+    EXPECT_EQ(
+        unresisted<2>({{"top", "traction", {no, "1e-4"}}, {"bottom", "displacement", {"0", "0"}}},
+                      kind),
+        0);
+  }
+}
+
+TEST(StaticFreeMotions, ARunIsToldOnce)
+{
+  const auto overrides = [](const std::string &bottom) {
+    return std::vector<std::string>{
+        "/time/loading=static",
+        loads({{"top", "traction", {no, "1e-4"}}, {"bottom", "traction", {no, bottom}}})};
+  };
+  for (const bool is_balanced : {true, false}) {
+    const auto scene = overrides(is_balanced ? "-1e-4" : "-0.9e-4");
+    StaticBody<2> plate(scene);
+    StaticPhases<2> phases(static_scene<2>(scene), plate.body, plate.log);
+    Clock clock;
+    clock.now = {0, 0, plate.body.dt};
+    const int ratio = plate.body.coupler->step_ratio();
+    clock.n_steps = long(1 / plate.body.dt) / ratio * ratio;
+    const auto look = []() -> std::optional<Stop> { return {}; };
+    EXPECT_FALSE(phases.advance(plate.body, clock, 0, look));
+    ASSERT_EQ(plate.log.warnings().size(), is_balanced ? 0 : 1);
+    if (!is_balanced) {
+      EXPECT_EQ(plate.log.warnings()[0].rfind("nothing resists 0.05", 0), 0)
+          << plate.log.warnings()[0];
+    }
+  }
 }
 } // namespace
