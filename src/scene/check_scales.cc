@@ -55,22 +55,32 @@ std::string value_text(const std::string &name, const std::string &key, double v
                      factor == 1 ? "" : " at the peak of its history");
 }
 
-/// What moves at this share of the speed of P waves strains what stands still before it as much. The
-/// value is in `unit`, so many m from the axis where it is a spin.
-void check_speed(const std::string &section, const std::string &name, double value, double factor,
-                 double wave_speed, Findings &f, const char *unit = "m/s", double arm = 1)
+/// What a scene says moves or turns.
+struct GivenSpeed
 {
-  const double share = factor * value * arm / wave_speed;
-  const std::string message = value_text(name, section, value, unit, factor);
+  std::string section, name;
+  double value;
+  double factor = 1; // that its history raises it by
+  const char *unit = "m/s";
+  double arm = 1; // m from the axis, of a spin
+};
+
+/// What moves at this share of the speed of P waves (m/s) strains what stands still before it as
+/// much.
+void check_speed(const GivenSpeed &given, double wave_speed, Findings &f)
+{
+  const double share = given.factor * given.value * given.arm / wave_speed;
+  const std::string message =
+      value_text(given.name, given.section, given.value, given.unit, given.factor);
   const std::string reason =
       fmt::format("P waves of this material travel at {:.4g} m/s: the front strains it by {:.2g}",
                   wave_speed, share);
   const std::string remedy = "give a slower one, or check its unit and those of /material";
+  const std::string key = given.section + "/" + given.name;
   if (share > 1)
-    f.error(section + "/" + name, message + ", faster than sound", reason, remedy);
+    f.error(key, message + ", faster than sound", reason, remedy);
   else if (share > 0.1)
-    f.warning(section + "/" + name, message + ", more than a tenth of the speed of sound", reason,
-              remedy);
+    f.warning(key, message + ", more than a tenth of the speed of sound", reason, remedy);
 }
 
 void check_traction(const LoadParameters &load, const std::string &key, double modulus,
@@ -122,7 +132,7 @@ void check_load_scales(const Scene &scene, Findings &f)
     const LoadParameters &load = scene.loads[k];
     const double factor = largest_factor(load.history, end_of(scene, f));
     if (has_wave_speed(scene, f)) {
-      check_speed(key, "velocity", largest(load.velocity), factor, wave_speed(scene.material), f);
+      check_speed({key, "velocity", largest(load.velocity), factor}, wave_speed(scene.material), f);
       check_traction(load, key, scene.material.youngs_modulus, factor, f);
     }
     if (f.sound({"/specimen/size"}))
@@ -141,19 +151,20 @@ void check_motion_scales(const Scene &scene, Findings &f)
     if (!f.sound({key}))
       continue;
     const ToolParameters &tool = scene.tools[k];
-    check_speed(key, "velocity", largest(tool.velocity),
-                largest_factor(tool.history, end_of(scene, f)), speed, f);
-    check_speed(key, "initial_velocity", length(tool.initial_velocity), 1, speed, f);
+    check_speed(
+        {key, "velocity", largest(tool.velocity), largest_factor(tool.history, end_of(scene, f))},
+        speed, f);
+    check_speed({key, "initial_velocity", length(tool.initial_velocity)}, speed, f);
   }
   for (std::size_t k = 0; k < scene.initial_motion.size(); ++k) {
     const std::string key = fmt::format("/initial_motion/{}", k);
     if (!f.sound({key}))
       continue;
     const InitialMotion &motion = scene.initial_motion[k];
-    check_speed(key, "velocity", length(motion.velocity), 1, speed, f);
+    check_speed({key, "velocity", length(motion.velocity)}, speed, f);
     if (f.sound({"/specimen/size"})) // at half the body's diagonal from the centre
-      check_speed(key, "spin", length(motion.spin), 1, speed, f, "rad/s",
-                  length(scene.specimen.size) / 2);
+      check_speed({key, "spin", length(motion.spin), 1, "rad/s", length(scene.specimen.size) / 2},
+                  speed, f);
   }
 }
 

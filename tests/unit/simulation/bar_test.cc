@@ -3,8 +3,7 @@
 #include "src/simulation/doubts.h"
 #include "src/simulation/load_path.h"
 #include "src/simulation/test_machine.h"
-#include "tests/support/small_plate.h"
-#include "tests/support/static_body.h"
+#include "tests/support/small_bar.h"
 
 using namespace ligament;
 using namespace ligament::program;
@@ -12,38 +11,6 @@ using namespace ligament::tests;
 
 namespace
 {
-/// 8 x 60 x 7, coupled, of particles or of elements alone.
-struct Bar
-{
-  core::Log log;
-  core::Timers timers;
-  CoupledBody<3> body;
-
-  explicit Bar(const std::vector<std::string> &overrides)
-      : body(make_body<3>(static_scene<3>(overrides), log, timers))
-  {
-  }
-
-  /// Displacement gradient x, of particles and nodes; forces follow.
-  void deform(const Eigen::Matrix3d &gradient)
-  {
-    const auto move = [&](const auto &place, Components<3> &u, int n) {
-      for (int i = 0; i < n; ++i)
-        set(u, i, Vector<3>(gradient * place(i)));
-    };
-    if (body.zone) {
-      auto &state = body.zone->state;
-      move([&](int i) { return get(state.reference, i); }, state.displacement, state.size());
-    }
-    if (body.far)
-      move([&](int i) { return body.far->mesh().nodes[i]; }, body.far->displacement,
-           body.far->mesh().n_nodes());
-    auto bodies = body.bodies();
-    body.coupler->take_velocities(bodies);
-    body.coupler->compute_forces(bodies, {0, 0, body.dt});
-  }
-};
-
 // Simple cubic packing of spacing 1: each column of particles is a face of area 1.
 TEST(Bar, SectionIsWhatTheCutsLeave)
 {
