@@ -17,34 +17,66 @@ std::string bend()
   return loads({{"top", "displacement", {"6", "0"}}, {"bottom", "displacement", {"0", "0"}}});
 }
 
+/// Of a body that its loads have bent.
+template <int dim>
+void expect_stiffness_of_forces(const std::vector<std::string> &overrides)
+{
+  StaticBody<dim> one(overrides);
+  for (const double time : {0.25, 0.5, 0.75, 1.}) {
+    Eigen::VectorXd moved;
+    ASSERT_EQ(one.solver.find_response(time - 0.25, time, moved),
+              EquilibriumSolver<dim>::End::converged);
+    one.system().displace(moved);
+    ASSERT_EQ(one.solver.find_equilibrium(time, moved), EquilibriumSolver<dim>::End::converged);
+  }
+  one.system().forces(1);
+  one.system().linearise_here();
+  const Eigen::VectorXd x = one.noise(1), y = one.noise(2);
+  const Eigen::VectorXd kx = one.system().stiffness_times(x), ky = one.system().stiffness_times(y);
+  EXPECT_NEAR(y.dot(kx), x.dot(ky), 1e-7 * x.norm() * ky.norm());
+
+  const auto start = one.system().place();
+  constexpr double step = 1e-5;
+  one.system().displace(y, step);
+  const Eigen::VectorXd up = one.system().forces(1);
+  one.system().put_back(start);
+  one.system().displace(y, -step);
+  const Eigen::VectorXd down = one.system().forces(1);
+  one.system().put_back(start);
+  EXPECT_LT(((down - up) / (2 * step) - ky).norm(), 1e-7 * ky.norm());
+
+  one.system().linearise_at_reference();
+  EXPECT_GT((one.system().stiffness_times(y) - ky).norm(), 1e-3 * ky.norm());
+}
+
 // Steps of 1e-4 d on either side lack their square, and more round-off the smoother a motion is.
 TEST(StaticTangent, IsWhatForcesChangeByInABentBody)
 {
-  for (const std::string packing : {"hexagonal", "random"}) {
-    SCOPED_TRACE(packing);
-    StaticBody<2> one({slender, pure, "/discrete_zone/packing=\"" + packing + "\"", bend()});
-    Eigen::VectorXd moved;
-    ASSERT_EQ(one.solver.find_equilibrium(1, moved), EquilibriumSolver<2>::End::converged);
-    one.system().forces(1);
-    one.system().linearise_here();
-    const Eigen::VectorXd x = one.noise(1), y = one.noise(2);
-    const Eigen::VectorXd kx = one.system().stiffness_times(x),
-                          ky = one.system().stiffness_times(y);
-    EXPECT_NEAR(y.dot(kx), x.dot(ky), 1e-7 * x.norm() * ky.norm());
+  const std::string two_materials =
+      R"(/inclusions=[{"youngs_modulus": 0.3, "poissons_ratio": 0.4, "density": 1,
+                       "boxes": [{"lower": [-2, -10], "upper": [0, 10]}]}])";
+  for (const std::string packing : {"hexagonal", "square", "random"})
+    for (const std::string change : {std::string("/plane=strain"), std::string("/plane=stress"),
+                                     std::string("/material/poissons_ratio=-0.2"),
+                                     std::string("/material/poissons_ratio=0.45"), two_materials})
+    {
+      SCOPED_TRACE(packing + " " + change);
+      expect_stiffness_of_forces<2>(
+          {slender, pure, "/discrete_zone/packing=\"" + packing + "\"", bend(), change});
+    }
+}
 
-    const auto start = one.system().place();
-    constexpr double step = 1e-5;
-    one.system().displace(y, step);
-    const Eigen::VectorXd up = one.system().forces(1);
-    one.system().put_back(start);
-    one.system().displace(y, -step);
-    const Eigen::VectorXd down = one.system().forces(1);
-    one.system().put_back(start);
-    EXPECT_LT(((down - up) / (2 * step) - ky).norm(), 1e-7 * ky.norm());
-
-    one.system().linearise_at_reference();
-    EXPECT_GT((one.system().stiffness_times(y) - ky).norm(), 1e-3 * ky.norm());
-  }
+TEST(StaticTangent, IsWhatForcesChangeByInABentBar)
+{
+  const std::string bent = loads(
+      {{"top", "displacement", {"2", "0.1", "-1"}}, {"bottom", "displacement", {"0", "0", "0"}}});
+  for (const std::string packing : {"fcc", "simple_cubic", "random"})
+    for (const std::string nu : {"-0.2", "0.22", "0.45"}) {
+      SCOPED_TRACE(packing + " " + nu);
+      expect_stiffness_of_forces<3>({"/specimen/size=[4, 40, 4]", pure,
+                                     "/discrete_zone/packing=\"" + packing + "\"", bent,
+                                     "/material/poissons_ratio=" + nu});
+    }
 }
 
 // Newton's method with the stiffness of the present place: errors are squared.
