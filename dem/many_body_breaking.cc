@@ -252,11 +252,10 @@ void ManyBodyForce<dim>::break_bonds(Particles &p, const std::vector<BondId> &bo
     const double of_opening = softened ? face->work : 0;
     const double energy_before = local_energy(b, p), energy = remove_bond(id, b, p);
     Bond<dim> touching = strains_.stretched(b);
-    if (softened) { // as it is now: after a slide that is not where it was bonded
-      const double now = centre_distance(b, p);
-      for (Bond<dim> *const of : {&b, &touching})
-        of->distance = std::min(of->distance, now);
-    }
+    // A face that does not press leaves a contact that does not: after a slide, or a turn about the
+    // last small face between two, centres may be nearer than where they were bonded.
+    if (pressing.isZero(0))
+      touching.distance = std::min(touching.distance, centre_distance(b, p));
     broken_.add(b, p, time_,
                 energy_before - energy - contacts_.act_broken(touching, pressing, p, dt()),
                 of_opening);

@@ -182,15 +182,12 @@ auto InelasticStrains<dim>::moment(const Bond<dim> &b, int i) -> Matrix
 }
 
 template <int dim>
-std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volume) const
+auto InelasticStrains<dim>::cell_of(int i, double volume) const -> MeasuredCell
 {
   using Cell = OpenCell<dim>;
   const auto &bonds = body_->bonds();
   const auto other = other_moment_.find(i);
   const bool has_others = other != other_moment_.end();
-  if (!has_others && bonds.n_directions() > 0 &&
-      bonds.mask()[i] == (std::uint32_t(1) << 2 * bonds.n_directions()) - 1)
-    return std::nullopt;
   Matrix of_bonds = Matrix::Zero();
   if (has_others)
     of_bonds = other->second;
@@ -209,29 +206,38 @@ std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volu
       }
   });
   constexpr double round_off = 1e-9;
-  if (is_closed && (rows[0] - Matrix::Identity()).norm() < round_off)
-    return std::nullopt;
-  Cell cell;
-  cell.number[Cell::volume] = volume;
+  MeasuredCell measured{{}, is_closed && (rows[0] - Matrix::Identity()).norm() < round_off};
+  measured.cell.number[Cell::volume] = volume;
   for (int row = 0; row < dim; ++row)
     for (int a = 0; a < dim; ++a)
       for (int b = a; b < dim; ++b)
-        cell.number[Cell::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, b)] =
+        measured.cell.number[Cell::moment + row * n_in_plane<dim> + in_plane_place<dim>(a, b)] =
             rows[row](a, b);
-  return cell;
+  return measured;
 }
 
 template <int dim>
+std::optional<OpenCell<dim>> InelasticStrains<dim>::find_cell(int i, double volume) const
+{
+  const auto &bonds = body_->bonds();
+  if (other_moment_.count(i) == 0 && bonds.n_directions() > 0 &&
+      bonds.mask()[i] == (std::uint32_t(1) << 2 * bonds.n_directions()) - 1)
+    return std::nullopt;
+  const MeasuredCell measured = cell_of(i, volume);
+  return measured.is_whole ? std::nullopt : std::optional(measured.cell);
+}
+
+// However small the face that it lost was.
+template <int dim>
 void InelasticStrains<dim>::set_cell(int i, double volume)
 {
-  const auto cell = find_cell(i, volume);
-  core::require(cell.has_value(), "a cell that lost a face is open");
+  const OpenCell<dim> cell = cell_of(i, volume).cell;
   if (open_[i] < 0) {
     open_[i] = int(cells_.size());
     cells_.emplace_back();
   }
   // What this evaluation has found of its strain stays.
-  std::copy(cell->number + OpenCell<dim>::volume, cell->number + OpenCell<dim>::size,
+  std::copy(cell.number + OpenCell<dim>::volume, cell.number + OpenCell<dim>::size,
             cells_[open_[i]].number + OpenCell<dim>::volume);
 }
 

@@ -195,7 +195,14 @@ private:
   int law_number(int i) const { return law_of_.empty() ? 0 : law_of_[i]; }
   template <typename Visit>
   void for_each_wall_of(int i, Visit &&visit) const;
-  /// Of the particle, V M of its bonds and walls; null: a whole cell.
+  /// V M of the bonds and walls of a particle; whole: its bonds leave no gap.
+  struct MeasuredCell
+  {
+    OpenCell<dim> cell;
+    bool is_whole;
+  };
+  MeasuredCell cell_of(int i, double volume) const;
+  /// The same; null: a whole cell.
   std::optional<OpenCell<dim>> find_cell(int i, double volume) const;
   void set_cell(int i, double volume);
   /// Whether the faces of a particle hold it so that flow gives way to the stress, eq. (D22b).
