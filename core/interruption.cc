@@ -77,10 +77,14 @@ void Interruption::listen()
 void Interruption::take(int signal)
 {
   const std::lock_guard lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
   if (left_to_caller_ && signal_ == 0) {
+    signalled_at_ = now;
     signal_ = signal;
     return;
   }
+  if (signal_ != 0 && now - signalled_at_ < one_wish)
+    return;
   if (last_words_)
     try {
       last_words_(signal);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <mutex>
@@ -12,8 +13,9 @@ namespace ligament::core
 {
 /// While it lives, the signals end the process in good order: either `last_words` are said and the
 /// process exits with 128 + signal, or, once the caller looks for it, signal() is no longer 0 and
-/// the caller ends by itself; a second signal then does not wait for the caller. Signals that are
-/// ignored (nohup) stay ignored. To be made before any other thread: they inherit what is blocked.
+/// the caller ends by itself; a second signal then does not wait for the caller, unless it follows
+/// the first one so soon that both are one wish. Signals that are ignored (nohup) stay ignored. To
+/// be made before any other thread: they inherit what is blocked.
 class Interruption
 {
 public:
@@ -42,6 +44,10 @@ public:
 
   /// "SIGINT", ...
   static const char *name(int signal);
+  /// GNU `timeout` signals a process and then its group; a terminal and mpirun may both pass one
+  /// on.
+  static constexpr std::chrono::seconds one_wish{1};
+
   /// What a shell shows for a program that a signal ended.
   static int exit_code(int signal) { return 128 + signal; }
 
@@ -51,6 +57,7 @@ private:
 
   std::atomic<int> signal_{0}, heard_of_{0};
   std::atomic<bool> left_to_caller_{false};
+  std::chrono::steady_clock::time_point signalled_at_; // of the first that was left to the caller
   std::mutex mutex_;
   std::function<void(int)> last_words_;
   int signals_ = -1, end_ = -1; // descriptors

@@ -1,6 +1,7 @@
 #include "src/launcher/ranks_start.h"
 
 #include "core/check.h"
+#include "core/interruption.h"
 #include "core/tell.h"
 #include "src/launcher/program.h"
 #include "src/launcher/solver_start.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -78,13 +80,18 @@ sigset_t awaited_signals()
 /// Waits for the child's end, and hands on what asks for it; returns the last signal, 0: none.
 int wait_for(pid_t child, const sigset_t &signals, int &status)
 {
+  using Clock = std::chrono::steady_clock;
   int asked_by = 0;
+  Clock::time_point asked_at;
   while (::waitpid(child, &status, WNOHANG) == 0) {
     const int signal = ::sigwaitinfo(&signals, nullptr);
     if (signal <= 0 || signal == SIGCHLD)
       continue;
+    if (asked_by != 0 && Clock::now() - asked_at < core::Interruption::one_wish)
+      continue;
     ::kill(child, asked_by == 0 ? SIGUSR1 : SIGTERM);
     asked_by = signal;
+    asked_at = Clock::now();
   }
   return asked_by;
 }
@@ -145,8 +152,8 @@ int run_on_ranks(const CommandLine &line, int argc, char *const *argv)
                               "openmpi-bin), or leave -n out",
                               std::strerror(error)));
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  if (asked_by != 0)
-    return code > 128 ? 128 + asked_by : code;
+  if (asked_by != 0) // mpirun that was told twice ends with a code of its own
+    return code > 128 || !is_told(code) ? 128 + asked_by : code;
   if (is_told(code))
     return code;
   core::require<core::EnvironmentError>(

@@ -143,11 +143,11 @@ std::optional<Stop> Recorder<dim>::observe(const CoupledBody<dim> &body,
   if (broken_time_ && scene_.time.stop_when == StopWhen::specimen_broken)
     return Stop{false, fmt::format("specimen broken at {:.4g} s", *broken_time_)};
 
-  if (rows_are_sparse(step.dt * ratio) && step.step % (ratio * load_interval) == 0 &&
+  if (rows_are_apart(load_interval, step.dt * ratio) && step.step % (ratio * load_interval) == 0 &&
       !in_static_phase_ && !curve_.has_ended())
     curve_.look(step.time, machine_.read(body, step.time), n_broken(body));
-  const bool is_between_rows = rows_are_sparse(step.dt * ratio) && !in_static_phase_ &&
-                               step.step % (ratio * break_interval) == 0;
+  const bool is_between_rows = rows_are_apart(break_interval, step.dt * ratio) &&
+                               !in_static_phase_ && step.step % (ratio * break_interval) == 0;
   const bool history = in_static_phase_ || is_row_due(step.time) || breaks_between_rows(body, step);
   const bool fields = step.time >= next_fields_;
   const bool progress = step.step / ratio % 20 == 0 && body.ranks.any(progress_.is_due());
@@ -199,9 +199,9 @@ bool Recorder<dim>::is_row_due(double time) const
 }
 
 template <int dim>
-bool Recorder<dim>::rows_are_sparse(double far_step) const
+bool Recorder<dim>::rows_are_apart(long far_steps, double far_step) const
 {
-  return history_interval_ > break_interval * far_step;
+  return history_interval_ > double(far_steps) * far_step;
 }
 
 template <int dim>
@@ -210,7 +210,7 @@ bool Recorder<dim>::breaks_between_rows(const CoupledBody<dim> &body,
 {
   const int ratio = body.coupler->step_ratio();
   return scene_.output.history_interval == 0 && step.step % (ratio * break_interval) == 0 &&
-         rows_are_sparse(ratio * step.dt) && n_broken(body) > broken_in_rows_;
+         rows_are_apart(break_interval, ratio * step.dt) && n_broken(body) > broken_in_rows_;
 }
 
 template <int dim>

@@ -110,7 +110,8 @@ private:
   EnergyLedger record_history(const CoupledBody<dim> &body, const coupling::StepTime &step,
                               double damping, bool is_last = false);
   bool is_row_due(double time) const;
-  bool rows_are_sparse(double far_step) const; // s
+  /// By more than so many steps of the far field, of this length in s.
+  bool rows_are_apart(long far_steps, double far_step) const;
   /// Whether a row of its own is to tell of faces that broke, unless the scene says when rows are.
   bool breaks_between_rows(const CoupledBody<dim> &body, const coupling::StepTime &step) const;
   bool keeps_copies(const CoupledBody<dim> &body) const;

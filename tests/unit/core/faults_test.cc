@@ -113,11 +113,28 @@ TEST(Interruption, ASecondSignalDoesNotWait)
               kill(getpid(), SIGTERM);
               for (int k = 0; k < 1000 && interruption.signal() == 0; ++k)
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
+              std::this_thread::sleep_for(1.1 * Interruption::one_wish);
               kill(getpid(), SIGTERM);
               sleep(10);
               return 1;
             }),
             128 + SIGTERM);
+}
+
+// GNU `timeout` signals its child and then the group that it is in.
+TEST(Interruption, ASecondSignalAtOnceIsTheSameWish)
+{
+  EXPECT_EQ(in_a_process([] {
+              std::signal(SIGTERM, SIG_DFL);
+              Interruption interruption;
+              interruption.leave_to_caller();
+              for (int k = 0; k < 3; ++k) {
+                kill(getpid(), SIGTERM);
+                std::this_thread::sleep_for(std::chrono::milliseconds(30));
+              }
+              return interruption.signal() == SIGTERM ? 7 : 1;
+            }),
+            7);
 }
 
 TEST(Interruption, IgnoredSignalsStayIgnored)
