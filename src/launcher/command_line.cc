@@ -24,9 +24,9 @@ CLI::Validator above_zero()
 {
   return {[](const std::string &text) {
             double value = 0;
-            return CLI::detail::lexical_cast(text, value) && value > 0
-                       ? std::string()
-                       : fmt::format("{} is not above 0", text);
+            if (!CLI::detail::lexical_cast(text, value))
+              return fmt::format("\"{}\" is no number; give one without a unit", text);
+            return value > 0 ? std::string() : fmt::format("{} is not above 0", text);
           },
           ""};
 }

@@ -164,7 +164,8 @@ bool has_test_load(const Scene &scene)
                        [](const auto &v) { return v.value_or(0) != 0; });
   };
   const auto is_given = [&](const LoadParameters &load) {
-    return load.pressure || is_any(load.velocity) || is_any(load.displacement) ||
+    const bool presses_a_side = load.pressure && load.boundary < 2 * scene.dimension;
+    return presses_a_side || is_any(load.velocity) || is_any(load.displacement) ||
            is_any(load.traction) || is_any(load.force) || is_any(load.strain);
   };
   return std::any_of(scene.loads.begin(), scene.loads.end(), is_given) ||

@@ -81,9 +81,8 @@ private:
                            servo_.stress ? "a \"stress\"" : "no \"value\""),
                "what is wanted of the gauge is \"value\", in the SI unit of its column",
                "give \"value\" alone");
-    const auto gauge = std::find_if(scene_.gauges.begin(), scene_.gauges.end(),
-                                    [&](const auto &g) { return names_gauge(servo_, g); });
-    if (gauge == scene_.gauges.end())
+    const GaugeParameters *const gauge = followed_gauge(scene_, servo_);
+    if (!gauge)
       return f_.error(
           key_ + "/gauge",
           fmt::format("\"gauge\" in {} is \"{}\", which no gauge has", key_, servo_.gauge),

@@ -20,11 +20,15 @@ double servo_response(const Scene &scene, const ServoParameters &servo)
   return transits * size[0] / c_s * size[0] / size[1];
 }
 
-bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge)
+const GaugeParameters *followed_gauge(const Scene &scene, const ServoParameters &servo)
 {
-  return !gauge.name.empty() &&
-         (servo.gauge == gauge.name ||
-          servo.gauge.compare(0, gauge.name.size() + 1, gauge.name + "_") == 0);
+  const GaugeParameters *found = nullptr;
+  for (const GaugeParameters &gauge : scene.gauges) {
+    const bool is_named = servo.gauge == gauge.name || servo.gauge.rfind(gauge.name + "_", 0) == 0;
+    if (!gauge.name.empty() && is_named && (!found || gauge.name.size() > found->name.size()))
+      found = &gauge;
+  }
+  return found;
 }
 
 double servo_stiffness(const Scene &scene, const LoadParameters &load, int component)

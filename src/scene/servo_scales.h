@@ -11,6 +11,7 @@ double servo_response(const Scene &scene, const ServoParameters &servo);
 /// is a bar between this side and the other end, pulled or sheared: a modulus over its length,
 /// Pa/m.
 double servo_stiffness(const Scene &scene, const LoadParameters &load, int component);
-/// The column that the servo follows is one of this gauge.
-bool names_gauge(const ServoParameters &servo, const GaugeParameters &gauge);
+/// Whose column the servo follows: of the gauges with whose name that begins the one with the
+/// longest; null: there is none.
+const GaugeParameters *followed_gauge(const Scene &scene, const ServoParameters &servo);
 } // namespace ligament::program

@@ -18,14 +18,12 @@ constexpr double much = 0.05;
 Scene with_followed_gauges(const Scene &scene)
 {
   Scene followed = scene;
-  const auto is_followed = [&](const GaugeParameters &gauge) {
-    return std::any_of(scene.loads.begin(), scene.loads.end(), [&](const LoadParameters &load) {
-      return load.servo && names_gauge(*load.servo, gauge);
-    });
-  };
-  followed.gauges.erase(std::remove_if(followed.gauges.begin(), followed.gauges.end(),
-                                       [&](const auto &gauge) { return !is_followed(gauge); }),
-                        followed.gauges.end());
+  followed.gauges.clear();
+  for (const GaugeParameters &gauge : scene.gauges)
+    if (std::any_of(scene.loads.begin(), scene.loads.end(), [&](const LoadParameters &load) {
+          return load.servo && followed_gauge(scene, *load.servo) == &gauge;
+        }))
+      followed.gauges.push_back(gauge);
   return followed;
 }
 } // namespace

@@ -180,12 +180,14 @@ std::optional<Stop> Simulation<dim>::skip_steps()
 }
 
 // Impulses of loads that are there at once, which the mesh takes for m steps, have (E5) and swing V
-// before anything has moved: what stays as it began is no gain. Where equilibria come first nothing
-// is out of balance; with heat all that the body begins with is booked.
+// before anything has moved, and those that meet a body in motion have F v dt/2 in its kinetic
+// energy, which is that of half a step before and after: what stays as it began is no gain. Where
+// equilibria come first nothing is out of balance; with heat all that the body begins with is
+// booked.
 template <int dim>
-void Simulation<dim>::book_first_impulses()
+void Simulation<dim>::book_start()
 {
-  if (body_.coupler->step_ratio() == 1 || scene_.is_warm() || phases_.are_due(body_, clock_))
+  if (scene_.is_warm() || phases_.are_due(body_, clock_))
     return;
   const auto e = body_.coupler->energy(body_.bodies(), clock_.now);
   body_.started = e.kinetic_discrete + e.kinetic_far + e.impulses;
@@ -224,7 +226,7 @@ std::optional<Stop> Simulation<dim>::loop(const EndRequest &request)
     compute_forces();
   const int ratio = body_.coupler->step_ratio();
   if (clock_.now.step == 0) {
-    book_first_impulses();
+    book_start();
     let_rest();
   }
   while (!clock_.is_at_end()) {

@@ -77,7 +77,7 @@ private:
   std::optional<Stop> look(bool is_equilibrium = false);
   /// The same of all steps that an equilibrium stands for; at its end in the last of them.
   std::optional<Stop> skip_steps();
-  void book_first_impulses();
+  void book_start();
   /// What comes between forces and kick of a step in which the far field acts: false where that
   /// ends the run.
   bool look_around(bool is_calm);

@@ -88,6 +88,21 @@ TEST(Runs, ThePeakIsThatOfTheRunNotOfItsRows)
     EXPECT_NEAR(peak(interval) / of_each_step, 1, 0.005) << interval;
 }
 
+// What moves when a load is there at once has F v dt/2 in the kinetic energy of its first step.
+TEST(Runs, LoadsThatMeetABodyInMotionAreInTheBalance)
+{
+  for (const std::string ratio : {"1", "3"})
+    for (const auto &kind : body_kinds) {
+      SCOPED_TRACE(kind.name + (" " + ratio));
+      const RunRecord record =
+          run("moving", kind.overrides + std::vector<std::string>{
+                                             R"(/initial_motion=[{"velocity": [0, 1e-5]}])",
+                                             R"(/body_force={"acceleration": [0, -1e-5]})",
+                                             "/coupling/step_ratio=" + ratio, "/time/duration=20"});
+      EXPECT_LT(record.energy_residual.value_or(1), ratio == "1" ? 1e-9 : 1e-6);
+    }
+}
+
 // No side bears a load that another one answers: whichever way it hangs, nothing is said of a path.
 TEST(Runs, WhatItsWeightBreaksHasNoLoadPath)
 {
