@@ -319,6 +319,21 @@ TEST(ReadScene, KeysOfLargerCellsWithoutThemAreAWarning)
   EXPECT_EQ(result.warnings.size(), 2u);
 }
 
+// Columns of one gauge may begin with the whole name of another.
+TEST(ReadScene, ServosFollowTheGaugeWithTheLongestName)
+{
+  const Scene scene = good(
+      plate,
+      {along_rows,
+       R"(/gauges=[{"name": "ct", "kind": "crack_tip", "points": [[0.008, 0]], "direction": [1, 0]},
+                   {"name": "ct_x", "kind": "strain", "points": [[0, 0.02]]}])",
+       R"(/loads=[{"boundary": "bottom", "displacement": [0, 0]},
+                  {"boundary": "top", "velocity": [null, 1],
+                   "servo": {"gauge": "ct_x_yy", "value": 1e-4, "ramp": 1e-3, "gain": 6}}])",
+       R"(/time={"duration": 2e-3})"});
+  EXPECT_EQ(scene.gauges.size(), 2u);
+}
+
 TEST(ReadScene, FileThatIsNotThere)
 {
   const ReadResult result = read_scene("no_such_scene.json");
