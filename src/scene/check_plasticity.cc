@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ligament::program
 {
@@ -102,6 +103,32 @@ void check_law(const PlasticityParameters &p, const std::string &section, Findin
               "softening without a length depends on the spacing", "let it be level or rise");
   }
 }
+/// Whether sides cut cells of a lattice otherwise than through their middles or along their faces.
+bool is_cut_aslant(const Scene &scene)
+{
+  const DiscreteZone &zone = scene.zone;
+  if (!zone.packing || zone.is_irregular())
+    return false;
+  if (!scene.specimen.is_plain() || !scene.specimen.holes.empty() ||
+      zone.packing == PackingKind::fcc)
+    return true;
+  const double symmetry = zone.packing == PackingKind::hexagonal ? M_PI / 6 : M_PI / 2;
+  constexpr double some = 0.01; // rad
+  return std::any_of(zone.orientation.begin(), zone.orientation.end(), [&](double angle) {
+    return std::abs(std::remainder(angle, symmetry)) > some;
+  });
+}
+
+/// What flows has straight levers (theory.md eq. (D22c)), by which nothing may be judged that
+/// breaks.
+void check_cut_cells(const Scene &scene, const std::string &section, Findings &f)
+{
+  if (may_break(scene) && is_cut_aslant(scene))
+    f.warning(section, "a lattice that flows and breaks, and that sides cut aslant",
+              "cut cells stay elastic or gain energy by flowing: loads of bodies of 16 spacings "
+              "without hardening were wrong by up to four times",
+              "take the packing \"random\", rows along the sides of a box, or no criterion");
+}
 } // namespace
 
 void check_plasticity(const Scene &scene, Findings &f)
@@ -120,6 +147,8 @@ void check_plasticity(const Scene &scene, Findings &f)
     }
   if (first.empty())
     return;
+  if (f.sound({"/discrete_zone", "/specimen", "/material", "/inclusions"}))
+    check_cut_cells(scene, first, f);
   if (scene.zone.extent == DiscreteZone::Extent::none && f.sound({"/discrete_zone"}))
     f.warning(first, "\"plasticity\" is not used",
               "without a discrete zone all is a mesh, which stays elastic",

@@ -230,6 +230,16 @@ std::optional<std::string> find_broken_balance(const EnergyLedger &ledger, doubl
   if (!std::isfinite(gain))
     return "the energies are no longer finite: the run is unstable; lower /time/step_fraction or "
            "the load's rate";
+  // Flow takes energy from what is strained, which has none to give below zero.
+  constexpr double largest_debt = 0.1; // loaded faces may have a little less than none
+  const double debt = -ledger.body.potential_discrete;
+  if (ledger.force.plastic > 0 && debt > least_energy(body) &&
+      debt > largest_debt * std::max(most_work, ledger.kinetic()))
+    return fmt::format("the particles' elastic energy is {} below zero: cells gain energy by "
+                       "flowing, as in packings that are not relaxed, and at aslant sides of "
+                       "lattices that break; give \"relaxation_sweeps\", or the packing "
+                       "\"random\", or hardening of a fifth of the shear modulus",
+                       quantity(debt, "J"));
   const double energy = ledger.kinetic() + std::abs(ledger.potential());
   if (gain <= largest_gain * energy || gain <= most_work || gain <= least_energy(body))
     return {};

@@ -3,7 +3,9 @@
 #include "dem/many_body_force.h"
 #include "dem/principal_tension.h"
 #include "dem/toughness_calibration.h"
+#include "packings/straight_levers.h"
 #include "src/scene/atoms.h"
+#include "src/scene/check_scene.h"
 #include "src/scene/crack_axes.h"
 #include "src/scene/fracture_energy.h"
 #include "src/simulation/make_packing.h"
@@ -295,6 +297,10 @@ make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
   for (const Inclusion &inclusion : scene.inclusions)
     materials.push_back(material_of(inclusion.material, scene));
   const dem::Materials of_particles(std::move(materials), packing.material);
+  // What breaks goes by stresses at the surface, which straight levers falsify.
+  const bool has_own_strains = scene.flows() || scene.is_viscous();
+  if (has_own_strains && !may_break(scene) && !packing.directions.empty())
+    packings::straighten_levers(packing);
   return std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles, loads,
                                                    fracture_of<dim>(scene, figures, log));
 }

@@ -55,9 +55,11 @@ TEST(Bar, TheTestMachineReadsItsStress)
 // a cubic lattice, four of them.
 TEST(Bar, LayersThatCannotFlowAreDoubted)
 {
-  const auto doubts = [](const std::string &depth, const std::string &packing) {
+  const auto doubts = [](const std::string &depth, const std::string &packing, bool breaks = true) {
     const Scene scene = static_scene<3>(
         {"/far_field=none", "/specimen/size=[4, 6, " + depth + "]",
+         breaks ? R"(/material/fracture={"criterion": "maximum_tension", "strength": 1})"
+                : R"(/material/fracture={"criterion": "none"})",
          R"(/discrete_zone={"extent": "all", "spacing": 1, "packing": ")" + packing + "\"}",
          R"(/material/plasticity={"yield_stress": 1e-3, "hardening": 0.1})"});
     core::Log log;
@@ -78,6 +80,8 @@ TEST(Bar, LayersThatCannotFlowAreDoubted)
     const auto none = doubts(depth, packing);
     EXPECT_TRUE(none.empty()) << none[0];
   }
+  const auto none = doubts("5", "fcc", false); // with straight levers they flow
+  EXPECT_TRUE(none.empty()) << none[0];
 }
 
 // Six components that are all different: xx, yy, zz, xy, yz, xz of the files are those of Hooke's
