@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -107,17 +108,31 @@ bool is_told(int code)
          code == 128 + SIGUSR1 || code == 128 + SIGTERM;
 }
 
+bool has_checkpoint(const std::string &folder)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::directory_iterator entries(RunFolder{folder}.checkpoints(), error);
+  return !error && std::any_of(fs::begin(entries), fs::end(entries), [](const auto &entry) {
+    return entry.path().filename().string().rfind("checkpoint_", 0) == 0;
+  });
+}
+
 /// mpirun, which is quiet, keeps most of what it knows to itself.
 std::string why_killed(const std::string &folder, int signal, bool is_mpirun)
 {
-  return fmt::format(
-      "{} was ended by signal {} ({}), and the ranks with it{}; what was computed up to "
-      "the newest checkpoint is on the disk: `ligament resume {}` goes on from it",
-      is_mpirun ? "mpirun" : "a rank", signal, ::strsignal(signal),
-      signal == SIGKILL ? ": the system does that where memory is short, and "
-                          "`ligament check -n` predicts what each rank needs"
-                        : "",
-      folder);
+  const std::string rest =
+      has_checkpoint(folder)
+          ? fmt::format("what was computed up to the newest checkpoint is on the disk: `ligament "
+                        "resume {}` goes on from it",
+                        folder)
+          : "there was no checkpoint yet: run the scene again";
+  return fmt::format("{} was ended by signal {} ({}), and the ranks with it{}; {}",
+                     is_mpirun ? "mpirun" : "a rank", signal, ::strsignal(signal),
+                     signal == SIGKILL ? ": the system does that where memory is short, and "
+                                         "`ligament check -n` predicts what each rank needs"
+                                       : "",
+                     rest);
 }
 } // namespace
 

@@ -103,7 +103,18 @@ void check_law(const PlasticityParameters &p, const std::string &section, Findin
               "softening without a length depends on the spacing", "let it be level or rise");
   }
 }
-/// Whether sides cut cells of a lattice otherwise than through their middles or along their faces.
+/// What flows has straight levers (theory.md eq. (D22c)), by which nothing may be judged that
+/// breaks.
+void check_cut_cells(const Scene &scene, const std::string &section, Findings &f)
+{
+  if (may_break(scene) && is_cut_aslant(scene))
+    f.warning(section, "a lattice that flows and breaks, and that sides cut aslant",
+              "cut cells stay elastic or gain energy by flowing: loads of bodies of 16 spacings "
+              "without hardening were wrong by up to four times",
+              "take the packing \"random\", rows along the sides of a box, or no criterion");
+}
+} // namespace
+
 bool is_cut_aslant(const Scene &scene)
 {
   const DiscreteZone &zone = scene.zone;
@@ -118,18 +129,6 @@ bool is_cut_aslant(const Scene &scene)
     return std::abs(std::remainder(angle, symmetry)) > some;
   });
 }
-
-/// What flows has straight levers (theory.md eq. (D22c)), by which nothing may be judged that
-/// breaks.
-void check_cut_cells(const Scene &scene, const std::string &section, Findings &f)
-{
-  if (may_break(scene) && is_cut_aslant(scene))
-    f.warning(section, "a lattice that flows and breaks, and that sides cut aslant",
-              "cut cells stay elastic or gain energy by flowing: loads of bodies of 16 spacings "
-              "without hardening were wrong by up to four times",
-              "take the packing \"random\", rows along the sides of a box, or no criterion");
-}
-} // namespace
 
 void check_plasticity(const Scene &scene, Findings &f)
 {

@@ -65,6 +65,8 @@ bool joins_other_constants(const Scene &scene);
 void check_inclusions(const Scene &scene, const Box &specimen, const Layout *layout,
                       Findings &findings);
 
+/// Whether sides cut cells of a lattice otherwise than through their middles or along their faces.
+bool is_cut_aslant(const Scene &scene);
 /// Laws of flow, and what they cannot be used with.
 void check_plasticity(const Scene &scene, Findings &f);
 /// Viscosity, and what it cannot be used with.

@@ -81,6 +81,25 @@ void compare_with_far_field(const Scene &scene, Findings &f)
               "let the zone fill the specimen, or take what comes of it for a body of two "
               "materials");
 }
+/// Cut cells of a lattice may gain energy by flowing (theory.md eq. (D22c)), unless enough of their
+/// stiffness stays.
+void check_cut_cells(const Scene &scene, const MaterialParameters &m, const std::string &section,
+                     Findings &f)
+{
+  double relaxing = 0;
+  for (const BranchParameters &b : m.viscosity->branches)
+    relaxing += b.share;
+  constexpr double most = 0.85;
+  const bool has_straight_levers = scene.flows() && !may_break(scene);
+  if (relaxing > most && !has_straight_levers && is_cut_aslant(scene))
+    f.warning(
+        section + "/branches",
+        fmt::format("{:.3g} of the stiffness in {} relaxes on a lattice that sides cut aslant",
+                    relaxing, section),
+        "cut cells may gain energy by it: loads fall below zero",
+        "take the packing \"random\", rows along the sides of a box, or shares that add up to "
+        "less");
+}
 } // namespace
 
 void check_viscosity(const Scene &scene, Findings &f)
@@ -94,6 +113,8 @@ void check_viscosity(const Scene &scene, Findings &f)
     if (material->viscosity && f.sound({key + "/viscosity"})) {
       check_numbers(*material->viscosity, key + "/viscosity", f);
       check_times(scene, *material, key, f);
+      if (f.sound({"/discrete_zone", "/specimen", "/material", "/inclusions"}))
+        check_cut_cells(scene, *material, key + "/viscosity", f);
       if (first.empty())
         first = key + "/viscosity";
     }

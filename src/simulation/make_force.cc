@@ -297,9 +297,9 @@ make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
   for (const Inclusion &inclusion : scene.inclusions)
     materials.push_back(material_of(inclusion.material, scene));
   const dem::Materials of_particles(std::move(materials), packing.material);
-  // What breaks goes by stresses at the surface, which straight levers falsify.
-  const bool has_own_strains = scene.flows() || scene.is_viscous();
-  if (has_own_strains && !may_break(scene) && !packing.directions.empty())
+  // What breaks goes by stresses at the surface, which straight levers falsify; what is viscous
+  // alone has a stiffness left that bounds it.
+  if (scene.flows() && !may_break(scene) && !packing.directions.empty())
     packings::straighten_levers(packing);
   return std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles, loads,
                                                    fracture_of<dim>(scene, figures, log));
