@@ -57,11 +57,29 @@ void share_losses(Checkpoint &checkpoint, const core::Ranks &ranks)
                                      name));
 }
 
+/// That of the checkpoint with the duration and the output that the run was last told: a prolonged
+/// one may have been killed before its next checkpoint.
+nlohmann::ordered_json wanted_scene(const RunFolder &folder, const CheckpointManifest &manifest)
+{
+  nlohmann::ordered_json wanted = manifest.scene;
+  try {
+    const auto told = nlohmann::ordered_json::parse(core::read_file(folder.resolved_scene()));
+    const nlohmann::ordered_json::json_pointer duration("/time/duration");
+    wanted.at(duration) =
+        std::max(wanted.at(duration).get<double>(), told.at(duration).get<double>());
+    wanted.at("output") = told.at("output");
+  } catch (const core::InputError &) { // the disk lost it
+  } catch (const core::EnvironmentError &) {
+  } catch (const nlohmann::ordered_json::exception &) {
+  }
+  return wanted;
+}
+
 /// The run's own scene unless another one is named. Particles that the run read from a file, or
 /// packed itself, lie in its folder.
-ReadResult scene_of(const CommandLine &line, const RunFolder &folder, const Checkpoint &checkpoint)
+ReadResult scene_of(const CommandLine &line, const RunFolder &folder, const Checkpoint &checkpoint,
+                    const nlohmann::ordered_json &was)
 {
-  const nlohmann::ordered_json &was = checkpoint.manifest.scene;
   std::vector<std::string> overrides = line.overrides;
   // That of a warm crystal takes a while to find, and is no key of the scene.
   const std::string lattice = "thermal_lattice", key = "/atoms/lattice_parameter";
@@ -204,7 +222,8 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   share_losses(checkpoint, ranks);
   options.from = &checkpoint;
   const CheckpointManifest &manifest = checkpoint.manifest;
-  ReadResult input = scene_of(line, folder, checkpoint);
+  const nlohmann::ordered_json wanted = wanted_scene(folder, manifest);
+  ReadResult input = scene_of(line, folder, checkpoint, wanted);
   const std::string name = line.scene.empty() ? folder.resolved_scene() : line.scene;
   require_one_mind(bool(input.scene), ranks);
   if (!input.scene)
@@ -215,7 +234,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
   nlohmann::ordered_json was = manifest.scene;
   keep_smoothing(was, input);
   refuse_another_scene(was, input.resolved);
-  refuse_what_has_ended(folder, was, input.resolved);
+  refuse_what_has_ended(folder, wanted, input.resolved);
   const std::vector<std::string> warnings = what_is_new(manifest);
   ranks.any(false); // all have read what the first one now changes
   if (!ranks.is_first())

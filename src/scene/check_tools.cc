@@ -140,6 +140,11 @@ private:
       f_.error(key_ + "/machine_stiffness",
                fmt::format("\"machine_stiffness\" in {}, which has no \"mass\"", key_),
                "a tool at a spring moves by its mass", "give the \"mass\" of the tool");
+    if (t_.mass && !is_zero(scene_.body_force.acceleration))
+      f_.warning(key_ + "/mass",
+                 fmt::format("\"body_force\" does not act on the \"mass\" in {}", key_),
+                 "it acts on the body; the tool floats until it is pushed",
+                 "give it an \"initial_velocity\", that of its fall");
     if (!t_.mass && !is_zero(t_.initial_velocity))
       f_.error(key_ + "/initial_velocity",
                fmt::format("\"initial_velocity\" in {}, which has no \"mass\"", key_),

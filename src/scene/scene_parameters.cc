@@ -411,7 +411,7 @@ void declare_scene(Section &s, Scene &scene, bool may_be_atoms)
   s.list("loads", scene.loads, "what acts on the sides; sides without load are free", declare_load);
   s.list("tools", scene.tools, "rigid bodies that touch the specimen: supports, punches, projectiles", declare_tool);
   s.list("gauges", scene.gauges, "what is measured besides load and elongation: columns of history.csv, curves of the report", declare_gauge);
-  declare_body_force(s.section("body_force", "acts on every mass, of both models"), scene.body_force);
+  declare_body_force(s.section("body_force", "acts on every mass of the body, of both models; not on tools"), scene.body_force);
   s.list("initial_motion", scene.initial_motion, "motions of the body or parts of it at the beginning, which add up; the overlap begins with the motion of the mesh there", declare_initial_motion);
   declare_time(s.section("time", "how long"), scene.time);
   declare_output(s.section("output", "what is written, and how often"), scene.output);

@@ -299,6 +299,22 @@ TEST_F(Resume, ARunCanBeProlonged)
   expect_same("first", "whole");
 }
 
+// As a SIGKILL before the next checkpoint leaves it.
+TEST_F(Resume, AProlongedRunThatIsKilledKeepsItsNewEnd)
+{
+  ASSERT_EQ(run_ligament("run torn.json --set /time/duration=200 -o prolonged").code, 0);
+  const auto change = [](const std::string &file, const auto &edit) {
+    auto json = file_json(file);
+    edit(json);
+    std::ofstream(file) << json.dump(2);
+  };
+  change("prolonged/scene.resolved.json", [](auto &scene) { scene["time"]["duration"] = 400.; });
+  change("prolonged/run.json", [](auto &record) { record["status"] = "running"; });
+  const auto outcome = run_ligament("resume prolonged");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  expect_same("prolonged", "whole");
+}
+
 // The ball spins, the stamp does not.
 TEST_F(Resume, ToolsAreKeptAsTheyHaveTurned)
 {
