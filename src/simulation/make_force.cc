@@ -8,6 +8,7 @@
 #include "src/scene/check_scene.h"
 #include "src/scene/crack_axes.h"
 #include "src/scene/fracture_energy.h"
+#include "src/scene/geometry.h"
 #include "src/simulation/make_packing.h"
 #include "src/simulation/toughness_cache.h"
 
@@ -299,8 +300,12 @@ make_many_body_force(const Scene &scene, packings::Packing<dim> packing,
   const dem::Materials of_particles(std::move(materials), packing.material);
   // What breaks goes by stresses at the surface, which straight levers falsify; what is viscous
   // alone has a stiffness left that bounds it.
-  if (scene.flows() && !may_break(scene) && !packing.directions.empty())
-    packings::straighten_levers(packing);
+  if (scene.flows() && !may_break(scene) && !packing.directions.empty()) {
+    const auto zone = zone_shape<dim>(scene);
+    const double reach = reach_of_overlap(scene); // which stays elastic, and has a patch test
+    packings::straighten_levers(
+        packing, [&](const Vector<dim> &x) { return reach == 0 || zone.distance(x) > reach; });
+  }
   return std::make_unique<dem::ManyBodyForce<dim>>(std::move(packing), of_particles, loads,
                                                    fracture_of<dim>(scene, figures, log));
 }

@@ -99,6 +99,14 @@ packings::RandomParameters<dim> random_packing_of(const Scene &scene)
   return p;
 }
 
+double reach_of_overlap(const Scene &scene)
+{
+  const bool coupled = scene.far_field && scene.zone.extent == DiscreteZone::Extent::box;
+  return coupled
+             ? scene.coupling.overlap_cells * scene.far_field->cell_size + 2 * scene.zone.spacing
+             : 0;
+}
+
 double mean_cell_volume(const Scene &scene)
 {
   const double d = scene.zone.spacing, thickness = scene.specimen.thickness;
@@ -298,10 +306,7 @@ void set_materials(const Scene &scene, std::optional<packings::Seeds<dim>> &seed
   if (seeds)
     assign_materials<dim>(
         scene, seeds->size(), [&](int i) { return seeds->centre[i]; }, seeds->material);
-  const bool coupled = scene.far_field && scene.zone.extent == DiscreteZone::Extent::box;
-  const double keep_off =
-      coupled ? scene.coupling.overlap_cells * scene.far_field->cell_size + 2 * scene.zone.spacing
-              : 0;
+  const double keep_off = reach_of_overlap(scene);
   const auto zone = zone_shape<dim>(scene);
   std::vector<long> number(scene.inclusions.size() + 1, 0);
   for (int i = 0; i < packing.size(); ++i) {
@@ -313,7 +318,7 @@ void set_materials(const Scene &scene, std::optional<packings::Seeds<dim>> &seed
           fmt::format("/inclusions has {}", scene.inclusions.size()),
           "add inclusions, or give the particles another material");
     ++number[k];
-    if (k > 0 && coupled && zone.distance(centre(i)) < keep_off)
+    if (k > 0 && keep_off > 0 && zone.distance(centre(i)) < keep_off)
       throw core::InputError(fmt::format(
           "/inclusions/{}: a particle of it lies in the overlap, at x = {:.4g} m, y = {:.4g} m: "
           "the "

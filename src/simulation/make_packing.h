@@ -35,6 +35,10 @@ struct PartOfZone
   std::optional<packings::Packing<dim>> overlap;
 };
 
+/// How far from the zone's inner sides particles belong to an overlap or neighbour those that do,
+/// in m; 0: there is none.
+double reach_of_overlap(const Scene &scene);
+
 /// The part of it that a rank of several has, with so many rings of ghosts around what it steps.
 /// Shares go by the weights of blocks (particles::make_partition). Lattices and random packings are
 /// made by part; of a file each rank packs the whole and keeps its part.
