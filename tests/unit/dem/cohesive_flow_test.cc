@@ -2,6 +2,7 @@
 // scatter: gradient at frozen strains and openings, balance, work per area, numbering, turning,
 // states.
 #include "core/extremes.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 #include "tests/unit/dem/run.h"
@@ -189,33 +190,9 @@ TYPED_TEST(CohesiveFlow, ForceIsMinusTheGradientAtFrozenStrainsAndOpenings)
     ASSERT_EQ(between, contrast != 1);
     auto p = body.p;
     force.compute(p, 12); // of the same time: nothing opens further
-    double scale = 0;
-    for (int i = 0; i < p.size(); ++i)
-      keep_largest(scale, get(p.force, i).norm());
-    const auto derivative = [&](double h, auto &&change) {
-      double sum = 0;
-      for (const auto &[step, weight] :
-           {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-      {
-        auto q = p;
-        change(q, step * h);
-        sum += weight * force.potential_energy(q) / h;
-      }
-      return sum;
-    };
-    for (int i = 0; i < p.size(); i += 1 + p.size() / 12) {
-      for (int c = 0; c < dim; ++c)
-        EXPECT_NEAR(p.force[c][i],
-                    -derivative(1e-3 * packing.spacing,
-                                [&](auto &q, double s) { q.displacement[c][i] += s; }),
-                    1e-8 * scale);
-      for (int c = 0; c < n_spins<dim>; ++c)
-        EXPECT_NEAR(
-            p.torque[c][i],
-            -derivative(1e-3,
-                        [&](auto &q, double s) { turn_by<dim>(q, i, s * Spin<dim>::Unit(c)); }),
-            1e-8 * scale * packing.spacing);
-    }
+    expect_minus_slope<dim>(p, {1e-3 * packing.spacing, 1e-3}, 1e-8, packing.spacing,
+                            1 + p.size() / 12,
+                            [&](const auto &q) { return force.potential_energy(q); });
   });
 }
 
@@ -246,10 +223,7 @@ TYPED_TEST(CohesiveFlow, GoesOnFromItsStateToTheBitAndLooksChangeNothing)
       body.force->potential_energy(body.p);
       body.force->compute(body.p, step);
       body.force->save(twice, names, body.p);
-      const auto a = all_numbers(once), b = all_numbers(twice);
-      ASSERT_EQ(a.size(), b.size());
-      for (std::size_t k = 0; k < a.size(); ++k)
-        ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
+      expect_same_numbers(once, twice);
     }
   });
 }

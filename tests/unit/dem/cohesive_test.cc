@@ -3,6 +3,7 @@
 #include "dem/laws/cohesive.h"
 #include "tests/oracle/cohesive_beam.h"
 #include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
 
@@ -121,31 +122,8 @@ TYPED_TEST(Cohesive, ForceIsMinusTheGradientAtFrozenOpenings)
   auto p = body.p;
   const double time = 12;
   force.compute(p, time); // of the same time: nothing opens further
-  const double h = 1e-4;
-  const auto derivative = [&](auto &&change) {
-    double sum = 0;
-    for (const auto &[step, weight] :
-         {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-    {
-      auto q = p;
-      change(q, step * h);
-      sum += weight * force.potential_energy(q) / h;
-    }
-    return sum;
-  };
-  double scale = 0;
-  for (int i = 0; i < p.size(); ++i)
-    keep_largest(scale, get(p.force, i).norm());
-  for (int i = 0; i < p.size(); i += 2) {
-    for (int c = 0; c < dim; ++c)
-      EXPECT_NEAR(p.force[c][i], -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
-                  1e-8 * scale);
-    for (int c = 0; c < n_spins<dim>; ++c)
-      EXPECT_NEAR(p.torque[c][i], -derivative([&](auto &q, double s) {
-                    turn_by<dim>(q, i, s * Spin<dim>::Unit(c));
-                  }),
-                  1e-8 * scale);
-  }
+  expect_minus_slope<dim>(p, {1e-4, 1e-4}, 1e-8, 1, 2,
+                          [&](const auto &q) { return force.potential_energy(q); });
 }
 
 TYPED_TEST(Cohesive, GoesOnFromItsStateToTheBit)
@@ -183,10 +161,7 @@ TYPED_TEST(Cohesive, LookingTwiceChangesNothing)
     body.force->save(once, names, body.p);
     body.force->compute(body.p, step);
     body.force->save(twice, names, body.p);
-    const auto a = all_numbers(once), b = all_numbers(twice);
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t k = 0; k < a.size(); ++k)
-      ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
+    expect_same_numbers(once, twice);
   }
 }
 

@@ -2,6 +2,7 @@
 // fast a crack runs.
 #include "core/extremes.h"
 #include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
 
@@ -125,25 +126,8 @@ TYPED_TEST(Falling, ForceIsMinusTheGradientAtFrozenOpenings)
   ASSERT_GT(force.cohesive().all().size(), 2u);
   auto p = body.p;
   force.compute(p, 11);
-  const double h = 1e-4;
-  const auto derivative = [&](auto &&change) {
-    double sum = 0;
-    for (const auto &[step, weight] :
-         {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-    {
-      auto q = p;
-      change(q, step * h);
-      sum += weight * force.potential_energy(q) / h;
-    }
-    return sum;
-  };
-  double scale = 0;
-  for (int i = 0; i < p.size(); ++i)
-    keep_largest(scale, get(p.force, i).norm());
-  for (int i = 0; i < p.size(); i += 2)
-    for (int c = 0; c < dim; ++c)
-      EXPECT_NEAR(p.force[c][i], -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
-                  1e-8 * scale);
+  expect_minus_slope<dim>(p, {1e-4, 1e-4}, 1e-8, 1, 2,
+                          [&](const auto &q) { return force.potential_energy(q); });
 }
 
 TYPED_TEST(Falling, GoesOnFromItsStateToTheBitUnderAllCriteria)

@@ -1,7 +1,7 @@
 // The force is minus the gradient of the energy, walls and tractions included.
-#include "core/extremes.h"
 #include "packings/random_packing.h"
 #include "tests/unit/dem/body.h"
+#include "tests/unit/dem/force_slope.h"
 
 #include <gtest/gtest.h>
 
@@ -99,33 +99,8 @@ TYPED_TEST(Gradient, ForceAndTorqueAreMinusTheGradientOfTheEnergy)
         }
       return sum;
     };
-    // Fourth-order differences: error h^4 E''''' plus round-off 1e-16 E / h, E of order 1.
-    const double h = 1e-3;
-    const auto derivative = [&](auto &&change) {
-      double sum = 0;
-      for (const auto &[step, weight] :
-           {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-      {
-        auto q = p;
-        change(q, step * h);
-        sum += weight * total(q) / h;
-      }
-      return sum;
-    };
-    double scale = 0;
-    for (int i = 0; i < p.size(); ++i)
-      keep_largest(scale, get(p.force, i).norm());
-    for (int i = 0; i < p.size(); i += 3) {
-      for (int c = 0; c < dim; ++c)
-        EXPECT_NEAR(p.force[c][i],
-                    -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
-                    1e-9 * scale);
-      for (int c = 0; c < n_spins<dim>; ++c)
-        EXPECT_NEAR(p.torque[c][i], -derivative([&](auto &q, double s) {
-                      turn_by<dim>(q, i, s * Spin<dim>::Unit(c));
-                    }),
-                    1e-9 * scale);
-    }
+    // Error h^4 E''''' plus round-off 1e-16 E / h, E of order 1.
+    expect_minus_slope<dim>(p, {1e-3, 1e-3}, 1e-9, 1, 3, total);
   }
 }
 

@@ -49,4 +49,34 @@ void set_random_strains(ManyBodyForce<dim> &force, int n, double amplitude)
     force.strains().set_strain(i, e);
   }
 }
+
+/// A homogeneous strain as all particles see it, turned.
+template <int dim>
+void deform(Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &strain,
+            const Spin<dim> &turn = Spin<dim>::Zero())
+{
+  for (int i = 0; i < p.size(); ++i) {
+    for (auto &r : p.rotation)
+      r[i] = 0;
+    if constexpr (dim == 3)
+      p.rotation[0][i] = 1;
+    turn_by<dim>(p, i, turn);
+    const Vector<dim> x = get(p.reference, i), y = x + strain * x;
+    set(p.displacement, i, Vector<dim>(y + Turn<dim>::of(p, i).change(y) - x));
+  }
+}
+
+/// The one next to the middle of all.
+template <int dim>
+int inner_particle(const Particles<dim> &p)
+{
+  int best = 0;
+  Vector<dim> middle = Vector<dim>::Zero();
+  for (int i = 0; i < p.size(); ++i)
+    middle += get(p.reference, i) / p.size();
+  for (int i = 0; i < p.size(); ++i)
+    if ((get(p.reference, i) - middle).norm() < (get(p.reference, best) - middle).norm())
+      best = i;
+  return best;
+}
 } // namespace ligament::dem::testing

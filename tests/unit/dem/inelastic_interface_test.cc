@@ -2,6 +2,7 @@
 // gradient, own stresses that of the energy by the strains; uniform strains cost nothing; stresses
 // come down to the yield surface; balances close, breaking included; layers in closed form.
 #include "core/extremes.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 
@@ -70,13 +71,6 @@ std::vector<PlaneMode> planes()
   return {PlaneMode::strain, PlaneMode::stress};
 }
 
-/// Of fourth order.
-template <typename Value>
-double derivative(double step, Value &&value)
-{
-  return (value(-2 * step) - 8 * value(-step) + 8 * value(step) - value(2 * step)) / (12 * step);
-}
-
 TYPED_TEST(InelasticInterface, ForcesAreTheGradientAtFrozenStrains)
 {
   constexpr int dim = TypeParam::value;
@@ -88,25 +82,9 @@ TYPED_TEST(InelasticInterface, ForcesAreTheGradientAtFrozenStrains)
       auto p = at_rest(packing, materials.base());
       disturb<dim>(p, packing.spacing, 0.02, Spin<dim>::Constant(0.3), 3);
       force.compute(p, 1.);
-      double scale = 0;
-      for (int i = 0; i < p.size(); ++i)
-        keep_largest(scale, get(p.force, i).norm());
-      for (int i = 0; i < p.size(); i += 1 + p.size() / 20) {
-        for (int c = 0; c < dim; ++c)
-          EXPECT_NEAR(p.force[c][i], -derivative(1e-3 * packing.spacing, [&](double s) {
-                        auto q = p;
-                        q.displacement[c][i] += s;
-                        return force.potential_energy(q);
-                      }),
-                      1e-9 * scale);
-        for (int c = 0; c < n_spins<dim>; ++c)
-          EXPECT_NEAR(p.torque[c][i], -derivative(1e-3, [&](double s) {
-                        auto q = p;
-                        turn_by<dim>(q, i, s * Spin<dim>::Unit(c));
-                        return force.potential_energy(q);
-                      }),
-                      1e-9 * scale * packing.spacing);
-      }
+      expect_minus_slope<dim>(p, {1e-3 * packing.spacing, 1e-3}, 1e-9, packing.spacing,
+                              1 + p.size() / 20,
+                              [&](const auto &q) { return force.potential_energy(q); });
     }
 }
 
@@ -134,7 +112,7 @@ TYPED_TEST(InelasticInterface, OwnStressesAreThoseOfTheEnergy)
           ++n_asked;
           for (int c = 0; c < e.size(); ++c) {
             const double sides = c < 3 ? 1 : 2; // of a symmetric tensor
-            const double expected = -derivative(1e-2, [&](double s) {
+            const double expected = -slope(1e-2, [&](double s) {
               auto changed = e;
               changed[c] += s;
               force.strains().set_strain(i, changed);

@@ -1,8 +1,7 @@
 // Bodies that flow against the continuum: a strip in tension, its unloading; Drucker and Prager
 // under confinement; a body that turns between its load steps.
-#include "packings/random_packing.h"
 #include "particles/particle_solver.h"
-#include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/inelastic_bodies.h"
 
 #include <fmt/format.h>
 
@@ -111,34 +110,6 @@ struct InelasticBody : ::testing::Test
 };
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(InelasticBody, Dimensions);
-
-/// A homogeneous strain as all particles see it.
-template <int dim>
-void deform(Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &strain, const Spin<dim> &turn)
-{
-  for (int i = 0; i < p.size(); ++i) {
-    for (auto &r : p.rotation)
-      r[i] = 0;
-    if constexpr (dim == 3)
-      p.rotation[0][i] = 1;
-    turn_by<dim>(p, i, turn);
-    const Vector<dim> x = get(p.reference, i), y = x + strain * x;
-    set(p.displacement, i, Vector<dim>(y + Turn<dim>::of(p, i).change(y) - x));
-  }
-}
-
-template <int dim>
-int inner_particle(const Particles<dim> &p)
-{
-  int best = 0;
-  Vector<dim> middle = Vector<dim>::Zero();
-  for (int i = 0; i < p.size(); ++i)
-    middle += get(p.reference, i) / p.size();
-  for (int i = 0; i < p.size(); ++i)
-    if ((get(p.reference, i) - middle).norm() < (get(p.reference, best) - middle).norm())
-      best = i;
-  return best;
-}
 
 // Prescribed strains of an inner cell of any packing: stress and volume follow the closed form of
 // the cone, on its flank and at its apex.

@@ -2,6 +2,7 @@
 // gradient at frozen strains, affine ones cost nothing, one call flows once, the balance closes.
 #include "core/extremes.h"
 #include "tests/oracle/inelastic_oracle.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/free_flight.h"
 #include "tests/unit/dem/inelastic_bodies.h"
 
@@ -123,32 +124,8 @@ TYPED_TEST(Inelastic, ForcesAreTheGradientAtFrozenStrains)
           }
         return sum;
       };
-      const double h = 1e-3 * packing.spacing;
-      const auto derivative = [&](double step, auto &&change) {
-        double sum = 0;
-        for (const auto &[place, weight] :
-             {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-        {
-          auto q = p;
-          change(q, place * step);
-          sum += weight * total(q) / step;
-        }
-        return sum;
-      };
-      double scale = 0;
-      for (int i = 0; i < p.size(); ++i)
-        keep_largest(scale, get(p.force, i).norm());
-      for (int i = 0; i < p.size(); i += 1 + p.size() / 20) {
-        for (int c = 0; c < dim; ++c)
-          EXPECT_NEAR(p.force[c][i],
-                      -derivative(h, [&](auto &q, double s) { q.displacement[c][i] += s; }),
-                      1e-9 * scale);
-        for (int c = 0; c < n_spins<dim>; ++c)
-          EXPECT_NEAR(p.torque[c][i], -derivative(1e-3, [&](auto &q, double s) {
-                        turn_by<dim>(q, i, s * Spin<dim>::Unit(c));
-                      }),
-                      1e-9 * scale * packing.spacing);
-      }
+      expect_minus_slope<dim>(p, {1e-3 * packing.spacing, 1e-3}, 1e-9, packing.spacing,
+                              1 + p.size() / 20, total);
     }
 }
 

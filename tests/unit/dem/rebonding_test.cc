@@ -2,6 +2,7 @@
 // cycles, adhesion ends at its strength, states go on to the bit, numbering changes nothing.
 #include "core/extremes.h"
 #include "tests/unit/dem/cases.h"
+#include "tests/unit/dem/force_slope.h"
 #include "tests/unit/dem/run.h"
 #include "tests/unit/dem/softening_bodies.h"
 
@@ -149,18 +150,6 @@ TYPED_TEST(Rebonded, ForceIsMinusTheGradient)
     auto p = body.p;
     force.compute(p, 3);
     force.compute(p, 3);
-    const double h = 1e-5;
-    const auto derivative = [&](auto &&change) {
-      double sum = 0;
-      for (const auto &[step, weight] :
-           {std::pair{-2., 1. / 12}, {-1., -8. / 12}, {1., 8. / 12}, {2., -1. / 12}})
-      {
-        auto q = p;
-        change(q, step * h);
-        sum += weight * force.potential_energy(q) / h;
-      }
-      return sum;
-    };
     double scale = 0;
     Vector<dim> net = Vector<dim>::Zero();
     for (int i = 0; i < p.size(); ++i) {
@@ -168,31 +157,10 @@ TYPED_TEST(Rebonded, ForceIsMinusTheGradient)
       net += get(p.force, i);
     }
     EXPECT_LT(net.norm(), 1e-13 * scale);
-    for (int i = 0; i < p.size(); ++i) {
-      for (int c = 0; c < dim; ++c)
-        EXPECT_NEAR(p.force[c][i],
-                    -derivative([&](auto &q, double s) { q.displacement[c][i] += s; }),
-                    1e-8 * scale)
-            << flows;
-      for (int c = 0; c < n_spins<dim>; ++c)
-        EXPECT_NEAR(p.torque[c][i], -derivative([&](auto &q, double s) {
-                      turn_by<dim>(q, i, s * Spin<dim>::Unit(c));
-                    }),
-                    1e-8 * scale)
-            << flows;
-    }
+    const ::testing::ScopedTrace trace(__FILE__, __LINE__, flows ? "flows" : "elastic");
+    expect_minus_slope<dim>(p, {1e-5, 1e-5}, 1e-8, 1, 1,
+                            [&](const auto &q) { return force.potential_energy(q); });
   }
-}
-
-/// All numbers of a state.
-std::vector<double> all_numbers(const core::State &state)
-{
-  std::vector<double> numbers;
-  for (const auto &[name, table] : state)
-    for (const std::string &column : table.columns())
-      for (const double x : table.reals(column))
-        numbers.push_back(x);
-  return numbers;
 }
 
 TYPED_TEST(Rebonded, GoesOnFromItsStateToTheBit)
@@ -246,10 +214,7 @@ TYPED_TEST(Rebonded, LookingTwiceChangesNothing)
     body.force->compute(body.p, step);
     body.force->save(twice, names, body.p);
     EXPECT_EQ(difference(p, body.p, 1.), 0);
-    const auto a = all_numbers(once), b = all_numbers(twice);
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t k = 0; k < a.size(); ++k)
-      ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
+    expect_same_numbers(once, twice);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include "tests/unit/dem/body.h"
 
+#include <gtest/gtest.h>
+
 namespace ligament::dem::testing
 {
 /// The ends of the second axis move apart by so many m/s in all, after a smooth start.
@@ -78,5 +80,14 @@ inline std::vector<double> all_numbers(const core::State &state)
       for (const double x : table.reals(column))
         numbers.push_back(x);
   return numbers;
+}
+
+/// To the bit, but for the payloads of what is no number.
+inline void expect_same_numbers(const core::State &left, const core::State &right)
+{
+  const auto a = all_numbers(left), b = all_numbers(right);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k)
+    ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
 }
 } // namespace ligament::dem::testing

@@ -95,35 +95,6 @@ TYPED_TEST(Viscous, IsTheOracleOnLatticesAndRandomPackings)
         }
 }
 
-/// A homogeneous strain as all particles see it, turned.
-template <int dim>
-void deform(Particles<dim> &p, const Eigen::Matrix<double, dim, dim> &strain,
-            const Spin<dim> &turn = Spin<dim>::Zero())
-{
-  for (int i = 0; i < p.size(); ++i) {
-    for (auto &r : p.rotation)
-      r[i] = 0;
-    if constexpr (dim == 3)
-      p.rotation[0][i] = 1;
-    turn_by<dim>(p, i, turn);
-    const Vector<dim> x = get(p.reference, i), y = x + strain * x;
-    set(p.displacement, i, Vector<dim>(y + Turn<dim>::of(p, i).change(y) - x));
-  }
-}
-
-template <int dim>
-int inner_particle(const Particles<dim> &p)
-{
-  int best = 0;
-  Vector<dim> middle = Vector<dim>::Zero();
-  for (int i = 0; i < p.size(); ++i)
-    middle += get(p.reference, i) / p.size();
-  for (int i = 0; i < p.size(); ++i)
-    if ((get(p.reference, i) - middle).norm() < (get(p.reference, best) - middle).norm())
-      best = i;
-  return best;
-}
-
 /// Strains along `direction` by `course` up to `end`: viscous strain of an inner particle.
 template <int dim, typename Course>
 typename InelasticStrains<dim>::Tensor
