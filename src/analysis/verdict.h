@@ -20,8 +20,8 @@ RunRecord read_figures(const std::string &path);
 std::string incompleteness_with_reason(const RunRecord &record);
 
 /// Wall time of the pure discrete model of the same specimen over the wall time of this run, with
-/// the time per particle and step that this run measured. Empty when a figure is missing, and for runs
-/// with phases.
+/// the time per particle and step that this run measured, and its output. Empty when a figure is
+/// missing, and for runs with phases.
 std::optional<double> predicted_saving(const RunRecord &record);
 
 /// A warning with the energy that it cost.

@@ -68,6 +68,10 @@ TEST(Verdict, ScalesTheMeasuredRateToThePureModel)
   r.status = "done";
   r.energy_residual = 0.5;
   EXPECT_EQ(verdict(r).find("nothing unstable"), std::string::npos);
+  // What both models write costs either of them the same.
+  r.timing = {{"discrete forces", 12, 1}, {"output", 30, 1}};
+  r.wall_seconds = 50;
+  EXPECT_DOUBLE_EQ(*predicted_saving(r), (12. * 121000 / 8700 + 30) / 50);
   r.discrete_seconds = {};
   EXPECT_FALSE(predicted_saving(r));
 }
