@@ -2,8 +2,11 @@
 
 #include "dem/bond_law.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -35,6 +38,11 @@ BondSlices<dim>::BondSlices(const BondNetwork<dim> &bonds, double shear_modulus,
       record_of[i] = table_.n_records();
       table_.particle.push_back(i);
     }
+  core::require(
+      table_.n_records() < std::numeric_limits<int>::max() / record_size / 2,
+      fmt::format("/discrete_zone: a rank has {} particles with bonds off the lattice, more "
+                  "than can be numbered there; share the body among more ranks (-n)",
+                  table_.n_records()));
   lay_out(n_bonds_of);
 
   // A neighbour beyond a joined side has a record of its own: its displacement is another.

@@ -15,7 +15,7 @@ namespace
 template <int dim>
 void set_motion(particles::Particles<dim> &p, const Eigen::VectorXd &x, double amplitude)
 {
-  const int n = p.size();
+  const Eigen::Index n = p.size(); // times its degrees of freedom it may be no int
   for (int i = 0; i < n; ++i) {
     const double a = amplitude * std::sqrt(p.inverse_mass(i)),
                  b = amplitude * std::sqrt(p.inverse_inertia(i));
@@ -32,7 +32,7 @@ void set_motion(particles::Particles<dim> &p, const Eigen::VectorXd &x, double a
 template <int dim>
 void get_force(const particles::Particles<dim> &p, Eigen::VectorXd &y, double amplitude)
 {
-  const int n = p.size();
+  const Eigen::Index n = p.size();
   particles::for_each(p.part.owned, [&](int i) {
     const double a = -std::sqrt(p.inverse_mass(i)) / amplitude,
                  b = -std::sqrt(p.inverse_inertia(i)) / amplitude;
@@ -83,13 +83,14 @@ Eigen::VectorXd random_vector(const particles::Particles<dim> &p, const core::Ra
     begin += int(r) < ranks.rank() ? counts[r] : 0;
     n += counts[r];
   }
-  Eigen::VectorXd v = Eigen::VectorXd::Zero(n_particle_dofs<dim> * p.size());
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(n_particle_dofs<dim> * Eigen::Index(p.size()));
   std::uint64_t state = 88172645463325252ull; // xorshift
   for (int c = 0; c < n_particle_dofs<dim>; ++c)
     for (std::int64_t place = 0; place < n; ++place) {
       state ^= state << 13, state ^= state >> 7, state ^= state << 17;
       if (place >= begin && place - begin < std::int64_t(own.size()))
-        v[c * p.size() + own[place - begin]] = double(state >> 11) / double(1ull << 53) - 0.5;
+        v[c * Eigen::Index(p.size()) + own[place - begin]] =
+            double(state >> 11) / double(1ull << 53) - 0.5;
     }
   return v;
 }
