@@ -210,7 +210,7 @@ int resume_command(const CommandLine &line, const core::Ranks &ranks)
 {
   core::Interruption interruption;
   RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks,
-                     line.in_pieces};
+                     line.in_pieces, line.json};
   const RunFolder folder{line.run};
   std::optional<OpenRun> run; // of the first rank, which locks it before anybody reads
   if (ranks.is_first())

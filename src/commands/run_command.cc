@@ -52,7 +52,7 @@ int run_command(const CommandLine &line, const ReadResult &input, const core::Ra
     return refuse(line, line.scene, refused, input.warnings);
   core::Interruption interruption;
   const RunOptions options{end_request(line, interruption), nullptr, line.rebuild_interval, ranks,
-                           line.in_pieces};
+                           line.in_pieces, line.json};
   const RunFolder folder{path};
   if (!ranks.is_first())
     return follow(input, folder, interruption, options);

@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <ctime>
 
 namespace ligament::program
@@ -57,8 +58,12 @@ void write_resolved(const ReadResult &input, const RunFolder &folder)
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
                    core::Interruption &interruption, const RunOptions &options)
 {
-  interruption.end_at_once([&run](int signal) {
-    run.end("interrupted", std::string(core::Interruption::name(signal)) + " asked for the end");
+  interruption.end_at_once([&run, json = options.json](int signal) {
+    const std::string why = std::string(core::Interruption::name(signal)) + " asked for the end";
+    run.end("interrupted", why);
+    if (json)
+      fmt::print("{}\n", error_json("interrupted", why));
+    std::fflush(stdout); // what follows is _exit()
   });
   try {
     if (!options.from)

@@ -22,6 +22,7 @@ struct RunOptions
   int rebuild_interval = 0;         // see Simulation::rebuild_every; 0: never
   core::Ranks ranks = {};           // that compute it together
   bool in_pieces = false;           // each writes the fields of its particles
+  bool json = false;                // an end during the set-up prints an object, too
   /// Of the first rank: what of an older run makes way, once all ranks have set up.
   std::function<void()> make_way = {};
 };

@@ -162,11 +162,13 @@ TEST_F(Faults, SignalsEndASetUpAtOnce)
 {
   ASSERT_EQ(mkfifo("packing.csv", 0600), 0);
   Process run("exec " + program + " run scene.json -o out --set /discrete_zone/packing=file " +
-              "--set /discrete_zone/packing_file=packing.csv");
+              "--set /discrete_zone/packing_file=packing.csv --json");
   ASSERT_TRUE(eventually([] { return fs::exists("out/scene.resolved.json"); }));
   run.send(SIGTERM);
-  EXPECT_EQ(run.wait().code, 128 + SIGTERM);
+  const auto end = run.wait();
+  EXPECT_EQ(end.code, 128 + SIGTERM);
   EXPECT_EQ(status("out"), "interrupted");
+  EXPECT_EQ(end.json()["status"], "interrupted");
   EXPECT_FALSE(fs::exists("out/run.json.reserve"));
 }
 
