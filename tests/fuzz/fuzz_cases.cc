@@ -15,7 +15,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef LIGAMENT_SANITIZE
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -29,7 +29,7 @@ std::string document; // that is read now
 char sentence[256];   // how to repeat the case; ready before a signal comes
 
 // The address sanitizer tells the others itself.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef LIGAMENT_SANITIZE
 constexpr std::array<int, 1> signals = {SIGPROF};
 #else
 constexpr std::array<int, 6> signals = {SIGPROF, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
@@ -59,10 +59,10 @@ public:
   {
     for (const int signal : signals)
       std::signal(signal, tell_and_end);
-#ifdef __SANITIZE_ADDRESS__
+#ifdef LIGAMENT_SANITIZE
     __sanitizer_set_death_callback([] { tell("\nthis case crashes: "); });
 #endif
-#if !defined(__SANITIZE_ADDRESS__) // it reserves terabytes
+#ifndef LIGAMENT_SANITIZE // it reserves terabytes
     rlimit memory;
     getrlimit(RLIMIT_AS, &memory);
     before_ = memory;
@@ -73,12 +73,12 @@ public:
   ~Guard()
   {
     set_time(0);
-#if !defined(__SANITIZE_ADDRESS__)
+#ifndef LIGAMENT_SANITIZE
     setrlimit(RLIMIT_AS, &before_);
 #endif
     for (const int signal : signals)
       std::signal(signal, SIG_DFL);
-#ifdef __SANITIZE_ADDRESS__
+#ifdef LIGAMENT_SANITIZE
     __sanitizer_set_death_callback([] {});
 #endif
   }

@@ -1,4 +1,5 @@
 // The program from outside: exit codes, fields of --json, older runs are kept.
+#include "tests/support/slowness.h"
 #include "tests/support/small_plate.h"
 
 #include <nlohmann/json.hpp>
@@ -232,7 +233,8 @@ TEST(Program, NoRowIsWrittenTwice)
   std::filesystem::remove_all("rows");
   const auto outcome = ligament("run " + scene_file("rows.json") + pulled +
                                 "--set /output/history_interval=1e-3 --set /time/duration=1e4 "
-                                "--wall-time 0.3 --output rows");
+                                "--wall-time " +
+                                std::to_string(0.3 * slowness) + " --output rows");
   ASSERT_EQ(outcome.code, 124);
   const auto lines = lines_of("rows/history.csv");
   ASSERT_GE(lines.size(), 5u);

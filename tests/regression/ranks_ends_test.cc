@@ -1,4 +1,5 @@
 // How jobs of several ranks end: by signals, guards and errors, with all ranks and a reason.
+#include "tests/support/faulty_disk.h"
 #include "tests/support/rank_runs.h"
 
 #include <csignal>
@@ -222,11 +223,10 @@ TEST_F(RanksEnds, ADiskThatRefusesTheLastFilesIsAFailedRun)
 {
   const std::string name = written(halves_that_slide(), "scene.json"),
                     out = fs::absolute("out").string();
-  const Outcome outcome =
-      run_shell("exec env FAULTY_DISK_FOLDER=" + out + "/snapshot_0 FAULTY_DISK_ACTION=fail_on" +
-                " FAULTY_DISK_CALL=1 FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) +
-                " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD=" + LIGAMENT_FAULTY_DISK +
-                " timeout -k 5 60 " + program + " run " + name + " -n 3 -o " + out);
+  const Outcome outcome = run_shell(
+      "exec env FAULTY_DISK_FOLDER=" + out + "/snapshot_0 FAULTY_DISK_ACTION=fail_on" +
+      " FAULTY_DISK_CALL=1 FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) + " " + with_faulty_disk() +
+      "timeout -k 5 60 " + program + " run " + name + " -n 3 -o " + out);
   EXPECT_EQ(outcome.code, 4) << outcome.errors;
   const auto record = file_json("out/run.json");
   EXPECT_EQ(record["status"], "failed");

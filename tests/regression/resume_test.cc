@@ -1,5 +1,6 @@
 // Runs that are killed, stopped or short of time, and go on: byte for byte what a run without a
 // break writes. Through the programs.
+#include "tests/support/faulty_disk.h"
 #include "tests/support/run_results.h"
 
 #include <cerrno>
@@ -511,8 +512,7 @@ std::string faulty_disk(const std::string &run, const std::string &action, int c
 {
   return "FAULTY_DISK_FOLDER=" + fs::absolute(run + "/checkpoints").string() +
          " FAULTY_DISK_ACTION=" + action + " FAULTY_DISK_CALL=" + std::to_string(call) +
-         " FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) + " LD_PRELOAD=" + LIGAMENT_FAULTY_DISK +
-         " ASAN_OPTIONS=verify_asan_link_order=0";
+         " FAULTY_DISK_ERROR=" + std::to_string(ENOSPC) + " " + with_faulty_disk();
 }
 
 TEST_F(Resume, AFailedWriteIsAWarning)

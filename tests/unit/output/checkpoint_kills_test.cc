@@ -2,6 +2,7 @@
 // any of them. The newest good one is then that before or the new one, never another, never none.
 #include "core/files.h"
 #include "src/output/checkpoints.h"
+#include "tests/support/faulty_disk.h"
 #include "tests/support/program.h"
 #include "tests/support/sample_states.h"
 
@@ -21,9 +22,9 @@ const std::string folder = fs::absolute("kills/checkpoints"), before = fs::absol
 /// Checkpoint 3 onto 1 and 2, by a process of its own; its exit code.
 int write_with_fault(const std::string &variables)
 {
-  return tests::run_shell("FAULTY_DISK_FOLDER=" + folder + " " + variables + " LD_PRELOAD=" +
-                          LIGAMENT_FAULTY_DISK + " ASAN_OPTIONS=verify_asan_link_order=0 " +
-                          "exec " + LIGAMENT_CHECKPOINT_WRITER + " " + folder + " 3")
+  return tests::run_shell("FAULTY_DISK_FOLDER=" + folder + " " + variables + " " +
+                          tests::with_faulty_disk() + "exec " + LIGAMENT_CHECKPOINT_WRITER + " " +
+                          folder + " 3")
       .code;
 }
 

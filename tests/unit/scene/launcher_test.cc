@@ -1,5 +1,6 @@
 // The program as users start it: exit codes, what is printed where, and that it answers at once.
 #include "core/version.h"
+#include "tests/support/slowness.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -149,9 +150,9 @@ TEST(Launcher, AnswersAtOnce)
        {std::string("--help"), std::string("explain"), "run " + plate + " --set /dimension=4",
         "sweep " + wrong_study + " --json"})
   {
-    double fastest = 1;
-    for (int k = 0; k < 5; ++k)
+    double fastest = start(arguments).seconds;
+    for (int k = 1; k < 5; ++k)
       fastest = std::min(fastest, start(arguments).seconds);
-    EXPECT_LT(fastest, 0.1) << arguments;
+    EXPECT_LT(fastest, 0.1 * ligament::tests::slowness) << arguments;
   }
 }
