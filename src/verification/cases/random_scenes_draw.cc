@@ -385,8 +385,9 @@ Json loads_json(const Draw &draw, const RandomScene &scene, const Geometry &g, c
   }
   const bool one_sided = draw.chance("bottom_is_held", 0.25);
   if (scene.control == "traction") {
-    Json loads = {
-        load_json("top", "traction", vector_of(scene, nullptr, end * l.unit.yy), l.duration)};
+    Json loads = Json::array(); // one object in braces is that object to some compilers
+    loads.push_back(
+        load_json("top", "traction", vector_of(scene, nullptr, end * l.unit.yy), l.duration));
     loads.push_back(one_sided ? load_json("bottom", "velocity", vector_of(scene, nullptr, 0), 0)
                               : load_json("bottom", "traction",
                                           vector_of(scene, nullptr, -end * l.unit.yy), l.duration));

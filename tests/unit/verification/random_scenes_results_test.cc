@@ -111,7 +111,7 @@ TEST(SceneResults, FiguresThatOnceFailedHold)
     SCOPED_TRACE(seed);
     const SceneResult result = compute_scene(seed, folder.string());
     const auto figure = std::find_if(result.figures.begin(), result.figures.end(),
-                                     [&](const auto &f) { return f.name == name; });
+                                     [of = name](const auto &f) { return f.name == of; });
     ASSERT_NE(figure, result.figures.end()) << result.remark;
     EXPECT_TRUE(figure->holds()) << figure->value;
     std::filesystem::remove_all(folder);
