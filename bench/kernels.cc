@@ -493,11 +493,13 @@ void measure_tensor_criteria(const std::string &name, const packings::Packing<di
         packing, material, std::vector<core::BoundaryLoad<dim>>(), fracture);
   };
   const auto without = make({}), tension = make({Law::maximum_tension, 1e3});
-  for (const auto &[word, criterion] :
+  for (const auto &named :
        {std::pair("principal_stress", Law::principal_stress),
         std::pair("von_mises", Law::von_mises), std::pair("drucker_prager", Law::drucker_prager),
         std::pair("mohr_coulomb", Law::mohr_coulomb), std::pair("energy", Law::energy)})
   {
+    const char *const word = named.first;
+    const auto criterion = named.second; // lambdas take no names of a structured binding
     const auto compare = [&](const std::string &what, particles::Particles<dim> &p, double strength,
                              dem::ManyBodyForce<dim> &reference) {
       shape.value = strength;
