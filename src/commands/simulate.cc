@@ -58,12 +58,14 @@ void write_resolved(const ReadResult &input, const RunFolder &folder)
 RunRecord simulate(const ReadResult &input, const std::vector<std::string> &warnings, OpenRun &run,
                    core::Interruption &interruption, const RunOptions &options)
 {
-  interruption.end_at_once([&run, json = options.json](int signal) {
+  interruption.end_at_once([&run, &interruption, json = options.json](int signal) {
     const std::string why = std::string(core::Interruption::name(signal)) + " asked for the end";
     run.end("interrupted", why);
-    if (json)
+    // A second signal finds the caller at its own last words, and does not wait for who reads them.
+    if (json && interruption.signal() == 0) {
       fmt::print("{}\n", error_json("interrupted", why));
-    std::fflush(stdout); // what follows is _exit()
+      std::fflush(stdout);
+    }
   });
   try {
     if (!options.from)
