@@ -161,7 +161,7 @@ def main():
             continue
         scene = scene.resolve()
         name = "/".join(scene.parts[-2:])
-        code, answer = answer_of([args.program, "check", str(scene), "-n", "2", "--json"])
+        code, answer = answer_of([args.program, "check", str(scene), "-n", "2", "--json"] + duration_of(scene, args.share))
         if code:
             reasons = sorted({f"{error.get('key', '')}: {error.get('message', error)}"
                               for error in answer.get("errors", [])})
